@@ -1,0 +1,125 @@
+/// The floor of the numerics contract: products that are rounded before they are added, exact products, and
+/// the guard against a caller's flush-to-zero mode.
+#pragma once
+
+#ifdef __FAST_MATH__
+#error "hedgerow: -ffast-math (or -Ofast) breaks the numerics contract; build without it"
+#endif
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace hedgerow {
+
+/// Returns x as it is, but hides from the optimiser that it came from a product, so that no multiply-add can be
+/// formed with it. Free: it emits no instruction. (g++ contracts across statements and ignores the pragma.)
+template <std::floating_point T>
+constexpr T rounded(T x) {
+    if (!std::is_constant_evaluated()) {
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__SSE2__))
+        asm("" : "+x"(x));
+#elif defined(__GNUC__) && defined(__aarch64__)
+        asm("" : "+w"(x));
+#else
+        volatile T hidden = x;
+        x = hidden;
+#endif
+    }
+    return x;
+}
+
+/// a·b, rounded once.
+template <std::floating_point T>
+constexpr T product(T a, T b) {
+    return rounded(a * b);
+}
+
+/// Unit roundoff: 2^-24 for float, 2^-53 for double.
+template <std::floating_point T>
+inline constexpr T unit_roundoff = std::numeric_limits<T>::epsilon() / 2;
+
+/// The largest magnitude a coordinate may have: 2^60 for float, 2^480 for double. Beyond it products of four
+/// coordinates overflow.
+template <std::floating_point T>
+inline constexpr T largest_coordinate = std::is_same_v<T, float> ? T(0x1p60) : T(0x1p480L);
+
+/// An unevaluated sum high + low, with |low| <= u·|high|.
+template <std::floating_point T>
+struct TwoSum {
+    T high, low;
+};
+
+/// high + low == a·b exactly, short of overflow and underflow (Dekker 1971; Veltkamp's splitting).
+template <std::floating_point T>
+constexpr TwoSum<T> two_product(T a, T b) {
+    constexpr T splitter = std::is_same_v<T, float> ? T(0x1p12 + 1) : T(0x1p27 + 1);
+    const auto split = [](T x) {
+        const T c = product(splitter, x);
+        const T high = c - rounded(c - x);
+        return TwoSum<T>{high, x - high};
+    };
+    const T p = product(a, b);
+    const auto [ah, al] = split(a);
+    const auto [bh, bl] = split(b);
+    const T low = product(al, bl) - (((p - product(ah, bh)) - product(al, bh)) - product(ah, bl));
+    return {p, low};
+}
+
+/// a·b − c·d with the right sign and a relative error of a few roundings, short of underflow.
+template <std::floating_point T>
+constexpr T difference_of_products(T a, T b, T c, T d) {
+    const auto p = two_product(a, b);
+    const auto q = two_product(c, d);
+    return (p.high - q.high) + (p.low - q.low);
+}
+
+namespace detail {
+#if defined(__SSE2__)
+using FloatControl = unsigned;
+inline FloatControl float_control() { return _mm_getcsr(); }
+inline void set_float_control(FloatControl c) { _mm_setcsr(c); }
+inline constexpr FloatControl not_ieee = 0xE040;  // flush to zero, denormals are zero, rounding mode
+#elif defined(__aarch64__)
+using FloatControl = unsigned long;
+inline FloatControl float_control() {
+    FloatControl c;
+    asm volatile("mrs %0, fpcr" : "=r"(c));
+    return c;
+}
+inline void set_float_control(FloatControl c) { asm volatile("msr fpcr, %0" ::"r"(c)); }
+inline constexpr FloatControl not_ieee = 0x3C00000ul;  // rounding mode, flush to zero, default NaN
+#else
+using FloatControl = unsigned;
+inline FloatControl float_control() { return 0; }
+inline void set_float_control(FloatControl) {}
+inline constexpr FloatControl not_ieee = 0;
+#endif
+
+template <class F>
+[[gnu::noinline]] decltype(auto) run_in_ieee_mode(F& f, FloatControl saved) {
+    struct Restore {
+        FloatControl saved;
+        ~Restore() { set_float_control(saved); }
+    } restore{saved};
+    set_float_control(saved & ~not_ieee);
+    return f();
+}
+}  // namespace detail
+
+/// Calls f with round-to-nearest and subnormals on, whatever the caller's thread has set, and restores it after.
+template <class F>
+decltype(auto) in_ieee_mode(F&& f) {
+    const auto saved = detail::float_control();
+    if ((saved & detail::not_ieee) == 0) [[likely]]
+        return f();
+    return detail::run_in_ieee_mode(f, saved);
+}
+
+}  // namespace hedgerow

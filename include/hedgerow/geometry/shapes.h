@@ -1,0 +1,56 @@
+/// The other shapes, data only: plane, triangle, segment, sphere.
+#pragma once
+
+#include <hedgerow/geometry/box.h>
+#include <hedgerow/geometry/vec.h>
+
+namespace hedgerow {
+
+/// The points x with dot(normal, x) == offset. The normal need not have length 1.
+template <std::floating_point T, int D>
+struct Plane {
+    Vec<T, D> normal;
+    T offset = T(0);
+};
+
+/// The points x with x[axis] == position.
+template <std::floating_point T>
+struct AxisPlane {
+    int axis = 0;
+    T position = T(0);
+};
+
+template <std::floating_point T, int D>
+struct Triangle {
+    Vec<T, D> a, b, c;
+
+    constexpr Box<T, D> bounds() const {
+        Box<T, D> box;
+        return box.expand(a).expand(b).expand(c);
+    }
+    /// (b − a) × (c − a): its length is twice the area, and it points to where a, b, c turn counterclockwise.
+    constexpr Vec<T, D> normal() const requires(D == 3) { return cross(b - a, c - a); }
+};
+
+template <std::floating_point T, int D>
+struct Segment {
+    Vec<T, D> a, b;
+
+    constexpr Box<T, D> bounds() const {
+        Box<T, D> box;
+        return box.expand(a).expand(b);
+    }
+};
+
+template <std::floating_point T, int D>
+struct Sphere {
+    Vec<T, D> center;
+    T radius = T(0);
+
+    constexpr Box<T, D> bounds() const {
+        Box<T, D> box;
+        return box.expand(center - Vec<T, D>::all(radius)).expand(center + Vec<T, D>::all(radius));
+    }
+};
+
+}  // namespace hedgerow

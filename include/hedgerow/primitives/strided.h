@@ -1,0 +1,39 @@
+/// A view of the caller's own array, whatever the distance between its elements.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <type_traits>
+
+namespace hedgerow {
+
+/// `size` elements of type T, the next `stride` bytes after the one before. Copies nothing, owns nothing; an
+/// element need not be aligned.
+template <class T>
+class Strided {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+public:
+    Strided() = default;
+    Strided(const void* first, std::size_t size, std::size_t stride = sizeof(T))
+        : data_(static_cast<const std::byte*>(first)), size_(size), stride_(stride) {}
+    Strided(std::span<const T> all) : Strided(all.data(), all.size()) {}
+
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    T operator[](std::size_t i) const {
+        assert(i < size_);
+        T element;
+        std::memcpy(static_cast<void*>(&element), data_ + i * stride_, sizeof(T));
+        return element;
+    }
+
+private:
+    const std::byte* data_ = nullptr;
+    std::size_t size_ = 0;
+    std::size_t stride_ = sizeof(T);
+};
+
+}  // namespace hedgerow
