@@ -4,9 +4,29 @@
 #include <vector>
 
 #include <hedgerow/geometry/shapes.h>
+#include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
+
+/// The same over the caller's array, copied nowhere.
+template <std::floating_point T, int D>
+class PointCloudView {
+public:
+    using Scalar = T;
+    static constexpr int dimension = D;
+
+    explicit PointCloudView(Strided<Vec<T, D>> points) : points_(points) {}
+
+    std::size_t size() const { return points_.size(); }
+    Vec<T, D> point(std::size_t i) const { return points_[i]; }
+    Box<T, D> bounds(std::size_t i) const { return {points_[i], points_[i]}; }
+    Vec<T, D> closest_point(std::size_t i, const Vec<T, D>&) const { return points_[i]; }
+    bool overlaps(std::size_t i, const Box<T, D>& box) const { return box.contains(points_[i]); }
+
+private:
+    Strided<Vec<T, D>> points_;
+};
 
 /// Points in an array of its own. A point's id is its position.
 template <std::floating_point T, int D>
@@ -17,6 +37,7 @@ struct PointCloud {
     std::vector<Vec<T, D>> points;
 
     std::size_t size() const { return points.size(); }
+    PointCloudView<T, D> view() const { return PointCloudView<T, D>(std::span(points)); }
 };
 
 }  // namespace hedgerow

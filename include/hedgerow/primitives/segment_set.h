@@ -4,9 +4,36 @@
 #include <vector>
 
 #include <hedgerow/geometry/shapes.h>
+#include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
+
+/// The same over the caller's array, copied nowhere.
+template <std::floating_point T>
+class SegmentSetView {
+public:
+    using Scalar = T;
+    static constexpr int dimension = 2;
+
+    explicit SegmentSetView(Strided<Segment<T, 2>> segments) : segments_(segments) {}
+
+    std::size_t size() const { return segments_.size(); }
+    Segment<T, 2> segment(std::size_t i) const { return segments_[i]; }
+    Box<T, 2> bounds(std::size_t i) const { return segments_[i].bounds(); }
+    Vec<T, 2> closest_point(std::size_t i, const Vec<T, 2>& p) const {
+        return hedgerow::closest_point(p, segments_[i]);
+    }
+    bool overlaps(std::size_t i, const Box<T, 2>& box) const { return overlap(segments_[i], box); }
+    std::optional<Meeting<T>> meet(std::size_t i, const Ray<T, 2>& ray) const {
+        const auto m = meet_line(ray.origin, ray.direction, segments_[i]);
+        if (!m || !(ray.t_min <= m->t && m->t <= ray.t_max)) return std::nullopt;
+        return m;
+    }
+
+private:
+    Strided<Segment<T, 2>> segments_;
+};
 
 /// Segments in an array of its own. A segment's id is its position.
 template <std::floating_point T>
@@ -17,6 +44,7 @@ struct SegmentSet {
     std::vector<Segment<T, 2>> segments;
 
     std::size_t size() const { return segments.size(); }
+    SegmentSetView<T> view() const { return SegmentSetView<T>(std::span(segments)); }
 };
 
 }  // namespace hedgerow

@@ -4,9 +4,39 @@
 #include <vector>
 
 #include <hedgerow/geometry/shapes.h>
+#include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
+
+/// The same over the caller's array, copied nowhere.
+template <std::floating_point T, int D>
+class SphereSetView {
+public:
+    using Scalar = T;
+    static constexpr int dimension = D;
+
+    explicit SphereSetView(Strided<Sphere<T, D>> spheres) : spheres_(spheres) {}
+
+    std::size_t size() const { return spheres_.size(); }
+    Sphere<T, D> sphere(std::size_t i) const { return spheres_[i]; }
+    Box<T, D> bounds(std::size_t i) const { return spheres_[i].bounds(); }
+    Vec<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
+        return hedgerow::closest_point(p, spheres_[i]);
+    }
+    bool overlaps(std::size_t i, const Box<T, D>& box) const { return overlap(spheres_[i], box); }
+    /// The first crossing of the surface in the interval: the way in, or from inside the way out.
+    std::optional<Meeting<T>> meet(std::size_t i, const Ray<T, D>& ray) const {
+        const auto both = meet_line(ray.origin, ray.direction, spheres_[i]);
+        if (!both) return std::nullopt;
+        for (const T t : {both->entry, both->exit})
+            if (ray.t_min <= t && t <= ray.t_max) return Meeting<T>{t, T(0), T(0)};
+        return std::nullopt;
+    }
+
+private:
+    Strided<Sphere<T, D>> spheres_;
+};
 
 /// Spheres in an array of its own. A sphere's id is its position. Radii are >= 0.
 template <std::floating_point T, int D>
@@ -17,6 +47,7 @@ struct SphereSet {
     std::vector<Sphere<T, D>> spheres;
 
     std::size_t size() const { return spheres.size(); }
+    SphereSetView<T, D> view() const { return SphereSetView<T, D>(std::span(spheres)); }
 };
 
 }  // namespace hedgerow

@@ -6,12 +6,69 @@
 #include <vector>
 
 #include <hedgerow/geometry/shapes.h>
+#include <hedgerow/primitives/concepts.h>
+#include <hedgerow/primitives/packed_triangles.h>
 #include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
 
 /// Three positions in the list of vertices, counterclockwise seen from the front.
 using TriangleIndices = std::array<std::uint32_t, 3>;
+
+/// Triangles over the caller's arrays, copied nowhere: vertices of three T, triangles of three indices, each
+/// with its stride, and the id of each triangle (empty: its position).
+template <std::floating_point T>
+class TriangleMeshView {
+public:
+    using Scalar = T;
+    static constexpr int dimension = 3;
+
+    TriangleMeshView(Strided<Vec<T, 3>> vertices, Strided<TriangleIndices> triangles,
+                     Strided<std::uint32_t> faces = {})
+        : vertices_(vertices), triangles_(triangles), faces_(faces) {}
+
+    std::size_t size() const { return triangles_.size(); }
+    std::size_t vertex_count() const { return vertices_.size(); }
+    Vec<T, 3> vertex(std::size_t i) const { return vertices_[i]; }
+    TriangleIndices indices(std::size_t i) const { return triangles_[i]; }
+    Triangle<T, 3> triangle(std::size_t i) const {
+        const auto [a, b, c] = triangles_[i];
+        return {vertices_[a], vertices_[b], vertices_[c]};
+    }
+    std::uint32_t id(std::size_t i) const {
+        return faces_.empty() ? static_cast<std::uint32_t>(i) : faces_[i];
+    }
+    Box<T, 3> bounds(std::size_t i) const { return triangle(i).bounds(); }
+    Vec<T, 3> normal(std::size_t i) const { return triangle(i).normal(); }
+
+    Vec<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
+        return hedgerow::closest_point(p, triangle(i));
+    }
+    bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }
+
+    /// Rays have the watertight test, whose error the probe knows.
+    template <class Query>
+    Flow test_leaf(const RayProbe<T, 3>& probe, const Leaf& leaf, Query& query) const {
+        for (std::uint32_t i = 0; i < leaf.count; ++i) {
+            const PrimitiveId id = leaf.ids[leaf.first + i];
+            const auto m = hedgerow::meet(probe.watertight(), triangle(id));
+            if (m && query.offer({m->t, m->u, m->v, id}) == Flow::stop) return Flow::stop;
+        }
+        return Flow::go_on;
+    }
+
+    /// The triangles in the order of a structure's leaves: what makes a leaf one read.
+    PackedTriangles<T> pack(std::span<const PrimitiveId> order) const {
+        PackedTriangles<T> packed(order.size());
+        for (std::size_t i = 0; i < order.size(); ++i) packed.set(i, triangle(order[i]), order[i]);
+        return packed;
+    }
+
+private:
+    Strided<Vec<T, 3>> vertices_;
+    Strided<TriangleIndices> triangles_;
+    Strided<std::uint32_t> faces_;
+};
 
 /// Triangles in arrays of its own.
 template <std::floating_point T>
@@ -21,10 +78,15 @@ struct TriangleMesh {
 
     std::vector<Vec<T, 3>> vertices;
     std::vector<TriangleIndices> triangles;
-    /// The id of each triangle: the ordinal of the face that it came from, never descending. Empty: its position.
+    /// The id of each triangle: the ordinal of the face that it came from, never descending. Empty: its
+    /// position.
     std::vector<std::uint32_t> faces;
 
     std::size_t size() const { return triangles.size(); }
+    TriangleMeshView<T> view() const {
+        return {Strided<Vec<T, 3>>(std::span(vertices)), Strided<TriangleIndices>(std::span(triangles)),
+                Strided<std::uint32_t>(std::span(faces))};
+    }
 };
 
 }  // namespace hedgerow

@@ -1,0 +1,71 @@
+/// Any structure behind one type, chosen at run time by its name and options. What the tool and the tests
+/// link.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hedgerow/index.h>
+#include <hedgerow/primitives/point_cloud.h>
+#include <hedgerow/primitives/segment_set.h>
+#include <hedgerow/primitives/sphere_set.h>
+
+namespace hedgerow {
+
+/// One virtual call a batch; inside it everything is as if the structure were known. Const use is
+/// thread-safe.
+template <std::floating_point T, int D>
+class AnyIndex {
+public:
+    virtual ~AnyIndex() = default;
+
+    /// As it was asked for, and in full with every option.
+    virtual std::string_view structure() const = 0;
+    virtual const Box<T, D>& bounds() const = 0;
+    virtual std::size_t size() const = 0;
+    /// Beyond the primitives themselves.
+    virtual std::size_t bytes() const = 0;
+    virtual std::size_t node_count() const = 0;
+    virtual std::size_t leaf_count() const = 0;
+    virtual std::size_t item_count() const = 0;
+    virtual int depth() const = 0;
+    /// What is wrong with the structure; empty if nothing is.
+    virtual std::string validate() const = 0;
+
+    /// One hit a ray (false where nothing is hit). With `visits`, one count a ray is added to.
+    virtual void closest_hits(std::span<const Ray<T, D>> rays, std::span<Hit<T>> hits,
+                              std::span<Visits> visits = {}) const = 0;
+    virtual void any_hits(std::span<const Ray<T, D>> rays, std::span<bool> hits,
+                          std::span<Visits> visits = {}) const = 0;
+    virtual std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits,
+                                 Visits* visits = nullptr) const = 0;
+    /// One a point; element none where there is no primitive.
+    virtual void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
+                                std::span<Visits> visits = {}) const = 0;
+    virtual std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
+                                Visits* visits = nullptr) const = 0;
+    virtual std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
+                                    Visits* visits = nullptr) const = 0;
+};
+
+/// An option of a structure, for help and for messages.
+struct OptionInfo {
+    std::string_view name, values, standard, meaning;
+};
+struct StructureInfo {
+    std::string_view name, description;
+    std::vector<OptionInfo> options;
+};
+/// Every structure that `build_any` knows.
+const std::vector<StructureInfo>& structure_list();
+
+/// Builds what `spec` names over primitives that are borrowed: "bvh", "bvh:builder=sweep,max_leaf_size=4".
+/// Throws InputError for unknown names and options (with the nearest that exists) and for bad primitives.
+/// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T>, T float or double.
+template <class P>
+std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(
+    std::string_view spec, const P& primitives, Executor& executor = default_executor());
+
+}  // namespace hedgerow

@@ -1,0 +1,213 @@
+/// Ray meets shape: triangle (in the three ways of the field), sphere, segment, box.
+#pragma once
+
+#include <optional>
+
+#include <hedgerow/geometry/ray.h>
+#include <hedgerow/geometry/shapes.h>
+
+namespace hedgerow {
+
+/// Where a ray meets a surface: parameter t, and the surface's own coordinates. On a triangle the point is
+/// (1 − u − v)·a + u·b + v·c; on a segment a + u·(b − a); on a sphere u and v are 0.
+template <std::floating_point T>
+struct Meeting {
+    T t, u, v;
+    friend constexpr bool operator==(const Meeting&, const Meeting&) = default;
+};
+
+/// Both ends of the part of a ray that lies in a box; none if entry > exit.
+template <std::floating_point T>
+struct Interval {
+    T entry, exit;
+};
+
+/// Ray against box by slabs (Kay and Kajiya 1986), clipped to the ray's own interval. A flat box is a box,
+/// and a ray parallel to a slab is inside it or not: no 0·∞ is formed. The plain form, in the working
+/// precision; what structures use is the conservative RayProbe::enter.
+template <class T, int D>
+constexpr std::optional<Interval<T>> meet(const Ray<T, D>& ray, const Box<T, D>& box) {
+    Interval<T> in{ray.t_min, ray.t_max};
+    for (int i = 0; i < D; ++i) {
+        if (ray.direction[i] == 0) {
+            if (!(box.low[i] <= ray.origin[i] && ray.origin[i] <= box.high[i])) return std::nullopt;
+            continue;
+        }
+        const bool down = ray.direction[i] < 0;
+        const T near = ((down ? box.high[i] : box.low[i]) - ray.origin[i]) / ray.direction[i];
+        const T far = ((down ? box.low[i] : box.high[i]) - ray.origin[i]) / ray.direction[i];
+        in.entry = near > in.entry ? near : in.entry;
+        in.exit = far < in.exit ? far : in.exit;
+    }
+    if (!(in.entry <= in.exit)) return std::nullopt;
+    return in;
+}
+
+/// First way: meet the triangle's plane, then ask whether the point lies on the inner side of the three
+/// edges. The readable one; it leaks where edges meet.
+template <class T>
+constexpr std::optional<Meeting<T>> meet_by_plane(const Ray<T, 3>& ray, const Triangle<T, 3>& tri) {
+    const Vec<T, 3> n = tri.normal();
+    const T approach = dot(n, ray.direction);
+    if (approach == 0) return std::nullopt;
+    const T t = dot(n, tri.a - ray.origin) / approach;
+    if (!(ray.t_min <= t && t <= ray.t_max)) return std::nullopt;
+    const Vec<T, 3> p = ray.at(t);
+    const T w = dot(n, cross(tri.c - tri.b, p - tri.b));
+    const T u = dot(n, cross(tri.a - tri.c, p - tri.c));
+    const T v = dot(n, cross(tri.b - tri.a, p - tri.a));
+    if (w < 0 || u < 0 || v < 0) return std::nullopt;
+    const T area = length2(n);
+    return Meeting<T>{t, u / area, v / area};
+}
+
+/// Second way: the triangle as the affine image of the unit triangle; Cramer's rule for (t, u, v) (Möller and
+/// Trumbore 1997). Fast, and still open at edges.
+template <class T>
+constexpr std::optional<Meeting<T>> meet_by_barycentrics(const Ray<T, 3>& ray, const Triangle<T, 3>& tri) {
+    const Vec<T, 3> e1 = tri.b - tri.a;
+    const Vec<T, 3> e2 = tri.c - tri.a;
+    const Vec<T, 3> p = cross(ray.direction, e2);
+    const T det = dot(e1, p);
+    if (det == 0) return std::nullopt;
+    const Vec<T, 3> s = ray.origin - tri.a;
+    const T u = dot(s, p) / det;
+    if (!(u >= 0 && u <= 1)) return std::nullopt;
+    const Vec<T, 3> q = cross(s, e1);
+    const T v = dot(ray.direction, q) / det;
+    if (!(v >= 0 && u + v <= 1)) return std::nullopt;
+    const T t = dot(e2, q) / det;
+    if (!(ray.t_min <= t && t <= ray.t_max)) return std::nullopt;
+    return Meeting<T>{t, u, v};
+}
+
+/// Third way, the default: watertight (Woop, Benthin, Wald, JCGT 2013). Space is sheared so that the ray runs
+/// along its longest axis; then only the signs of three 2D edge functions matter, and two triangles that
+/// share an edge compute the same number with opposite sign.
+template <std::floating_point T>
+struct WatertightRay {
+    Vec<T, 3> origin;
+    int kx, ky, kz;
+    T shear_x, shear_y;
+    T direction_z;
+
+    constexpr WatertightRay() = default;
+    explicit constexpr WatertightRay(const Vec<T, 3>& o, const Vec<T, 3>& d) : origin(o) {
+        kz = max_axis(d);
+        kx = (kz + 1) % 3;
+        ky = (kx + 1) % 3;
+        shear_x = d[kx] / d[kz];
+        shear_y = d[ky] / d[kz];
+        direction_z = d[kz];
+    }
+};
+
+/// One corner in the sheared space of a ray.
+template <std::floating_point T>
+struct ShearedCorner {
+    T x, y, z;
+};
+
+template <class T>
+constexpr ShearedCorner<T> shear(const WatertightRay<T>& ray, const Vec<T, 3>& corner) {
+    const T x = corner[ray.kx] - ray.origin[ray.kx];
+    const T y = corner[ray.ky] - ray.origin[ray.ky];
+    const T z = corner[ray.kz] - ray.origin[ray.kz];
+    return {x - product(ray.shear_x, z), y - product(ray.shear_y, z), z};
+}
+
+namespace detail {
+/// The scaling that brings the corners to about 1, so that no product under- or overflows. A power of two.
+inline double scale_of(const ShearedCorner<double>& a, const ShearedCorner<double>& b,
+                       const ShearedCorner<double>& c) {
+    double m = 0;
+    for (const double x : {a.x, a.y, b.x, b.y, c.x, c.y}) m = std::fabs(x) > m ? std::fabs(x) : m;
+    if (!(m > 0) || (m > 0x1p-200 && m < 0x1p200)) return 1;
+    return std::ldexp(1.0, -std::ilogb(m));
+}
+/// x1·y2 − x2·y1, exact in sign. Products of floats are exact in double.
+constexpr double edge(const ShearedCorner<float>& p, const ShearedCorner<float>& q, double) {
+    return product(double(p.x), double(q.y)) - product(double(p.y), double(q.x));
+}
+inline double edge(const ShearedCorner<double>& p, const ShearedCorner<double>& q, double scale) {
+    return difference_of_products(p.x * scale, q.y * scale, p.y * scale, q.x * scale);
+}
+}  // namespace detail
+
+/// Second pass: U, V, W again with exact signs, then t, u, v with real divisions, in this one order. Every
+/// way to a hit (scalar, lanes, any instruction set) ends here, which is what makes the bits equal. The
+/// interval of t is not asked. For what it leaves of the error see RayProbe.
+template <class T>
+std::optional<Meeting<T>> meet_exactly(const WatertightRay<T>& ray, const ShearedCorner<T>& a,
+                                       const ShearedCorner<T>& b, const ShearedCorner<T>& c) {
+    double scale = 1;
+    if constexpr (std::is_same_v<T, double>) scale = detail::scale_of(a, b, c);
+    const double u = detail::edge(c, b, scale);
+    const double v = detail::edge(a, c, scale);
+    const double w = detail::edge(b, a, scale);
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
+    const double det = u + v + w;
+    if (det == 0) return std::nullopt;  // seen edge-on, or of no area
+    const double wa = u / det, wb = v / det, wc = w / det;
+    const double z = (product(wa, double(a.z)) + product(wb, double(b.z))) + product(wc, double(c.z));
+    const T t = static_cast<T>(z / double(ray.direction_z));
+    return Meeting<T>{t, static_cast<T>(wb), static_cast<T>(wc)};
+}
+
+template <class T>
+std::optional<Meeting<T>> meet(const WatertightRay<T>& ray, const Triangle<T, 3>& tri) {
+    const auto a = shear(ray, tri.a), b = shear(ray, tri.b), c = shear(ray, tri.c);
+    // First pass, a filter: a rounded difference of rounded products has the right sign or is 0.
+    const T u = product(c.x, b.y) - product(c.y, b.x);
+    const T v = product(a.x, c.y) - product(a.y, c.x);
+    const T w = product(b.x, a.y) - product(b.y, a.x);
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
+    return meet_exactly(ray, a, b, c);
+}
+
+template <class T>
+std::optional<Meeting<T>> meet_watertight(const Ray<T, 3>& ray, const Triangle<T, 3>& tri) {
+    const auto m = meet(WatertightRay<T>(ray.origin, ray.direction), tri);
+    if (!m || !(ray.t_min <= m->t && m->t <= ray.t_max)) return std::nullopt;
+    return m;
+}
+
+/// Both crossings of a ray's line with a sphere's surface, in double; the caller takes the first inside its
+/// interval. The discriminant is formed from the point of closest approach, which keeps far origins accurate
+/// (Haines et al., Ray Tracing Gems 2019, ch. 7).
+template <class T, int D>
+std::optional<Interval<T>> meet_line(const Vec<T, D>& origin, const Vec<T, D>& direction,
+                                     const Sphere<T, D>& s) {
+    if (!(s.radius > 0)) return std::nullopt;
+    const double unit = 1 / static_cast<double>(max_component(abs(direction)));
+    const Vec<double, D> d = Vec<double, D>(direction) * unit;
+    const Vec<double, D> f = Vec<double, D>(origin) - Vec<double, D>(s.center);
+    const double r = static_cast<double>(s.radius);
+    const double a = length2(d);
+    const double b = -dot(f, d);
+    const Vec<double, D> nearest = f + d * (b / a);
+    const double discriminant = product(r, r) - length2(nearest);
+    if (discriminant < 0) return std::nullopt;
+    const double half = std::sqrt(discriminant / a);
+    return Interval<T>{static_cast<T>((b / a - half) * unit), static_cast<T>((b / a + half) * unit)};
+}
+
+/// Ray against segment in the plane: signs of cross products in double, exact for float; a segment that lies
+/// along the ray is met nowhere, as a triangle edge-on is.
+template <class T>
+std::optional<Meeting<T>> meet_line(const Vec<T, 2>& origin, const Vec<T, 2>& direction,
+                                    const Segment<T, 2>& s) {
+    const int k = max_axis(direction);
+    const T slope = direction[1 - k] / direction[k];
+    const auto offset = [&](const Vec<T, 2>& p) {
+        return p[1 - k] - origin[1 - k] - product(slope, p[k] - origin[k]);
+    };
+    const double a = static_cast<double>(offset(s.a)), b = static_cast<double>(offset(s.b));
+    if ((a < 0 && b < 0) || (a > 0 && b > 0) || a == b) return std::nullopt;
+    const double u = a / (a - b);
+    const double za = static_cast<double>(s.a[k] - origin[k]), zb = static_cast<double>(s.b[k] - origin[k]);
+    const double z = product(1 - u, za) + product(u, zb);
+    return Meeting<T>{static_cast<T>(z / static_cast<double>(direction[k])), static_cast<T>(u), T(0)};
+}
+
+}  // namespace hedgerow

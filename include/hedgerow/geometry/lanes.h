@@ -1,0 +1,148 @@
+/// Four numbers side by side: the one file that knows an instruction set. Float uses SSE2 or NEON, which
+/// every x86-64 and AArch64 processor has; double, and any other processor, plain loops with the same
+/// results.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include <hedgerow/geometry/rounding.h>
+
+#if defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+namespace hedgerow {
+
+/// Elementwise arithmetic on four T. `min` and `max` return the second operand when either is NaN.
+template <std::floating_point T>
+struct Lanes {
+    T lane[4];
+
+    static Lanes all(T x) { return {{x, x, x, x}}; }
+    static Lanes load(const T* p) { return {{p[0], p[1], p[2], p[3]}}; }
+    /// (p[0], p[1], q[0], q[1])
+    static Lanes load_pairs(const T* p, const T* q) { return {{p[0], p[1], q[0], q[1]}}; }
+    void store(T* p) const {
+        for (int i = 0; i < 4; ++i) p[i] = lane[i];
+    }
+    template <class F>
+    static Lanes each(F f) {
+        return {{f(0), f(1), f(2), f(3)}};
+    }
+    friend Lanes operator+(Lanes a, Lanes b) {
+        return each([&](int i) { return a.lane[i] + b.lane[i]; });
+    }
+    friend Lanes operator-(Lanes a, Lanes b) {
+        return each([&](int i) { return a.lane[i] - b.lane[i]; });
+    }
+    friend Lanes operator*(Lanes a, Lanes b) {
+        return each([&](int i) { return product(a.lane[i], b.lane[i]); });
+    }
+    friend Lanes min(Lanes a, Lanes b) {
+        return each([&](int i) { return a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i]; });
+    }
+    friend Lanes max(Lanes a, Lanes b) {
+        return each([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+    }
+    /// Lanes 2, 3, 0, 1.
+    Lanes halves_swapped() const { return {{lane[2], lane[3], lane[0], lane[1]}}; }
+    /// Lanes 1, 2, 0 (the fourth is of no use): the next corner's.
+    Lanes next_corner() const { return {{lane[1], lane[2], lane[0], lane[3]}}; }
+    /// Lanes 2, 0, 1 (the fourth is of no use): the corner's before.
+    Lanes previous_corner() const { return {{lane[2], lane[0], lane[1], lane[3]}}; }
+    /// Bit i says a[i] < 0 (or > 0); −0 and NaN give 0.
+    unsigned negative() const {
+        return each_bit([&](int i) { return lane[i] < T(0); });
+    }
+    unsigned positive() const {
+        return each_bit([&](int i) { return lane[i] > T(0); });
+    }
+    friend unsigned less_equal(Lanes a, Lanes b) {
+        return each_bit([&](int i) { return a.lane[i] <= b.lane[i]; });
+    }
+
+private:
+    template <class F>
+    static unsigned each_bit(F f) {
+        unsigned bits = 0;
+        for (int i = 0; i < 4; ++i) bits |= static_cast<unsigned>(f(i)) << i;
+        return bits;
+    }
+};
+
+#if defined(__SSE2__)
+template <>
+struct Lanes<float> {
+    __m128 v;
+
+    static Lanes all(float x) { return {_mm_set1_ps(x)}; }
+    static Lanes load(const float* p) { return {_mm_loadu_ps(p)}; }
+    static Lanes load_pairs(const float* p, const float* q) {
+        double low, high;  // two floats each, moved as eight bytes
+        std::memcpy(&low, p, 8);
+        std::memcpy(&high, q, 8);
+        return {_mm_castpd_ps(_mm_set_pd(high, low))};
+    }
+    void store(float* p) const { _mm_storeu_ps(p, v); }
+    friend Lanes operator+(Lanes a, Lanes b) { return {_mm_add_ps(a.v, b.v)}; }
+    friend Lanes operator-(Lanes a, Lanes b) { return {_mm_sub_ps(a.v, b.v)}; }
+    friend Lanes operator*(Lanes a, Lanes b) {
+        __m128 p = _mm_mul_ps(a.v, b.v);
+        asm("" : "+x"(p));  // rounded before it is added
+        return {p};
+    }
+    friend Lanes min(Lanes a, Lanes b) { return {_mm_min_ps(a.v, b.v)}; }
+    friend Lanes max(Lanes a, Lanes b) { return {_mm_max_ps(a.v, b.v)}; }
+    Lanes halves_swapped() const { return {_mm_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 3, 2))}; }
+    Lanes next_corner() const { return {_mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 0, 2, 1))}; }
+    Lanes previous_corner() const { return {_mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 1, 0, 2))}; }
+    unsigned negative() const { return bits(_mm_cmplt_ps(v, _mm_setzero_ps())); }
+    unsigned positive() const { return bits(_mm_cmpgt_ps(v, _mm_setzero_ps())); }
+    friend unsigned less_equal(Lanes a, Lanes b) { return bits(_mm_cmple_ps(a.v, b.v)); }
+
+private:
+    static unsigned bits(__m128 mask) { return static_cast<unsigned>(_mm_movemask_ps(mask)); }
+};
+#elif defined(__aarch64__)
+template <>
+struct Lanes<float> {
+    float32x4_t v;
+
+    static Lanes all(float x) { return {vdupq_n_f32(x)}; }
+    static Lanes load(const float* p) { return {vld1q_f32(p)}; }
+    static Lanes load_pairs(const float* p, const float* q) {
+        return {vcombine_f32(vld1_f32(p), vld1_f32(q))};
+    }
+    void store(float* p) const { vst1q_f32(p, v); }
+    friend Lanes operator+(Lanes a, Lanes b) { return {vaddq_f32(a.v, b.v)}; }
+    friend Lanes operator-(Lanes a, Lanes b) { return {vsubq_f32(a.v, b.v)}; }
+    friend Lanes operator*(Lanes a, Lanes b) {
+        float32x4_t p = vmulq_f32(a.v, b.v);
+        asm("" : "+w"(p));
+        return {p};
+    }
+    friend Lanes min(Lanes a, Lanes b) { return {vbslq_f32(vcltq_f32(a.v, b.v), a.v, b.v)}; }
+    friend Lanes max(Lanes a, Lanes b) { return {vbslq_f32(vcgtq_f32(a.v, b.v), a.v, b.v)}; }
+    Lanes halves_swapped() const { return {vextq_f32(v, v, 2)}; }
+    Lanes next_corner() const { return permuted(1, 2, 0, 3); }
+    Lanes previous_corner() const { return permuted(2, 0, 1, 3); }
+    unsigned negative() const { return bits(vcltzq_f32(v)); }
+    unsigned positive() const { return bits(vcgtzq_f32(v)); }
+    friend unsigned less_equal(Lanes a, Lanes b) { return bits(vcleq_f32(a.v, b.v)); }
+
+private:
+    Lanes permuted(int a, int b, int c, int d) const {
+        float l[4];
+        store(l);
+        const float r[4] = {l[a], l[b], l[c], l[d]};
+        return load(r);
+    }
+    static unsigned bits(uint32x4_t mask) {
+        const uint32x4_t weight = {1, 2, 4, 8};
+        return vaddvq_u32(vandq_u32(mask, weight));
+    }
+};
+#endif
+
+}  // namespace hedgerow

@@ -1,0 +1,63 @@
+/// Equal cells over a box, numbered with the first axis fastest.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <hedgerow/geometry/box.h>
+
+namespace hedgerow {
+
+/// Coordinates are double whatever the scene's scalar. Points outside the box belong to the nearest cell.
+template <int D>
+struct Lattice {
+    using Cell = std::array<std::int32_t, static_cast<std::size_t>(D)>;
+
+    Vec<double, D> low, size;  // of the box, of one cell (> 0)
+    Cell resolution{};
+
+    /// Primitives are entered in every cell that their box, enlarged by this part of a cell, touches.
+    static constexpr double inflation = 0x1p-7;
+
+    static Cell cell() { return {}; }
+    std::int32_t coordinate(double x, int axis) const {
+        const double c = std::floor((x - low[axis]) / size[axis]);
+        const std::int32_t last = resolution[static_cast<std::size_t>(axis)] - 1;
+        return c <= 0 ? 0 : (c >= last ? last : static_cast<std::int32_t>(c));
+    }
+    double plane(std::int32_t i, int axis) const { return low[axis] + product(double(i), size[axis]); }
+    std::size_t number(const Cell& c) const {
+        std::size_t n = 0;
+        for (std::size_t a = D; a-- > 0;)
+            n = n * static_cast<std::size_t>(resolution[a]) + static_cast<std::size_t>(c[a]);
+        return n;
+    }
+    std::size_t cell_count() const {
+        std::size_t n = 1;
+        for (const auto r : resolution) n *= static_cast<std::size_t>(r);
+        return n;
+    }
+    Box<double, D> bounds(const Cell& c) const {
+        Box<double, D> b;
+        for (int a = 0; a < D; ++a) {
+            b.low[a] = plane(c[static_cast<std::size_t>(a)], a);
+            b.high[a] = plane(c[static_cast<std::size_t>(a)] + 1, a);
+        }
+        return b;
+    }
+};
+
+/// Calls f(cell) for every cell of the block from `first` to `last`, both included, until it returns false.
+template <class Cell, class F>
+bool for_each_cell(const Cell& first, const Cell& last, F f) {
+    Cell c = first;
+    while (true) {
+        if (!f(c)) return false;
+        std::size_t a = 0;
+        while (a < c.size() && c[a] == last[a]) c[a] = first[a], ++a;
+        if (a == c.size()) return true;
+        ++c[a];
+    }
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,225 @@
+/// A structure built over primitives, and the questions it answers.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <hedgerow/primitives/triangle_mesh.h>
+#include <hedgerow/queries/all_hits.h>
+#include <hedgerow/queries/any_hit.h>
+#include <hedgerow/queries/closest_hit.h>
+#include <hedgerow/queries/closest_point.h>
+#include <hedgerow/queries/nearest.h>
+#include <hedgerow/queries/overlapping.h>
+#include <hedgerow/structures/bvh/bvh.h>
+
+namespace hedgerow {
+
+/// A structure S over the primitives that the view P looks at. Const use is thread-safe, and queries allocate
+/// nothing (those that return lists fill the caller's vector). Movable; not to be changed once built.
+template <class S, PrimitiveSet P>
+class Index {
+public:
+    using Scalar = typename P::Scalar;
+    static constexpr int dimension = P::dimension;
+    using Structure = S;
+    using Primitives = P;
+    using BoxType = Box<Scalar, dimension>;
+
+    /// Borrows what `primitives` looks at; `owner`, if any, keeps it alive.
+    Index(P primitives, const typename S::Options& options, Executor& executor,
+          std::shared_ptr<const void> owner = {})
+        : owner_(std::move(owner)),
+          primitives_(std::move(primitives)),
+          structure_(S::build(primitives_, options, executor)),
+          leaves_(pack(primitives_, structure_)) {}
+
+    const S& structure() const { return structure_; }
+    const P& primitives() const { return primitives_; }
+    const BoxType& bounds() const { return structure_.bounds(); }
+    std::size_t size() const { return primitives_.size(); }
+    /// Beyond the primitives themselves.
+    std::size_t bytes() const {
+        if constexpr (packs)
+            return structure_.bytes() + leaves_.bytes();
+        else
+            return structure_.bytes();
+    }
+    std::string validate() const { return structure_.validate(primitives_); }
+
+    /// Any query of yours. `count` is a Visits, or NoVisits.
+    template <Query Q, class Count>
+    void ask(Q& query, Count& count) const {
+        in_ieee_mode([&] { structure_.walk(leaves(), query, count); });
+    }
+    template <Query Q>
+    void ask(Q& query) const {
+        NoVisits none;
+        ask(query, none);
+    }
+
+private:
+    struct Nothing {};
+    static constexpr bool packs = S::exclusive && requires(const P& p) {
+        p.pack(std::span<const PrimitiveId>());
+    };
+
+    static auto pack(const P& primitives, const S& structure) {
+        if constexpr (packs)
+            return primitives.pack(structure.items());
+        else
+            return Nothing{};
+    }
+    /// What leaves are tested through for rays: the packed copy where there is one, else the view.
+    struct Tested {
+        const Index& index;
+        template <class Probe, class Query>
+        Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) const {
+            if constexpr (packs && requires { index.leaves_.test_leaf(probe, leaf, query); })
+                return index.leaves_.test_leaf(probe, leaf, query);
+            else
+                return hedgerow::test_leaf(index.primitives_, probe, leaf, query);
+        }
+        using Scalar = typename P::Scalar;
+        static constexpr int dimension = P::dimension;
+        std::size_t size() const { return index.size(); }
+        BoxType bounds(std::size_t i) const { return index.primitives_.bounds(i); }
+    };
+    Tested leaves() const { return {*this}; }
+
+    std::shared_ptr<const void> owner_;
+    P primitives_;
+    S structure_;
+    std::conditional_t<packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>())), Nothing>
+        leaves_;
+};
+
+/// Builds a structure over primitives: `build<KdTree>(mesh, {.leaf_size = 2})`. An lvalue is borrowed (it
+/// must outlive the index), an rvalue is moved into the index. Throws InputError for vertices that are NaN,
+/// infinite or absurd and for indices out of range.
+template <template <class, int> class S, class P>
+auto build(P&& primitives,
+           const typename S<typename std::remove_cvref_t<P>::Scalar,
+                            std::remove_cvref_t<P>::dimension>::Options& options = {},
+           Executor& executor = serial_executor()) {
+    using Set = std::remove_cvref_t<P>;
+    using Structure = S<typename Set::Scalar, Set::dimension>;
+    using View = ViewOf<Set>;
+    if constexpr (std::is_lvalue_reference_v<P> || std::is_same_v<View, Set>) {
+        return Index<Structure, View>(view_of(primitives), options, executor);
+    } else {
+        auto owner = std::make_shared<const Set>(std::forward<P>(primitives));
+        auto view = view_of(*owner);
+        return Index<Structure, View>(std::move(view), options, executor, std::move(owner));
+    }
+}
+/// The default structure.
+template <class P>
+auto build(P&& primitives, Executor& executor = serial_executor()) {
+    return build<Bvh>(std::forward<P>(primitives), {}, executor);
+}
+
+template <class I>
+using RayOf = Ray<typename I::Scalar, I::dimension>;
+template <class I>
+using HitOf = Hit<typename I::Scalar>;
+template <class I>
+using PointOf = Vec<typename I::Scalar, I::dimension>;
+template <class I>
+using NearOf = Near<typename I::Scalar, I::dimension>;
+
+inline constexpr NoVisits no_visits{};
+
+/// The hit of least t in [t_min, t_max], if any. `filter(hit)` may refuse; `count` may be a Visits.
+template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
+std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
+                                                   const Ray<typename P::Scalar, P::dimension>& ray,
+                                                   const Filter& filter = {}, Count& count = no_visits) {
+    ClosestHit<P, Filter> query(index, ray, filter);
+    index.ask(query, count);
+    return query.answer();
+}
+/// Whether anything is hit.
+template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
+bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
+             const Filter& filter = {}, Count& count = no_visits) {
+    AnyHit<P, Filter> query(index, ray, filter);
+    index.ask(query, count);
+    return query.answer();
+}
+/// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.
+template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
+std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
+                     std::vector<Hit<typename P::Scalar>>& hits, const Filter& filter = {},
+                     Count& count = no_visits) {
+    AllHits<P, Filter> query(index, ray, hits, filter);
+    index.ask(query, count);
+    return query.answer();
+}
+/// How many primitives are hit (two at a shared edge).
+template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
+std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
+                      const Filter& filter = {}, Count& count = no_visits) {
+    static thread_local std::vector<Hit<typename P::Scalar>> hits;  // structures may offer a primitive again
+    return all_hits(index, ray, hits, filter, count);
+}
+/// The closest point of any primitive within a squared distance.
+template <class S, class P, class Count = const NoVisits>
+std::optional<Near<typename P::Scalar, P::dimension>> closest_point(
+    const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
+    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
+    Count& count = no_visits) {
+    ClosestPoint<P> query(index, point, max_distance2);
+    index.ask(query, count);
+    return query.answer();
+}
+/// The k nearest primitives within a squared distance, in the order of (distance², id), into `found`.
+template <class S, class P, class Count = const NoVisits>
+std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
+                    std::size_t k, std::vector<Near<typename P::Scalar, P::dimension>>& found,
+                    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
+                    Count& count = no_visits) {
+    Nearest<P> query(index, point, k, max_distance2, found);
+    index.ask(query, count);
+    return query.answer();
+}
+/// The primitives that overlap a box, ascending, into `found`.
+template <class S, class P, class Count = const NoVisits>
+std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, P::dimension>& box,
+                        std::vector<PrimitiveId>& found, Count& count = no_visits) {
+    Overlapping<P> query(box, found);
+    index.ask(query, count);
+    return query.answer();
+}
+
+/// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false.
+template <class S, class P>
+void closest_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
+                  std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor()) {
+    assert(hits.size() >= rays.size());
+    executor.for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            hits[i] = closest_hit(index, rays[i]).value_or(Hit<typename P::Scalar>{});
+    });
+}
+template <class S, class P>
+void any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
+              std::span<bool> hits, Executor& executor = serial_executor()) {
+    assert(hits.size() >= rays.size());
+    executor.for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(index, rays[i]);
+    });
+}
+
+/// A ray's new origin off the surface that was hit, on the side that `toward` points to: moved along the
+/// normal by the error that a point computed as ray.at(t) can have.
+template <class T>
+Vec<T, 3> offset_origin(const Vec<T, 3>& point, const Vec<T, 3>& normal, const Vec<T, 3>& toward, T reach) {
+    const Vec<T, 3> n = normalized(normal);
+    const T step = (max_component(abs(point)) + std::abs(reach)) * (64 * unit_roundoff<T>);
+    return dot(n, toward) < 0 ? point - n * step : point + n * step;
+}
+
+}  // namespace hedgerow

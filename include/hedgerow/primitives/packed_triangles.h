@@ -1,0 +1,68 @@
+/// Triangles copied in the order of a structure's leaves, three corners to a register.
+#pragma once
+
+#include <bit>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include <hedgerow/geometry/lanes.h>
+#include <hedgerow/primitives/concepts.h>
+
+namespace hedgerow {
+
+/// Of each axis the three corners' coordinates, then the id: 40 bytes a triangle (float), 80 (double). A row
+/// is loaded as four lanes; what lies in the fourth is ignored.
+template <std::floating_point T>
+class PackedTriangles {
+public:
+    using Scalar = T;
+    static constexpr int dimension = 3;
+
+    PackedTriangles() = default;
+    explicit PackedTriangles(std::size_t size) : triangles_(size) {}
+
+    std::size_t bytes() const { return triangles_.capacity() * sizeof(Packed); }
+
+    void set(std::size_t i, const Triangle<T, 3>& t, PrimitiveId id) {
+        Packed& p = triangles_[i];
+        for (int k = 0; k < 3; ++k)
+            p.row[3 * k] = t.a[k], p.row[3 * k + 1] = t.b[k], p.row[3 * k + 2] = t.c[k];
+        p.row[9] = std::bit_cast<T>(static_cast<Bits>(id));
+    }
+
+    /// The filter of the watertight test on all three edges at once; what passes goes to `meet_exactly`.
+    template <class Query>
+    Flow test_leaf(const RayProbe<T, 3>& probe, const Leaf& leaf, Query& query) const {
+        using L = Lanes<T>;
+        const WatertightRay<T>& ray = probe.watertight();
+        const Packed* p = triangles_.data() + leaf.first;
+        for (const Packed* const end = p + leaf.count; p != end; ++p) {
+            const L z = L::load(p->row + 3 * ray.kz) - L::all(ray.origin[ray.kz]);
+            const L x = (L::load(p->row + 3 * ray.kx) - L::all(ray.origin[ray.kx])) - L::all(ray.shear_x) * z;
+            const L y = (L::load(p->row + 3 * ray.ky) - L::all(ray.origin[ray.ky])) - L::all(ray.shear_y) * z;
+            const L edges = x.previous_corner() * y.next_corner() - y.previous_corner() * x.next_corner();
+            if ((edges.negative() & 7u) != 0 && (edges.positive() & 7u) != 0) continue;
+            const auto m = meet_exactly(ray, p->corner(ray, 0), p->corner(ray, 1), p->corner(ray, 2));
+            if (m && query.offer({m->t, m->u, m->v, p->id()}) == Flow::stop) return Flow::stop;
+        }
+        return Flow::go_on;
+    }
+
+private:
+    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+    struct Packed {
+        T row[10];  // three of each axis, and the id's bits
+
+        PrimitiveId id() const { return static_cast<PrimitiveId>(std::bit_cast<Bits>(row[9])); }
+
+        ShearedCorner<T> corner(const WatertightRay<T>& ray, int i) const {
+            return shear(ray, Vec<T, 3>(row[i], row[3 + i], row[6 + i]));
+        }
+    };
+    static_assert(sizeof(Packed) == 10 * sizeof(T));
+
+    std::vector<Packed> triangles_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,44 @@
+/// What a probe is: the geometry of a question. It enters volumes, is cut by planes, sweeps a lattice; it
+/// knows no structure and no answer.
+#pragma once
+
+#include <concepts>
+
+#include <hedgerow/geometry/box.h>
+#include <hedgerow/geometry/shapes.h>
+
+namespace hedgerow {
+
+/// Whether a walk goes on after it was offered something.
+enum class Flow : bool { stop, go_on };
+
+/// What a walk by planes carries into the two sides of a cut.
+template <class State>
+struct Cut {
+    bool near_is_high;
+    State near, far;
+};
+
+/// `at` is where the probe enters a volume in the units of the query's limit: t of a ray, distance² of a
+/// point. A volume is entered when it may hold an answer within the limit. `bound` of a state is the same for
+/// a cell, and infinity when nothing of the probe is left there.
+template <class P>
+concept Probe = requires(const P& p, const Box<typename P::Scalar, P::dimension>& box,
+                         typename P::Scalar limit, typename P::Scalar& at, const typename P::State& state,
+                         const AxisPlane<typename P::Scalar>& plane) {
+    { p.enter(box, limit, at) } -> std::same_as<bool>;
+    { p.root(box) } -> std::same_as<typename P::State>;
+    { p.bound(state) } -> std::same_as<typename P::Scalar>;
+    { p.cut(state, plane) } -> std::same_as<Cut<typename P::State>>;
+};
+
+/// Enters each volume of a pack one by one: for probes with no faster way. Bit i of the result: at[i] counts.
+template <class P, class Pack>
+unsigned enter_each(const P& probe, const Pack& pack, typename P::Scalar limit, typename P::Scalar* at) {
+    unsigned entered = 0;
+    for (int i = 0; i < Pack::width; ++i)
+        entered |= static_cast<unsigned>(probe.enter(pack[i], limit, at[i])) << i;
+    return entered;
+}
+
+}  // namespace hedgerow

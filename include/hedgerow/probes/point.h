@@ -1,0 +1,106 @@
+/// A point as a probe: volumes are entered at their squared distance.
+#pragma once
+
+#include <algorithm>
+
+#include <hedgerow/geometry/distance.h>
+#include <hedgerow/geometry/lattice.h>
+#include <hedgerow/probes/concepts.h>
+
+namespace hedgerow {
+
+/// Bounds are exact: squares are summed in one order, and rounding is monotone (see geometry/distance.h).
+template <std::floating_point T, int D>
+class PointProbe {
+public:
+    using Scalar = T;
+    static constexpr int dimension = D;
+    /// How far the cell lies away along each axis, and the squared distance that makes.
+    struct State {
+        Vec<T, D> offset;
+        T distance2;
+    };
+
+    explicit PointProbe(const Vec<T, D>& point) : point_(point) {}
+    const Vec<T, D>& point() const { return point_; }
+
+    bool enter(const Box<T, D>& box, T limit, T& at) const {
+        at = distance2(point_, box);
+        return at <= limit;
+    }
+    template <class Pack>
+    requires(Pack::width > 0) unsigned enter(const Pack& pack, T limit, T* at) const {
+        return enter_each(*this, pack, limit, at);
+    }
+    State root(const Box<T, D>& box) const {
+        const auto offset = offset_outside(point_, box);
+        return {offset, length2(offset)};
+    }
+    T bound(const State& s) const { return s.distance2; }
+    Cut<State> cut(const State& s, const AxisPlane<T>& plane) const {
+        const T x = point_[plane.axis];
+        State far = s;
+        far.offset[plane.axis] = std::abs(x - plane.position);
+        far.distance2 = length2(far.offset);
+        return {x >= plane.position, s, far};
+    }
+
+    /// Visits shells of cells around the point's own, until a shell's every cell is beyond the limit. The
+    /// cells of a shell that are themselves beyond it are passed over.
+    template <class Limit, class Visit>
+    void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
+        typename Lattice<D>::Cell center{};
+        std::int32_t last = 0;
+        const Vec<double, D> p(point_);
+        for (int a = 0; a < D; ++a) {
+            const auto i = static_cast<std::size_t>(a);
+            center[i] = lattice.coordinate(p[a], a);
+            last = std::max({last, center[i], lattice.resolution[i] - 1 - center[i]});
+        }
+        const Vec<double, D> pad = lattice.size * Lattice<D>::inflation;
+        for (std::int32_t r = 0; r <= last; ++r) {
+            bool any = false;
+            const bool go_on = for_each_in_shell(lattice, center, r, [&](const auto& cell) {
+                auto box = lattice.bounds(cell);
+                box.low = box.low - pad, box.high = box.high + pad;
+                const double at = distance2(p, box) * (1 - 0x1p-20);
+                if (at > static_cast<double>(limit())) return true;
+                any = true;
+                return visit(cell) == Flow::go_on;
+            });
+            if (!go_on || !any) return;
+        }
+    }
+
+private:
+    /// The cells with |cell − center| = r in the largest component, as slabs of the block.
+    template <class Cell, class F>
+    static bool for_each_in_shell(const Lattice<D>& lattice, const Cell& center, std::int32_t r, F f) {
+        Cell first = center, last = center;
+        for (std::size_t a = 0; a < first.size(); ++a) {
+            first[a] = std::max(0, center[a] - r);
+            last[a] = std::min(lattice.resolution[a] - 1, center[a] + r);
+        }
+        if (r == 0) return f(center);
+        for (std::size_t a = 0; a < first.size(); ++a) {
+            for (const std::int32_t side : {center[a] - r, center[a] + r}) {
+                if (side < 0 || side >= lattice.resolution[a]) continue;
+                Cell low = first, high = last;
+                low[a] = high[a] = side;
+                // Axes before this one leave out their own sides: each cell once.
+                bool some = true;
+                for (std::size_t b = 0; b < a; ++b) {
+                    low[b] = std::max(low[b], center[b] - r + 1);
+                    high[b] = std::min(high[b], center[b] + r - 1);
+                    some = some && low[b] <= high[b];
+                }
+                if (some && !for_each_cell(low, high, f)) return false;
+            }
+        }
+        return true;
+    }
+
+    Vec<T, D> point_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,207 @@
+/// A ray as a probe: conservative slabs, intervals cut by planes, and a walk through a lattice's cells.
+#pragma once
+
+#include <algorithm>
+#include <variant>
+
+#include <hedgerow/geometry/box_pair.h>
+#include <hedgerow/geometry/entry.h>
+#include <hedgerow/geometry/lanes.h>
+#include <hedgerow/geometry/lattice.h>
+#include <hedgerow/probes/concepts.h>
+
+namespace hedgerow {
+
+/// A ray, prepared for a scene.
+///
+/// Every hit that a primitive test reports lies within e of the primitive's own box, where, with M the
+/// largest component of |corner − o| over the scene's box and u the unit roundoff: corners relative to o
+/// carry u·M, the shear 4u·M more and t rounded u·M, together under 8u·M; computing a plane's t from o ± e,
+/// the difference, the reciprocal and the product costs 4u·M + 2u·|o| at most. e = 16u·M + 4u·|o| covers both
+/// with room to spare, and a few subnormal steps of t and of position cover underflow. Hence a box that holds
+/// the hit primitive is always entered at or before the hit's t, in each structure alike.
+template <std::floating_point T, int D>
+class RayProbe {
+public:
+    using Scalar = T;
+    static constexpr int dimension = D;
+    using State = Interval<T>;
+
+    RayProbe(const Ray<T, D>& ray, const Box<T, D>& scene) : ray_(ray) {
+        usable_ = !scene.empty() && clean(ray_);
+        if (!usable_) return;
+        T reach = 0, far = 0;
+        for (int i = 0; i < D; ++i) {
+            const T o = ray_.origin[i];
+            reach = std::max({reach, std::abs(scene.low[i] - o), std::abs(scene.high[i] - o)});
+            far = std::max(far, std::abs(o));
+        }
+        constexpr T tiny = 16 * std::numeric_limits<T>::denorm_min();
+        const T e = product(16 * unit_roundoff<T>, reach) + product(4 * unit_roundoff<T>, far) +
+                    product(tiny, T(1) + max_component(abs(ray_.direction)));
+        slack_ = e;
+        for (int i = 0; i < D; ++i) {
+            const T d = ray_.direction[i], o = ray_.origin[i];
+            const bool down = d < 0;
+            inverse_[i] = T(1) / d;  // infinite for 0: then only whether o ± e lies inside matters
+            near_row_[i] = down ? 2 : 0;
+            near_origin_[i] = down ? o - e : o + e;
+            far_origin_[i] = down ? o + e : o - e;
+        }
+        if constexpr (D == 3) watertight_ = WatertightRay<T>(ray_.origin, ray_.direction);
+    }
+
+    const Ray<T, D>& ray() const { return ray_; }
+    const WatertightRay<T>& watertight() const requires(D == 3) { return watertight_; }
+    /// False when nothing can be hit: no usable direction, NaN, an empty interval or an empty scene.
+    bool usable() const { return usable_; }
+    T slack() const { return slack_; }
+
+    /// A NaN (0·∞) can only come of a plane at exactly o ± e, where nothing within e of it is at stake; the
+    /// comparisons below then leave the interval as it was.
+    bool enter(const Box<T, D>& box, T limit, T& at) const {
+        const Interval<T> in = inside(box, limit);
+        at = in.entry;
+        return in.entry <= in.exit;
+    }
+    /// The conservative interval of the ray in a box, up to a limit.
+    Interval<T> inside(const Box<T, D>& box, T limit) const {
+        Interval<T> in{ray_.t_min, limit};
+        for (int i = 0; i < D; ++i) {
+            const bool down = near_row_[i] != 0;
+            const T near = ((down ? box.high[i] : box.low[i]) - near_origin_[i]) * inverse_[i];
+            const T far = ((down ? box.low[i] : box.high[i]) - far_origin_[i]) * inverse_[i];
+            in.entry = near > in.entry ? near : in.entry;
+            in.exit = far < in.exit ? far : in.exit;
+        }
+        return in;
+    }
+    /// Two boxes at once: entries in the low lanes, negated exits in the high ones, so that one maximum
+    /// serves both. `at` has room for four.
+    unsigned enter(const BoxPair<T, D>& pair, T limit, T* at) const {
+        using L = Lanes<T>;
+        L t = L::load_pairs(bounds_of(ray_.t_min), bounds_of(-limit));
+        for (int i = 0; i < D; ++i) {
+            const T* row = pair.plane[i];
+            const L planes = L::load_pairs(row + near_row_[i], row + (2 - near_row_[i]));
+            const L origin = L::load_pairs(bounds_of(near_origin_[i]), bounds_of(far_origin_[i]));
+            const L inverse = L::load_pairs(bounds_of(inverse_[i]), bounds_of(-inverse_[i]));
+            t = max((planes - origin) * inverse, t);
+        }
+        t.store(at);
+        return less_equal(t + t.halves_swapped(), L::all(T(0))) & 3u;
+    }
+
+    State root(const Box<T, D>& box) const { return inside(box, ray_.t_max); }
+    T bound(const State& s) const { return s.entry <= s.exit ? s.entry : std::numeric_limits<T>::infinity(); }
+    /// The plane is as thick as the error: both sides of it are met a little earlier and left a little later.
+    Cut<State> cut(const State& s, const AxisPlane<T>& plane) const {
+        const int a = plane.axis;
+        const T leave = (plane.position - far_origin_[a]) * inverse_[a];
+        const T arrive = (plane.position - near_origin_[a]) * inverse_[a];
+        return {near_row_[a] != 0,
+                {s.entry, leave < s.exit ? leave : s.exit},
+                {arrive > s.entry ? arrive : s.entry, s.exit}};
+    }
+
+    /// Visits the cells along the ray in order (Amanatides and Woo 1987), each crossing computed afresh from
+    /// the cell's integer coordinates. `limit()` is asked before each step and `visit(cell)` may stop the
+    /// walk. When the error exceeds half of the inflation of the primitives, the neighbours as far as it
+    /// reaches are visited too (and again from the next cell: such rays pay for their distance).
+    template <class Limit, class Visit>
+    void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
+        if (!usable_) return;
+        Vec<double, D> o(ray_.origin), d(ray_.direction);
+        const double pad = 0.5 * Lattice<D>::inflation;
+        const double wide = static_cast<double>(slack_);
+        Interval<double> in{static_cast<double>(ray_.t_min), static_cast<double>(ray_.t_max)};
+        double back = 0;  // how much earlier, in t, a hit of a cell may lie than the cell's computed entry
+        typename Lattice<D>::Cell reach{};
+        for (int a = 0; a < D; ++a) {
+            const double margin = product(pad, lattice.size[a]) + wide;
+            const auto i = static_cast<std::size_t>(a);
+            if (wide > product(pad, lattice.size[a])) {
+                const double cells = wide / lattice.size[a] + 1;
+                reach[i] =
+                    cells < lattice.resolution[i] ? static_cast<std::int32_t>(cells) : lattice.resolution[i];
+            }
+            const double low = lattice.low[a] - margin,
+                         high = lattice.plane(lattice.resolution[i], a) + margin;
+            if (d[a] == 0) {
+                if (o[a] < low || o[a] > high) return;
+                continue;
+            }
+            const double near = ((d[a] < 0 ? high : low) - o[a]) / d[a],
+                         far = ((d[a] < 0 ? low : high) - o[a]) / d[a];
+            in.entry = std::max(in.entry, near);
+            in.exit = std::min(in.exit, far);
+        }
+        if (!(in.entry <= in.exit)) return;
+        typename Lattice<D>::Cell cell{};
+        back = 0x1p-20 * std::abs(in.entry);
+        double slowest = 0;
+        for (int a = 0; a < D; ++a) {
+            cell[static_cast<std::size_t>(a)] = lattice.coordinate(o[a] + product(d[a], in.entry), a);
+            slowest = std::max(slowest, std::abs(d[a]));
+        }
+        back = 4 * wide / slowest + 0x1p-40 * std::abs(in.entry);
+        double entry = in.entry;
+        while (entry - back <= static_cast<double>(limit()) && entry <= in.exit) {
+            if (!visit_around(lattice, cell, reach, visit)) return;
+            int step = -1;
+            double next = std::numeric_limits<double>::infinity();
+            for (int a = 0; a < D; ++a) {
+                if (d[a] == 0) continue;
+                const std::int32_t side = cell[static_cast<std::size_t>(a)] + (d[a] > 0 ? 1 : 0);
+                const double t = (lattice.plane(side, a) - o[a]) / d[a];
+                if (t < next) next = t, step = a;
+            }
+            if (step < 0) return;
+            const auto i = static_cast<std::size_t>(step);
+            cell[i] += d[step] > 0 ? 1 : -1;
+            if (cell[i] < 0 || cell[i] >= lattice.resolution[i]) return;
+            entry = std::max(entry, next);
+        }
+    }
+
+private:
+    struct Twice {
+        T value[2];
+        operator const T*() const { return value; }
+    };
+    static Twice bounds_of(T x) { return {{x, x}}; }
+
+    /// −0 and subnormal components become +0; says whether anything can be hit.
+    static bool clean(Ray<T, D>& ray) {
+        bool any = false;
+        for (int i = 0; i < D; ++i) {
+            T& d = ray.direction[i];
+            if (std::abs(d) < std::numeric_limits<T>::min()) d = T(0);
+            if (!std::isfinite(d) || !(std::abs(ray.origin[i]) <= largest_coordinate<T>)) return false;
+            any = any || d != 0;
+        }
+        if (ray.t_min < 0) ray.t_min = T(0);
+        return any && ray.t_min <= ray.t_max;
+    }
+
+    template <class Visit>
+    static bool visit_around(const Lattice<D>& lattice, const typename Lattice<D>::Cell& cell,
+                             const typename Lattice<D>::Cell& reach, Visit& visit) {
+        if (reach == typename Lattice<D>::Cell{}) return visit(cell) == Flow::go_on;
+        auto first = cell, last = cell;
+        for (std::size_t a = 0; a < first.size(); ++a) {
+            first[a] = std::max(0, cell[a] - reach[a]);
+            last[a] = std::min(lattice.resolution[a] - 1, cell[a] + reach[a]);
+        }
+        return for_each_cell(first, last, [&](const auto& c) { return visit(c) == Flow::go_on; });
+    }
+
+    Ray<T, D> ray_;
+    Vec<T, D> inverse_, near_origin_, far_origin_;
+    int near_row_[D] = {};
+    T slack_ = T(0);
+    bool usable_ = false;
+    [[no_unique_address]] std::conditional_t<D == 3, WatertightRay<T>, std::monostate> watertight_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,46 @@
+/// Every hit along a ray, each primitive once, in the order of (t, id); and how many there are.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <hedgerow/queries/ray_query.h>
+
+namespace hedgerow {
+
+/// Collects into the caller's vector (it is cleared; its capacity is reused, so a warm call allocates
+/// nothing). O(k log k) in the hits found. A structure that holds a primitive in several cells offers it
+/// several times with the same bits; the sort brings these together.
+template <class Set, class Filter = KeepAll>
+class AllHits : public RayQuery<Set, Filter> {
+public:
+    using Base = RayQuery<Set, Filter>;
+    using Scalar = typename Base::Scalar;
+    static constexpr Order order = Order::none;
+
+    template <class Index, class Ray>
+    AllHits(const Index& index, const Ray& ray, std::vector<Hit<Scalar>>& hits, const Filter& filter = {})
+        : Base(index, ray, filter), limit_(Base::first_limit()), hits_(hits) {
+        hits_.clear();
+    }
+
+    Scalar limit() const { return limit_; }
+    Flow offer(const RayCandidate<Scalar>& c) {
+        if (this->counts(c)) hits_.push_back(this->hit(c));
+        return Flow::go_on;
+    }
+    std::size_t answer() {
+        std::sort(hits_.begin(), hits_.end(), [](const auto& a, const auto& b) {
+            return a.t != b.t ? a.t < b.t : a.element < b.element;
+        });
+        const auto same = [](const auto& a, const auto& b) { return a.element == b.element; };
+        hits_.erase(std::unique(hits_.begin(), hits_.end(), same), hits_.end());
+        return hits_.size();
+    }
+
+private:
+    Scalar limit_;
+    std::vector<Hit<Scalar>>& hits_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,32 @@
+/// Is anything hit?
+#pragma once
+
+#include <hedgerow/queries/ray_query.h>
+
+namespace hedgerow {
+
+/// Stops at the first hit found. Nearer first still pays: what occludes is often near.
+template <class Set, class Filter = KeepAll>
+class AnyHit : public RayQuery<Set, Filter> {
+public:
+    using Base = RayQuery<Set, Filter>;
+    using Scalar = typename Base::Scalar;
+    static constexpr Order order = Order::nearest;
+
+    template <class Index, class Ray>
+    AnyHit(const Index& index, const Ray& ray, const Filter& filter = {})
+        : Base(index, ray, filter), limit_(Base::first_limit()) {}
+
+    Scalar limit() const { return limit_; }
+    Flow offer(const RayCandidate<Scalar>& c) {
+        found_ = this->counts(c);
+        return found_ ? Flow::stop : Flow::go_on;
+    }
+    bool answer() const { return found_; }
+
+private:
+    Scalar limit_;
+    bool found_ = false;
+};
+
+}  // namespace hedgerow

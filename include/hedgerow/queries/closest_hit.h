@@ -1,0 +1,36 @@
+/// The hit of least t; equal t goes to the lowest primitive.
+#pragma once
+
+#include <optional>
+
+#include <hedgerow/queries/ray_query.h>
+
+namespace hedgerow {
+
+/// `wanted` is the order of the walk: nearest first, unless what order brings is to be shown.
+template <class Set, class Filter = KeepAll, Order wanted = Order::nearest>
+class ClosestHit : public RayQuery<Set, Filter> {
+public:
+    using Base = RayQuery<Set, Filter>;
+    using Scalar = typename Base::Scalar;
+    static constexpr Order order = wanted;
+
+    template <class Index, class Ray>
+    ClosestHit(const Index& index, const Ray& ray, const Filter& filter = {})
+        : Base(index, ray, filter), best_{Base::first_limit(), 0, 0, Hit<Scalar>::none} {}
+
+    Scalar limit() const { return best_.t; }
+    Flow offer(const RayCandidate<Scalar>& c) {
+        if (c.t <= best_.t && (c.t < best_.t || c.element < best_.element) && this->counts(c)) best_ = c;
+        return Flow::go_on;
+    }
+    std::optional<Hit<Scalar>> answer() const {
+        if (best_.element == Hit<Scalar>::none) return std::nullopt;
+        return this->hit(best_);
+    }
+
+private:
+    RayCandidate<Scalar> best_;
+};
+
+}  // namespace hedgerow

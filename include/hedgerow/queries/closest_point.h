@@ -1,0 +1,55 @@
+/// The point of the primitives closest to a given one.
+#pragma once
+
+#include <optional>
+
+#include <hedgerow/queries/concepts.h>
+
+namespace hedgerow {
+
+/// distance2 is squared. Of equal distances the lowest primitive's.
+template <std::floating_point T, int D>
+struct Near {
+    T distance2 = std::numeric_limits<T>::infinity();
+    std::uint32_t primitive = 0xFFFFFFFFu, element = 0xFFFFFFFFu;
+    Vec<T, D> point;
+
+    friend bool operator==(const Near&, const Near&) = default;
+};
+
+/// Within max_distance2 (included).
+template <class Set>
+class ClosestPoint {
+public:
+    using Scalar = typename Set::Scalar;
+    static constexpr int dimension = Set::dimension;
+    using Probe = PointProbe<Scalar, dimension>;
+    static constexpr Order order = Order::nearest;
+
+    template <class Index>
+    ClosestPoint(const Index& index, const Vec<Scalar, dimension>& p, Scalar max_distance2)
+        : probe_(p), set_(index.primitives()) {
+        best_.distance2 = max_distance2;
+    }
+
+    const Probe& probe() const { return probe_; }
+    Scalar limit() const { return best_.distance2; }
+    Flow offer(const PointCandidate<Scalar, dimension>& c) {
+        if (c.distance2 < best_.distance2 || (c.distance2 == best_.distance2 && c.element < best_.element))
+            best_ = {c.distance2, 0, c.element, c.point};
+        return Flow::go_on;
+    }
+    std::optional<Near<Scalar, dimension>> answer() const {
+        if (best_.element == Near<Scalar, dimension>{}.element) return std::nullopt;
+        auto found = best_;
+        found.primitive = reported_id(set_, best_.element);
+        return found;
+    }
+
+private:
+    Probe probe_;
+    const Set& set_;
+    Near<Scalar, dimension> best_;
+};
+
+}  // namespace hedgerow

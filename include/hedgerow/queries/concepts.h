@@ -1,0 +1,53 @@
+/// What a query is: what counts as an answer. It is offered candidates and holds the limit, which may only
+/// shrink; it knows no structure.
+#pragma once
+
+#include <cstdint>
+
+#include <hedgerow/primitives/concepts.h>
+
+namespace hedgerow {
+
+/// Whether near cells are wanted first. A query that takes whatever it overlaps needs no order.
+enum class Order { none, nearest };
+
+template <class Q>
+concept Query = requires(Q& q, const Q& asked) {
+    { Q::order } -> std::convertible_to<Order>;
+    { asked.probe() } -> std::convertible_to<const typename Q::Probe&>;
+    { asked.limit() } -> std::convertible_to<typename Q::Probe::Scalar>;
+};
+
+/// A place in a tree: the root is 0, every other node has a number of its own below the tree's
+/// `node_count()`.
+using NodeId = std::uint32_t;
+
+/// What a query says of a whole subtree before it is looked into.
+enum class Verdict { prune, open, accept };
+
+/// A query that can take a subtree at once (counts, containment, multipoles). What it knows of the node, it
+/// has from `fold`.
+template <class Q>
+concept SubtreeQuery = Query<Q> && requires(Q& q, NodeId node) {
+    { q.accept(node) } -> std::same_as<Verdict>;
+};
+
+/// How much a query looked at. `nodes`: inner nodes opened (cells of a grid); `leaves`; `primitives` tested.
+struct Visits {
+    std::uint64_t nodes = 0, leaves = 0, primitives = 0;
+
+    void node() { ++nodes; }
+    void leaf(std::uint64_t count) { ++leaves, primitives += count; }
+    Visits& operator+=(const Visits& o) {
+        nodes += o.nodes, leaves += o.leaves, primitives += o.primitives;
+        return *this;
+    }
+    friend bool operator==(const Visits&, const Visits&) = default;
+};
+/// Counts nothing and costs nothing.
+struct NoVisits {
+    void node() const {}
+    void leaf(std::uint64_t) const {}
+};
+
+}  // namespace hedgerow

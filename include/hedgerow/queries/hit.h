@@ -1,0 +1,59 @@
+/// What a ray query answers with, and the filters that refuse candidates.
+#pragma once
+
+#include <hedgerow/primitives/strided.h>
+#include <hedgerow/queries/concepts.h>
+
+namespace hedgerow {
+
+/// A hit: t in units of the ray's direction, the surface's own coordinates u and v (see Meeting), and what
+/// was hit. `element` is the position in the primitive set; `primitive` its id, which differs where a polygon
+/// of a file became several triangles.
+template <std::floating_point T>
+struct Hit {
+    T t = std::numeric_limits<T>::infinity();
+    T u = T(0), v = T(0);
+    std::uint32_t primitive = none, geometry = 0, instance = 0, element = none;
+
+    static constexpr std::uint32_t none = 0xFFFFFFFFu;
+    /// False for what a batch writes where nothing was hit.
+    explicit operator bool() const { return element != none; }
+    friend bool operator==(const Hit&, const Hit&) = default;
+};
+
+/// A filter is anything callable with a Hit that says whether it counts. This one keeps all.
+struct KeepAll {
+    template <class H>
+    constexpr bool operator()(const H&) const {
+        return true;
+    }
+};
+/// Refuses one element: the surface that the ray starts on.
+struct Except {
+    PrimitiveId element;
+    template <class H>
+    bool operator()(const H& h) const {
+        return h.element != element;
+    }
+};
+/// Refuses triangles seen from behind (their normal along the ray) and those seen edge-on.
+template <class View>
+struct CullBackFaces {
+    View mesh;
+    Vec<typename View::Scalar, 3> direction;
+    template <class H>
+    bool operator()(const H& h) const {
+        return dot(Vec3d(mesh.normal(h.element)), Vec3d(direction)) < 0;
+    }
+};
+/// Keeps elements of whose mask some bit is among the wanted ones.
+struct Masked {
+    Strided<std::uint32_t> masks;
+    std::uint32_t wanted;
+    template <class H>
+    bool operator()(const H& h) const {
+        return (masks[h.element] & wanted) != 0;
+    }
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,41 @@
+/// The primitives that overlap a box, ascending, each once.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <hedgerow/queries/concepts.h>
+
+namespace hedgerow {
+
+/// Collects elements into the caller's vector (cleared; its capacity is reused).
+template <class Set>
+class Overlapping {
+public:
+    using Scalar = typename Set::Scalar;
+    using Probe = BoxProbe<Scalar, Set::dimension>;
+    static constexpr Order order = Order::none;
+
+    Overlapping(const Box<Scalar, Set::dimension>& box, std::vector<PrimitiveId>& found)
+        : probe_(box), found_(found) {
+        found_.clear();
+    }
+
+    const Probe& probe() const { return probe_; }
+    Scalar limit() const { return std::numeric_limits<Scalar>::max(); }
+    Flow offer(const OverlapCandidate& c) {
+        found_.push_back(c.element);
+        return Flow::go_on;
+    }
+    std::size_t answer() {
+        std::sort(found_.begin(), found_.end());
+        found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+        return found_.size();
+    }
+
+private:
+    Probe probe_;
+    std::vector<PrimitiveId>& found_;
+};
+
+}  // namespace hedgerow

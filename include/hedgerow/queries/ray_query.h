@@ -1,0 +1,44 @@
+/// What the ray queries share: the probe, the interval, and the filter.
+#pragma once
+
+#include <hedgerow/queries/hit.h>
+
+namespace hedgerow {
+
+/// `Set` says which id a hit reports; `Filter` which candidates count. An unusable ray has limit −1: nothing
+/// is ever entered.
+template <class Set, class Filter>
+class RayQuery {
+public:
+    using Scalar = typename Set::Scalar;
+    using Probe = RayProbe<Scalar, Set::dimension>;
+
+    template <class Index, class Ray>
+    RayQuery(const Index& index, const Ray& ray, const Filter& filter)
+        : probe_(ray, index.bounds()), set_(index.primitives()), filter_(filter) {}
+
+    const Probe& probe() const { return probe_; }
+
+protected:
+    Scalar first_limit() const { return probe_.usable() ? probe_.ray().t_max : Scalar(-1); }
+    /// In the ray's interval, representable, and not refused.
+    bool counts(const RayCandidate<Scalar>& c) const {
+        if (!(c.t >= probe_.ray().t_min && c.t <= probe_.ray().t_max) ||
+            c.t > std::numeric_limits<Scalar>::max())
+            return false;
+        if constexpr (std::is_same_v<Filter, KeepAll>)
+            return true;
+        else
+            return filter_(hit(c));
+    }
+    Hit<Scalar> hit(const RayCandidate<Scalar>& c) const {
+        return {c.t, c.u, c.v, reported_id(set_, c.element), 0, 0, c.element};
+    }
+
+private:
+    Probe probe_;
+    const Set& set_;
+    [[no_unique_address]] Filter filter_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,54 @@
+/// Generated triangle meshes.
+///
+/// `size` is the number of triangles asked for; a mesh comes as near to it as its shape allows, within 20 %
+/// from 100 triangles on. Everything is computed in double from exact or correctly rounded operations and
+/// then rounded to T, so a mesh has the same bits on every machine, and the float one is the double one
+/// rounded. Each costs O(size) time and memory. T is float or double. Meshes are counterclockwise seen from
+/// outside, z is up (in the Cornell box y is), and vertices are shared where surfaces join.
+#pragma once
+
+#include <cstdint>
+
+#include <hedgerow/primitives/triangle_mesh.h>
+
+namespace hedgerow {
+
+/// The Utah teapot: 32 bicubic Bézier patches (Newell 1975; for the history of the data see Crow, "The
+/// origins of the teapot", IEEE CG&A 7(1), 1987), with the bottom that was added later. Stands on z = 0 and
+/// fills about
+/// [-3, 3.43] × [-2, 2] × [0, 3.15]; the spout points to +x. At least 52 triangles. As ever the lid, the
+/// handle and the spout are sheets of their own: all is closed but for the gap under the lid, the spout's
+/// mouth and the ends that lie inside the body.
+template <class T>
+TriangleMesh<T> teapot(std::uint64_t size);
+
+/// The teapot in a stadium, which breaks uniform grids (the phrase is Haines's, Ray Tracing News, 1988): the
+/// teapot of `teapot`, finely divided, on the middle of the field of an elliptic bowl of stepped seating rows
+/// 340 times as long. A ninth of the triangles is in the teapot. The bowl comes first, and is one open sheet.
+template <class T>
+TriangleMesh<T> teapot_in_stadium(std::uint64_t size);
+
+/// A fractal landscape over the unit square, heights in about [0, 0.25]: eleven octaves of value noise (after
+/// Fournier, Fussell and Carpenter 1982; Musgrave 1989), each turned by the 3-4-5 triangle's angle to hide
+/// the lattice. One regular grid, rows along x. A larger size samples the same land more finely.
+template <class T>
+TriangleMesh<T> terrain(std::uint64_t size, std::uint64_t seed = 0);
+
+/// `size` separate triangles in the unit cube, evenly spread and evenly turned, each on a circumscribed
+/// sphere of radius size^(-1/3)/2. Throws InputError beyond 2^32/3 triangles, when indices no longer fit.
+template <class T>
+TriangleMesh<T> soup(std::uint64_t size, std::uint64_t seed = 0);
+
+/// The Cornell box (Goral, Torrance, Greenberg and Battaile 1984; the measured data of 1998), in millimetres:
+/// room, light and two blocks, y up, open to −z. 32 triangles at size 32 or less, subdivided beyond. Walls
+/// face inward. The blocks have no underside; the light hangs 0.1 mm below the ceiling, not in its plane. The
+/// meshes of room, light and each block are not joined. Order: floor, ceiling, back, right, left, light,
+/// short, tall block.
+template <class T>
+TriangleMesh<T> cornell_box(std::uint64_t size);
+
+/// The cube [-1, 1]³, closed. 12 triangles at size 12 or less, subdivided beyond.
+template <class T>
+TriangleMesh<T> cube(std::uint64_t size);
+
+}  // namespace hedgerow

@@ -1,0 +1,36 @@
+/// Generated sets of spheres, points and segments.
+///
+/// Exactly `size` elements, the same bits on every machine; the float set is the double set rounded. Element
+/// i depends only on (size, seed, i). Each costs O(size) time and memory. T is float or double.
+#pragma once
+
+#include <cstdint>
+
+#include <hedgerow/primitives/point_cloud.h>
+#include <hedgerow/primitives/segment_set.h>
+#include <hedgerow/primitives/sphere_set.h>
+
+namespace hedgerow {
+
+/// Spheres wholly in the unit cube, radii evenly in [1/8, 1/2]·size^(-1/3). Some overlap.
+template <class T>
+SphereSet<T, 3> spheres(std::uint64_t size, std::uint64_t seed = 0);
+
+/// Points evenly in the unit cube.
+template <class T>
+PointCloud<T, 3> points(std::uint64_t size, std::uint64_t seed = 0);
+
+/// Points evenly in the unit square.
+template <class T>
+PointCloud<T, 2> points2d(std::uint64_t size, std::uint64_t seed = 0);
+
+/// Points of the unit square in 16 heaps with standard deviations between 0.006 and 0.035 (sums of four
+/// uniform numbers, so they end), equally many in each but for chance.
+template <class T>
+PointCloud<T, 2> clusters2d(std::uint64_t size, std::uint64_t seed = 0);
+
+/// Short segments in the unit square, evenly spread and turned, lengths evenly in [1/4, 1]·size^(-1/2).
+template <class T>
+SegmentSet<T> segments2d(std::uint64_t size, std::uint64_t seed = 0);
+
+}  // namespace hedgerow

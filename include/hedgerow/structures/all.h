@@ -1,0 +1,7 @@
+/// The list of all structures.
+#pragma once
+
+#include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/bvh/bvh.h>
+#include <hedgerow/structures/grid/grid.h>
+#include <hedgerow/structures/kdtree/kdtree.h>

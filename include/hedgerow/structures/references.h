@@ -1,0 +1,89 @@
+/// What every builder starts from: the box of each primitive, checked.
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <string>
+#include <vector>
+
+#include <hedgerow/error.h>
+#include <hedgerow/geometry/lanes.h>
+#include <hedgerow/parallel/executor.h>
+#include <hedgerow/primitives/concepts.h>
+
+namespace hedgerow {
+
+/// A box that only grows, in lanes.
+template <std::floating_point T>
+struct LaneBox {
+    Lanes<T> low = Lanes<T>::all(std::numeric_limits<T>::infinity());
+    Lanes<T> high = Lanes<T>::all(-std::numeric_limits<T>::infinity());
+
+    void expand(const LaneBox& b) { low = min(low, b.low), high = max(high, b.high); }
+    void expand(Lanes<T> p) { low = min(low, p), high = max(high, p); }
+    template <int D>
+    Box<T, D> box() const {
+        alignas(32) T l[4], h[4];
+        low.store(l);
+        high.store(h);
+        Box<T, D> b;
+        for (int k = 0; k < D; ++k) b.low[k] = l[k], b.high[k] = h[k];
+        return b;
+    }
+};
+
+/// A primitive as builders move it about: its box, and its id in the fourth lane (of `low`).
+template <std::floating_point T, int D>
+struct Reference {
+    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
+
+    alignas(4 * sizeof(T)) T low[4] = {};
+    T high[4] = {};
+
+    Reference() = default;
+    Reference(const Box<T, D>& b, PrimitiveId id) {
+        for (int k = 0; k < D; ++k) low[k] = b.low[k], high[k] = b.high[k];
+        low[3] = std::bit_cast<T>(static_cast<Bits>(id));
+    }
+    PrimitiveId id() const { return static_cast<PrimitiveId>(std::bit_cast<Bits>(low[3])); }
+    LaneBox<T> lanes() const { return {Lanes<T>::load(low), Lanes<T>::load(high)}; }
+    Box<T, D> box() const { return lanes().template box<D>(); }
+    /// Twice the center: halving would only cost.
+    Lanes<T> center2() const { return Lanes<T>::load(low) + Lanes<T>::load(high); }
+    T center2(int axis) const { return low[axis] + high[axis]; }
+};
+
+/// The references of all primitives, in the order of their ids. Throws InputError for the first primitive
+/// with a coordinate that is NaN, infinite or beyond `largest_coordinate`, and for more than 2^31 primitives.
+template <PrimitiveSet P>
+auto references_of(const P& set, Executor& executor) {
+    using T = typename P::Scalar;
+    constexpr int D = P::dimension;
+    const std::size_t n = set.size();
+    if (n > 0x80000000u)
+        throw InputError("an index holds at most 2^31 primitives, and was given " + std::to_string(n));
+    if constexpr (requires { set.validate(); }) set.validate();
+    std::vector<Reference<T, D>> references(n);
+    std::atomic<std::size_t> first_bad{n};
+    executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Box<T, D> b = set.bounds(i);
+            bool good = true;
+            for (int k = 0; k < D; ++k)
+                good = good && b.low[k] >= -largest_coordinate<T> && b.high[k] <= largest_coordinate<T>;
+            if constexpr (requires { set.finite(i); }) good = good && set.finite(i);
+            references[i] = Reference<T, D>(b, static_cast<PrimitiveId>(i));
+            for (std::size_t seen = first_bad;
+                 !good && i < seen && !first_bad.compare_exchange_weak(seen, i);) {
+            }
+        }
+    });
+    if (first_bad < n)
+        throw InputError("primitive " + std::to_string(first_bad.load()) +
+                         " has a coordinate that is NaN, infinite or beyond " +
+                         std::to_string(double(largest_coordinate<T>)) +
+                         ": mend it, or drop it when loading");
+    return references;
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,71 @@
+/// The walk through space cut by planes: kd-trees, BSP trees.
+#pragma once
+
+#include <hedgerow/queries/concepts.h>
+
+namespace hedgerow {
+
+template <class S>
+concept PlaneTree = requires(const S& s, NodeId n) {
+    {s.bounds()};
+    { s.empty() } -> std::same_as<bool>;
+    { s.is_leaf(n) } -> std::same_as<bool>;
+    { s.leaf(n) } -> std::same_as<Leaf>;
+    {s.plane(n)};
+    { s.low_child(n) } -> std::same_as<NodeId>;
+    { s.high_child(n) } -> std::same_as<NodeId>;
+};
+
+/// The bound of a state in which nothing of the probe is left.
+template <class Q>
+inline constexpr auto nothing = std::numeric_limits<typename Q::Probe::Scalar>::infinity();
+
+/// Follows the near side of each cut and keeps the far side on a stack, with what is left of the probe there;
+/// it is passed over if by then the limit lies before it. Allocates nothing: one entry a level.
+template <PlaneTree S, class Primitives, Query Q, class Count>
+void walk_planes(const S& tree, const Primitives& primitives, Q& query, Count& count) {
+    if (tree.empty()) return;
+    const auto& probe = query.probe();
+    using State = typename Q::Probe::State;
+    struct Entry {
+        NodeId node;
+        State state;
+    };
+    const auto within = [&](const State& s) {
+        return probe.bound(s) <= query.limit() && probe.bound(s) < nothing<Q>;
+    };
+    const auto opened = [&](NodeId n, const State& s) {
+        if (!within(s)) return false;
+        if constexpr (SubtreeQuery<Q>) return query.accept(n) == Verdict::open;
+        return true;
+    };
+    Entry stack[S::max_depth + 1];
+    int top = 0;
+    NodeId node = 0;
+    State state = probe.root(tree.bounds());
+    if (!opened(node, state)) return;
+    while (true) {
+        if (tree.is_leaf(node)) {
+            const Leaf leaf = tree.leaf(node);
+            count.leaf(leaf.count);
+            if (test_leaf(primitives, probe, leaf, query) == Flow::stop) return;
+        } else {
+            count.node();
+            const auto cut = probe.cut(state, tree.plane(node));
+            const NodeId near = cut.near_is_high ? tree.high_child(node) : tree.low_child(node);
+            const NodeId far = cut.near_is_high ? tree.low_child(node) : tree.high_child(node);
+            if (opened(far, cut.far)) stack[top++] = {far, cut.far};
+            if (opened(near, cut.near)) {
+                node = near, state = cut.near;
+                continue;
+            }
+        }
+        do {
+            if (top == 0) return;
+            --top;
+        } while (!within(stack[top].state));
+        node = stack[top].node, state = stack[top].state;
+    }
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,80 @@
+/// The walk through nested volumes: BVHs of any width, octrees.
+#pragma once
+
+#include <hedgerow/queries/concepts.h>
+
+namespace hedgerow {
+
+/// Where a child leads: to a leaf (count > 0, first its first primitive), to an inner node (first its
+/// number), or nowhere.
+struct NodeRef {
+    std::uint32_t first = nowhere, count = 0;
+
+    static constexpr std::uint32_t nowhere = 0xFFFFFFFFu;
+    bool empty() const { return count == 0 && first == nowhere; }
+    bool leaf() const { return count != 0; }
+};
+
+/// What the walk needs to know of a tree: packs of `width` volumes, and where each leads.
+template <class S>
+concept VolumeTree = requires(const S& s, NodeRef ref) {
+    { S::width } -> std::convertible_to<int>;
+    { s.root() } -> std::same_as<NodeRef>;
+    {s.volumes(ref)};
+    { s.child(ref, 0) } -> std::same_as<NodeRef>;
+    { s.leaf(ref) } -> std::same_as<Leaf>;
+    { S::child_id(ref, 0) } -> std::same_as<NodeId>;
+};
+
+/// Culling at the pop: what was pushed before the limit shrank is passed over. Off only to show what it
+/// brings.
+enum class Culling : bool { off, on };
+
+/// Opens the nearest entered child first (if the query wants an order), keeps the others on a stack with
+/// where they are entered, and passes over those that a shrunken limit has put out of reach. A leaf is tested
+/// at once. Allocates nothing: the stack holds (width − 1) entries a level.
+template <Culling culling = Culling::on, VolumeTree S, class Primitives, Query Q, class Count>
+void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& count) {
+    using T = typename Q::Probe::Scalar;
+    struct Entry {
+        NodeRef node;
+        T at;
+    };
+    Entry stack[S::max_depth * (S::width - 1) + 1];
+    int top = 0;
+    NodeRef node = tree.root();
+    if (node.empty()) return;
+    if constexpr (SubtreeQuery<Q>)
+        if (query.accept(0) != Verdict::open) return;
+    const auto& probe = query.probe();
+    while (true) {
+        if (node.leaf()) {
+            count.leaf(node.count);
+            if (test_leaf(primitives, probe, tree.leaf(node), query) == Flow::stop) return;
+        } else {
+            count.node();
+            alignas(16) T at[S::width < 4 ? 4 : S::width];
+            unsigned entered = probe.enter(tree.volumes(node), query.limit(), at);
+            if constexpr (SubtreeQuery<Q>)
+                for (int i = 0; i < S::width; ++i)
+                    if ((entered >> i & 1u) && query.accept(S::child_id(node, i)) != Verdict::open)
+                        entered &= ~(1u << i);
+            const int first = top;
+            for (int i = 0; i < S::width; ++i) {
+                if (!(entered >> i & 1u)) continue;
+                int place = top++;
+                if constexpr (Q::order == Order::nearest)
+                    for (; place > first && stack[place - 1].at < at[i]; --place)
+                        stack[place] = stack[place - 1];
+                stack[place] = {tree.child(node, i), at[i]};
+            }
+        }
+        do {
+            if (top == 0) return;
+            --top;
+        } while (culling == Culling::on && !(stack[top].at <= query.limit()));
+        node = stack[top].node;
+    }
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,138 @@
+/// The list of scenes, and scenes by name.
+#include <hedgerow/scenes/generate.h>
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <type_traits>
+#include <vector>
+
+#include <hedgerow/error.h>
+#include <hedgerow/spelling.h>
+
+namespace hedgerow {
+namespace {
+
+template <class T>
+struct In {};  // names a precision
+
+/// A line of the list, from a function of (In<T>, size, seed).
+template <class F>
+constexpr SceneInfo scene(std::string_view name, std::uint64_t size, std::string_view yields, int dimension,
+                          std::string_view description, F) {
+    return {name,
+            size,
+            yields,
+            dimension,
+            description,
+            [](std::uint64_t n, std::uint64_t seed) -> Scene<float> { return F{}(In<float>{}, n, seed); },
+            [](std::uint64_t n, std::uint64_t seed) -> Scene<double> { return F{}(In<double>{}, n, seed); }};
+}
+
+using U = std::uint64_t;
+
+/// The one list of scenes.
+constexpr SceneInfo scenes[] = {
+    scene("teapot", 6'320, "triangles", 3, "the Utah teapot from its Bézier patches",
+          []<class T>(In<T>, U n, U) { return teapot<T>(n); }),
+    scene("teapot-in-stadium", 54'056, "triangles", 3, "a small fine teapot in a huge coarse stadium",
+          []<class T>(In<T>, U n, U) { return teapot_in_stadium<T>(n); }),
+    scene("terrain", 2 * 1024 * 1024, "triangles", 3, "a fractal landscape over the unit square",
+          []<class T>(In<T>, U n, U seed) { return terrain<T>(n, seed); }),
+    scene("soup", 1'000'000, "triangles", 3, "separate random triangles in the unit cube",
+          []<class T>(In<T>, U n, U seed) { return soup<T>(n, seed); }),
+    scene("cornell-box", 32, "triangles", 3, "the Cornell box: a room with a light and two blocks",
+          []<class T>(In<T>, U n, U) { return cornell_box<T>(n); }),
+    scene("cube", 12, "triangles", 3, "the closed cube from -1 to 1",
+          []<class T>(In<T>, U n, U) { return cube<T>(n); }),
+    scene("spheres", 10'000, "spheres", 3, "random spheres in the unit cube",
+          []<class T>(In<T>, U n, U seed) { return spheres<T>(n, seed); }),
+    scene("points", 100'000, "points", 3, "random points in the unit cube",
+          []<class T>(In<T>, U n, U seed) { return points<T>(n, seed); }),
+    scene("points2d", 100'000, "points", 2, "random points in the unit square",
+          []<class T>(In<T>, U n, U seed) { return points2d<T>(n, seed); }),
+    scene("clusters2d", 100'000, "points", 2, "random points in 16 heaps in the unit square",
+          []<class T>(In<T>, U n, U seed) { return clusters2d<T>(n, seed); }),
+    scene("segments2d", 10'000, "segments", 2, "short random segments in the unit square",
+          []<class T>(In<T>, U n, U seed) { return segments2d<T>(n, seed); }),
+};
+
+const SceneInfo& scene_named(std::string_view name) {
+    const auto found = std::ranges::find(scenes, name, &SceneInfo::name);
+    if (found != std::end(scenes)) return *found;
+    std::vector<std::string_view> names;
+    std::string list;
+    for (const SceneInfo& s : scenes) {
+        names.push_back(s.name);
+        list += (list.empty() ? "" : ", ") + std::string(s.name);
+    }
+    throw InputError("gen:" + std::string(name) + ": there is no scene '" + std::string(name) + "'" +
+                     suggestion(name, names) + "; the scenes are " + list);
+}
+
+void check_size(std::string_view name, std::uint64_t size) {
+    if (size > largest_scene_size)
+        throw InputError("gen:" + std::string(name) + ": size " + std::to_string(size) +
+                         " is too large; ask for at most " + std::to_string(largest_scene_size));
+}
+
+/// What a letter behind a number stands for; 0 if nothing.
+std::uint64_t multiplier(std::string_view suffix) {
+    if (suffix.empty()) return 1;
+    if (suffix == "k" || suffix == "K") return 1'000;
+    if (suffix == "m" || suffix == "M") return 1'000'000;
+    if (suffix == "g" || suffix == "G") return 1'000'000'000;
+    return 0;
+}
+
+std::uint64_t parse_size(std::string_view name, std::string_view text) {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    const std::uint64_t times = multiplier({rest, static_cast<std::size_t>(end - rest)});
+    if (error == std::errc::invalid_argument || times == 0)
+        throw InputError("gen:" + std::string(name) + ": '" + std::string(text) +
+                         "' is not a size; write a whole number such as 5000, 100k or 2M");
+    // Beyond 64 bits, or soon: any number above the largest allowed one will do for the message.
+    if (error == std::errc::result_out_of_range || value > largest_scene_size / times)
+        throw InputError("gen:" + std::string(name) + ": size " + std::string(text) +
+                         " is too large; ask for at most " + std::to_string(largest_scene_size));
+    return value * times;
+}
+
+}  // namespace
+
+std::span<const SceneInfo> scene_list() {
+    return scenes;
+}
+
+SceneSpec parse_scene_spec(std::string_view text) {
+    constexpr std::string_view scheme = "gen:";
+    if (!text.starts_with(scheme))
+        throw InputError("'" + std::string(text) +
+                         "' is not a generated scene; write gen:NAME or gen:NAME:SIZE");
+    std::string_view name = text.substr(scheme.size());
+    const std::size_t colon = name.find(':');
+    const bool sized = colon != std::string_view::npos;
+    const std::string_view size = sized ? name.substr(colon + 1) : std::string_view();
+    name = name.substr(0, colon);
+    SceneSpec spec;
+    spec.name = scene_named(name).name;
+    if (sized) spec.size = parse_size(name, size);
+    return spec;
+}
+
+template <class T>
+Scene<T> generate(const SceneSpec& spec) {
+    const SceneInfo& info = scene_named(spec.name);
+    const std::uint64_t size = spec.size.value_or(info.default_size);
+    check_size(info.name, size);
+    if constexpr (std::is_same_v<T, float>)
+        return info.in_float(size, spec.seed);
+    else
+        return info.in_double(size, spec.seed);
+}
+template Scene<float> generate<float>(const SceneSpec&);
+template Scene<double> generate<double>(const SceneSpec&);
+
+}  // namespace hedgerow

@@ -1,0 +1,102 @@
+/// The teapot in a stadium.
+#include <cmath>
+#include <vector>
+
+#include <hedgerow/scenes/meshes.h>
+
+#include "precision.h"
+#include "sizing.h"
+#include "welding.h"
+
+namespace hedgerow {
+namespace {
+
+// In units of the teapot's data; the teapot is 6.4 long.
+constexpr double field_half_length = 600, field_half_width = 400;
+constexpr double seating_depth = 490, wall_height = 10, rake_height = 250;
+constexpr double teapot_height_above_field = 0x1p-6;  // nothing touches
+
+/// A place on the half section of the bowl: how far outside the field's edge, and how high. Within the field
+/// `scale` shrinks the edge instead.
+struct SectionPoint {
+    double outside, z, scale = 1;
+};
+
+/// 8n points of the unit circle, counterclockwise, symmetric to all eight of its axes: one octant by the
+/// rational parametrisation (steps differ by up to 17 %), the others mirrored.
+std::vector<Vec2d> circle(std::uint64_t n) {
+    const double tan_eighth = std::sqrt(2.0) - 1;
+    std::vector<Vec2d> quarter(2 * n + 1);
+    for (std::uint64_t i = 0; i <= n; ++i) {
+        const double t = product(tan_eighth, static_cast<double>(i) / static_cast<double>(n));
+        const double t2 = product(t, t);
+        const Vec2d p((1 - t2) / (1 + t2), 2 * t / (1 + t2));
+        quarter[2 * n - i] = Vec2d(p[1], p[0]);
+        quarter[i] = p;
+    }
+    std::vector<Vec2d> points;
+    for (const Vec2d& turn : {Vec2d(1, 0), Vec2d(0, 1), Vec2d(-1, 0), Vec2d(0, -1)})
+        for (std::uint64_t i = 0; i < 2 * n; ++i) {
+            const Vec2d p = quarter[i];
+            points.push_back({turn[0] * p[0] - turn[1] * p[1], turn[1] * p[0] + turn[0] * p[1]});
+        }
+    return points;
+}
+
+/// From near the middle of the field to the foot of the outer wall.
+std::vector<SectionPoint> section(std::uint64_t rows, int field_rings) {
+    std::vector<SectionPoint> points;
+    for (int i = 1; i <= field_rings; ++i) points.push_back({0, 0, static_cast<double>(i) / field_rings});
+    for (std::uint64_t i = 0; i < rows; ++i) {
+        const double s = static_cast<double>(i) / static_cast<double>(rows);
+        const double end = static_cast<double>(i + 1) / static_cast<double>(rows);
+        const double z = wall_height + product(rake_height, (s + product(s, s)) / 2);  // steeper further up
+        points.push_back({product(seating_depth, s), z});
+        points.push_back({product(seating_depth, end), z});
+    }
+    points.push_back({seating_depth, 0});
+    return points;
+}
+
+TriangleMesh<double> bowl(std::uint64_t size) {
+    const int field_rings = size < 4000 ? 1 : 2;
+    // Eight segments a column; four triangles a row of seats, and the field and the outer wall.
+    const detail::Split split = detail::nearest_split(size, {32, 16 * field_rings + 8, 0.5});
+    const std::vector<Vec2d> around = circle(split.columns);
+    const auto n = static_cast<std::uint32_t>(around.size());
+    TriangleMesh<double> mesh;
+    mesh.vertices.push_back({});
+    std::uint32_t inner = 0;
+    for (const SectionPoint& at : section(split.rows, field_rings)) {
+        const auto outer = static_cast<std::uint32_t>(mesh.vertices.size());
+        const double a = product(field_half_length, at.scale) + at.outside;
+        const double b = product(field_half_width, at.scale) + at.outside;
+        for (const Vec2d& p : around) mesh.vertices.push_back({product(a, p[0]), product(b, p[1]), at.z});
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t next = i + 1 < n ? i + 1 : 0;
+            mesh.triangles.push_back({inner == 0 ? 0 : inner + i, outer + i, outer + next});
+            if (inner != 0) mesh.triangles.push_back({inner + i, outer + next, inner + next});
+        }
+        inner = outer;
+    }
+    return mesh;
+}
+
+TriangleMesh<double> build(std::uint64_t size) {
+    constexpr std::uint64_t default_total = 54'056, default_teapot = 6'320;
+    const TriangleMesh<double> pot = teapot<double>(size * default_teapot / default_total);
+    TriangleMesh<double> mesh = bowl(size > pot.size() ? size - pot.size() : 0);
+    detail::append(mesh, pot, {0, 0, teapot_height_above_field});
+    return mesh;
+}
+
+}  // namespace
+
+template <class T>
+TriangleMesh<T> teapot_in_stadium(std::uint64_t size) {
+    return detail::in_precision<T>([&] { return build(size); });
+}
+template TriangleMesh<float> teapot_in_stadium<float>(std::uint64_t);
+template TriangleMesh<double> teapot_in_stadium<double>(std::uint64_t);
+
+}  // namespace hedgerow

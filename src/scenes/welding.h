@@ -1,0 +1,37 @@
+/// Meshes from quadrilaterals, with equal corners made one vertex.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+#include <hedgerow/primitives/triangle_mesh.h>
+
+namespace hedgerow::detail {
+
+/// Collects triangles; corners of equal coordinates (−0 being 0) become one vertex. Shapes that shall not be
+/// joined need a mesh of their own each.
+class WeldedMesh {
+public:
+    /// A triangle without area is dropped.
+    void add(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+    /// Triangles a, b, c and a, c, d.
+    void add_quad(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d);
+    /// The quadrilateral a, b, c, d in across × along pieces: `across` along a-b, `along` along b-c. Two that
+    /// share an edge and its number of pieces share all vertices on it.
+    void add_divided_quad(const std::array<Vec3d, 4>& corners, std::uint32_t across, std::uint32_t along);
+
+    TriangleMesh<double> mesh;
+
+private:
+    std::uint32_t vertex(const Vec3d& p);
+
+    struct Hash {
+        std::size_t operator()(const Vec3d& p) const;
+    };
+    std::unordered_map<Vec3d, std::uint32_t, Hash> known_;
+};
+
+/// Puts `part` behind `whole`, its vertices moved by `offset`; nothing is joined.
+void append(TriangleMesh<double>& whole, const TriangleMesh<double>& part, const Vec3d& offset = {});
+
+}  // namespace hedgerow::detail

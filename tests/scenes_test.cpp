@@ -1,0 +1,406 @@
+/// The scene generators: same bits everywhere, sizes, soundness of the meshes, and scenes by name.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hedgerow/error.h>
+#include <hedgerow/scenes/generate.h>
+#include <hedgerow/scenes/random.h>
+
+namespace hedgerow {
+namespace {
+
+/// FNV-1a over 64-bit words.
+class Hash {
+public:
+    void add(std::uint64_t word) {
+        for (int i = 0; i < 8; ++i, word >>= 8) value_ = (value_ ^ (word & 0xFF)) * 0x100000001B3u;
+    }
+    template <int D>
+    void add(const Vec<double, D>& p) {
+        for (int i = 0; i < D; ++i) add(std::bit_cast<std::uint64_t>(p[i]));
+    }
+    void add(const TriangleMesh<double>& mesh) {
+        for (const Vec3d& p : mesh.vertices) add(p);
+        for (const TriangleIndices& t : mesh.triangles)
+            for (const std::uint32_t i : t) add(i);
+    }
+    void add(const SphereSet<double, 3>& set) {
+        for (const auto& s : set.spheres) add(s.center), add(std::bit_cast<std::uint64_t>(s.radius));
+    }
+    template <int D>
+    void add(const PointCloud<double, D>& cloud) {
+        for (const auto& p : cloud.points) add(p);
+    }
+    void add(const SegmentSet<double>& set) {
+        for (const auto& s : set.segments) add(s.a), add(s.b);
+    }
+    std::uint64_t value() const { return value_; }
+
+private:
+    std::uint64_t value_ = 0xCBF29CE484222325u;
+};
+
+std::uint64_t hash_of(const SceneSpec& spec) {
+    Hash hash;
+    std::visit([&](const auto& scene) { hash.add(scene); }, generate<double>(spec));
+    return hash.value();
+}
+
+std::size_t size_of(const Scene<double>& scene) {
+    return std::visit([](const auto& s) { return s.size(); }, scene);
+}
+
+template <class T>
+std::vector<Vec<T, 3>> points_of(const TriangleMesh<T>& mesh) {
+    return mesh.vertices;
+}
+template <class T, int D>
+std::vector<Vec<T, D>> points_of(const PointCloud<T, D>& cloud) {
+    return cloud.points;
+}
+template <class T>
+std::vector<Vec<T, 3>> points_of(const SphereSet<T, 3>& set) {
+    std::vector<Vec<T, 3>> all;
+    for (const auto& s : set.spheres) all.push_back(s.center), all.push_back(Vec<T, 3>::all(s.radius));
+    return all;
+}
+template <class T>
+std::vector<Vec<T, 2>> points_of(const SegmentSet<T>& set) {
+    std::vector<Vec<T, 2>> all;
+    for (const auto& s : set.segments) all.push_back(s.a), all.push_back(s.b);
+    return all;
+}
+
+template <class T>
+TriangleMesh<T> mesh_of(const std::string& name, std::optional<std::uint64_t> size = {}) {
+    return std::get<TriangleMesh<T>>(generate<T>({name, size, 0}));
+}
+
+template <class T>
+Triangle<T, 3> triangle(const TriangleMesh<T>& mesh, const TriangleIndices& t) {
+    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+}
+
+template <class T>
+Box<T, 3> bounds(const TriangleMesh<T>& mesh) {
+    Box<T, 3> box;
+    for (const auto& p : mesh.vertices) box.expand(p);
+    return box;
+}
+
+double signed_volume(const TriangleMesh<double>& mesh) {
+    double sum = 0;
+    for (const auto& t : mesh.triangles) {
+        const auto [a, b, c] = triangle(mesh, t);
+        sum += dot(a, cross(b, c)) / 6;
+    }
+    return sum;
+}
+
+/// Edges without a neighbour. Fails where neighbours are turned against each other or more than two meet.
+std::size_t open_edges(const TriangleMesh<double>& mesh) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
+    for (const auto& t : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) ++uses[{t[i], t[(i + 1) % 3]}];
+    std::size_t open = 0;
+    for (const auto& [edge, count] : uses) {
+        EXPECT_EQ(count, 1) << edge.first << " " << edge.second;
+        open += !uses.contains({edge.second, edge.first});
+    }
+    return open;
+}
+
+template <class T>
+void expect_sound(const TriangleMesh<T>& mesh, const std::string& what) {
+    std::vector<bool> used(mesh.vertices.size());
+    std::size_t flat = 0;
+    for (const TriangleIndices& t : mesh.triangles) {
+        for (const std::uint32_t i : t) {
+            ASSERT_LT(i, mesh.vertices.size()) << what;
+            used[i] = true;
+        }
+        flat += !(length2(Triangle<double, 3>{Vec3d(mesh.vertices[t[0]]), Vec3d(mesh.vertices[t[1]]),
+                                              Vec3d(mesh.vertices[t[2]])}
+                              .normal()) > 0);
+    }
+    EXPECT_EQ(flat, 0u) << what << ": triangles without area";
+    EXPECT_EQ(std::ranges::count(used, false), 0) << what << ": unused vertices";
+}
+
+TEST(Scenes, NumbersAreEvenAndOfLengthOne) {
+    Random random(7);
+    double sum = 0;
+    for (int i = 0; i < 10'000; ++i) {
+        const double x = random.uniform();
+        ASSERT_TRUE(x >= 0 && x < 1);
+        sum += x;
+        ASSERT_NEAR(length(random.direction<3>()), 1, 1e-15);
+    }
+    EXPECT_NEAR(sum / 10'000, 0.5, 0.01);
+    EXPECT_NE(Random(1).bits(), Random(2).bits());
+    EXPECT_NE(Random(1, 0).bits(), Random(1, 1).bits());
+}
+
+TEST(Scenes, HaveTheSameBitsTwiceAndAnotherSeedOthers) {
+    for (const SceneInfo& info : scene_list()) {
+        const SceneSpec spec{std::string(info.name), 3000, 5};
+        EXPECT_EQ(hash_of(spec), hash_of(spec)) << info.name;
+        const bool random = info.yields != "triangles" || info.name == "terrain" || info.name == "soup";
+        EXPECT_EQ(hash_of(spec) != hash_of({spec.name, 3000, 6}), random) << info.name;
+    }
+}
+
+TEST(Scenes, HaveTheBitsTheyAlwaysHad) {
+    const std::map<std::string_view, std::uint64_t> pinned = {
+        {"teapot", 0xfc72af8703dc68cf},      {"teapot-in-stadium", 0xcd564bf99d31fd30},
+        {"terrain", 0x8c4dc721fbc1cda7},     {"soup", 0x0597734ed88ba96d},
+        {"cornell-box", 0x7bad3b1adca37542}, {"cube", 0x3ff1bbeb8cf7f725},
+        {"spheres", 0xa7b8fbac8cdab736},     {"points", 0xbe25505ea67a5056},
+        {"points2d", 0xe3dcdc158aeb987a},    {"clusters2d", 0x9052bdd410191d66},
+        {"segments2d", 0x0e079425abdea6d3},
+    };
+    for (const SceneInfo& info : scene_list()) {
+        const std::uint64_t size = std::min<std::uint64_t>(info.default_size, 10'000);
+        const std::uint64_t hash = hash_of({std::string(info.name), size, 0});
+        ASSERT_TRUE(pinned.contains(info.name)) << info.name << " 0x" << std::hex << hash;
+        EXPECT_EQ(hash, pinned.at(info.name)) << info.name << " 0x" << std::hex << hash;
+    }
+}
+
+TEST(Scenes, InFloatAreTheDoubleOnesRounded) {
+    for (const SceneInfo& info : scene_list()) {
+        const SceneSpec spec{std::string(info.name), 2000, 3};
+        const Scene<float> narrow = generate<float>(spec);
+        const Scene<double> wide = generate<double>(spec);
+        ASSERT_EQ(narrow.index(), wide.index());
+        const auto all = std::visit([](const auto& s) { return points_of(s).size(); }, wide);
+        std::size_t equal = 0;
+        std::visit(
+            [&]<class N, class W>(const N& n, const W& w) {
+                if constexpr (N::dimension == W::dimension) {
+                    const auto a = points_of(n);
+                    const auto b = points_of(w);
+                    ASSERT_EQ(a.size(), b.size());
+                    for (std::size_t i = 0; i < a.size(); ++i)
+                        equal += a[i] == typename decltype(a)::value_type(b[i]);
+                }
+            },
+            narrow, wide);
+        EXPECT_EQ(equal, all) << info.name;
+        if (const auto* mesh = std::get_if<TriangleMesh<float>>(&narrow)) {
+            EXPECT_EQ(mesh->triangles, std::get<TriangleMesh<double>>(wide).triangles);
+        }
+    }
+}
+
+TEST(Scenes, AreAboutAsLargeAsAskedFor) {
+    for (const SceneInfo& info : scene_list())
+        for (const unsigned size : {100u, 130u, 177u, 250u, 333u, 500u, 1000u, 4000u, 33'333u, 1'000'000u}) {
+            const double got =
+                static_cast<double>(size_of(generate<double>({std::string(info.name), size, 0})));
+            const double slack = info.yields == "triangles" ? 0.2 : 0;
+            EXPECT_NEAR(got, static_cast<double>(size), slack * static_cast<double>(size)) << info.name;
+        }
+}
+
+TEST(Scenes, HaveTheDefaultSizesTheyPromise) {
+    for (const SceneInfo& info : scene_list()) {
+        if (info.name == "terrain") continue;
+        EXPECT_EQ(size_of(generate<double>({std::string(info.name), {}, 0})), info.default_size) << info.name;
+    }
+    EXPECT_EQ(terrain<float>(2 * 1024 * 1024).vertices.size(), 1025u * 1025u);
+}
+
+TEST(Scenes, MayBeTiny) {
+    for (const SceneInfo& info : scene_list())
+        for (const unsigned size : {0u, 1u, 2u}) {
+            const Scene<double> scene = generate<double>({std::string(info.name), size, 0});
+            if (const auto* mesh = std::get_if<TriangleMesh<double>>(&scene))
+                expect_sound(*mesh, std::string(info.name));
+            else
+                EXPECT_EQ(size_of(scene), size) << info.name;
+        }
+}
+
+TEST(Scenes, LieWhereTheyShould) {
+    for (const SceneInfo& info : scene_list()) {
+        const bool in_unit_cube = info.yields != "triangles" || info.name == "terrain" || info.name == "soup";
+        const Scene<float> scene = generate<float>({std::string(info.name), 5000, 1});
+        std::visit(
+            [&](const auto& s) {
+                for (const auto& p : points_of(s))
+                    for (int i = 0; i < p.dimension; ++i) {
+                        ASSERT_TRUE(std::isfinite(p[i])) << info.name;
+                        if (in_unit_cube) {
+                            ASSERT_TRUE(p[i] >= 0 && p[i] <= 1) << info.name;
+                        }
+                    }
+            },
+            scene);
+    }
+    for (const auto& s : spheres<double>(5000, 1).spheres) {
+        ASSERT_GT(s.radius, 0);
+        ASSERT_TRUE((Box3d{{0, 0, 0}, {1, 1, 1}}.contains(s.bounds())));
+    }
+}
+
+TEST(Scenes, HaveSoundMeshes) {
+    for (const SceneInfo& info : scene_list()) {
+        if (info.yields != "triangles") continue;
+        const std::string name(info.name);
+        for (const unsigned size : {50u, 100u, 1000u, 12'345u, 300'000u}) {
+            expect_sound(mesh_of<double>(name, size), name);
+            expect_sound(mesh_of<float>(name, size), name);
+        }
+    }
+}
+
+TEST(Teapot, IsATeapot) {
+    const auto mesh = teapot<double>(100'000);
+    const Box3d box = bounds(mesh);
+    EXPECT_NEAR(box.low[0], -3, 1e-12);
+    EXPECT_NEAR(box.high[0], 3.4345, 1e-3);
+    EXPECT_NEAR(box.low[1], -2, 1e-3);
+    EXPECT_NEAR(box.high[1], 2, 1e-3);
+    EXPECT_EQ(box.low[1], -box.high[1]);
+    EXPECT_EQ(box.low[2], 0);
+    EXPECT_EQ(box.high[2], 3.15);
+    EXPECT_GT(signed_volume(mesh), 20);
+    EXPECT_LT(signed_volume(mesh), 30);
+}
+
+TEST(Teapot, IsOpenOnlyAtItsSixRims) {
+    // In 10 × 10 pieces a patch: the rim and the lid's edge, four quarters each, and both ends of handle and
+    // spout, two halves each.
+    EXPECT_EQ(open_edges(teapot<double>(6320)), 10u * (2 * 4 + 4 * 2));
+}
+
+TEST(Teapot, FacesOutward) {
+    const auto mesh = teapot<double>(6320);
+    for (const auto& t : mesh.triangles) {
+        const auto tri = triangle(mesh, t);
+        const Vec3d center = (tri.a + tri.b + tri.c) / 3.0;
+        // The belly of the body, where neither spout nor handle is.
+        if (std::abs(center[0]) < 1.2 && center[2] > 0.5 && center[2] < 2.2) {
+            EXPECT_GT(dot(tri.normal(), Vec3d(center[0], center[1], 0)), 0);
+        }
+        if (center[2] < 0.05) {
+            EXPECT_LT(tri.normal()[2], 0);
+        }
+    }
+}
+
+TEST(Stadium, IsHugeAroundASmallTeapot) {
+    const auto mesh = teapot_in_stadium<double>(54'056);
+    EXPECT_EQ(mesh.size(), 47'736u + 6'320u);
+    const Box3d box = bounds(mesh);
+    EXPECT_GT(box.extent()[0], 300 * 6.4345);
+    EXPECT_EQ(box.low[2], 0);
+    EXPECT_EQ(box.low[0], -box.high[0]);
+    EXPECT_EQ(box.low[1], -box.high[1]);
+    // The bowl's foot, 216 segments, and the teapot's rims.
+    EXPECT_EQ(open_edges(mesh), 216u + 160u);
+}
+
+TEST(Stadium, HasSeatsThatFaceTheFieldAndTheSky) {
+    const auto mesh = teapot_in_stadium<double>(54'056);
+    for (std::size_t i = 0; i < 47'736; ++i) {
+        const auto tri = triangle(mesh, mesh.triangles[i]);
+        const Vec3d n = tri.normal();
+        const bool outer_wall = i >= 47'736 - 2 * 216;
+        EXPECT_GE(n[2], 0);
+        if (n[2] == 0) {
+            EXPECT_EQ(dot(n, Vec3d(tri.a[0], tri.a[1], 0)) > 0, outer_wall);
+        }
+    }
+}
+
+TEST(Cube, IsClosed) {
+    for (const unsigned size : {12u, 100u, 1000u}) {
+        const auto mesh = cube<double>(size);
+        EXPECT_EQ(open_edges(mesh), 0u) << size;
+        EXPECT_NEAR(signed_volume(mesh), 8, 1e-12);
+        EXPECT_EQ(bounds(mesh), (Box3d{{-1, -1, -1}, {1, 1, 1}}));
+        EXPECT_EQ(mesh.vertices.size(), mesh.size() / 2 + 2);  // Euler
+    }
+    EXPECT_EQ(cube<double>(12).size(), 12u);
+}
+
+TEST(CornellBox, IsOpenOnlyToTheFrontAndTheFloor) {
+    const auto mesh = cornell_box<double>(32);
+    EXPECT_EQ(mesh.size(), 32u);
+    // The room's front, the light's edge, the feet of two blocks.
+    EXPECT_EQ(open_edges(mesh), 4u * 4);
+    EXPECT_EQ(bounds(mesh), (Box3d{{0, 0, 0}, {556, 548.8, 559.2}}));
+    EXPECT_EQ(open_edges(cornell_box<double>(32 * 25)), 5u * 4 * 4);
+}
+
+TEST(CornellBox, FacesTheEye) {
+    const auto mesh = cornell_box<double>(32);
+    const Vec3d middle(278, 274, 280);
+    for (std::size_t i = 0; i < 12; ++i) {
+        const auto tri = triangle(mesh, mesh.triangles[i]);
+        EXPECT_GT(dot(tri.normal(), middle - tri.a), 0) << i;
+    }
+    for (const std::size_t first : {std::size_t{12}, std::size_t{22}}) {
+        Vec3d center;
+        for (std::size_t i = first; i < first + 10; ++i)
+            center = center + triangle(mesh, mesh.triangles[i]).a / 10.0;
+        for (std::size_t i = first; i < first + 10; ++i) {
+            const auto tri = triangle(mesh, mesh.triangles[i]);
+            EXPECT_LT(dot(tri.normal(), center - tri.a), 0) << i;
+        }
+    }
+}
+
+TEST(Terrain, IsOneSheetThatLooksUp) {
+    const auto mesh = terrain<double>(2000);
+    EXPECT_EQ(open_edges(mesh), 4u * 32 - 2);  // 31 × 32 pieces
+    for (const auto& t : mesh.triangles) EXPECT_GT(triangle(mesh, t).normal()[2], 0);
+    EXPECT_GT(bounds(mesh).extent()[2], 0.05);
+    EXPECT_LT(bounds(mesh).high[2], 0.25);
+}
+
+TEST(SceneSpec, IsRead) {
+    EXPECT_EQ(parse_scene_spec("gen:teapot").name, "teapot");
+    EXPECT_FALSE(parse_scene_spec("gen:teapot").size.has_value());
+    EXPECT_EQ(parse_scene_spec("gen:terrain:500000").size, 500'000u);
+    EXPECT_EQ(parse_scene_spec("gen:terrain:100k").size, 100'000u);
+    EXPECT_EQ(parse_scene_spec("gen:soup:2M").size, 2'000'000u);
+    EXPECT_EQ(parse_scene_spec("gen:points:2147483648").size, largest_scene_size);
+}
+
+std::string complaint(std::string_view text) {
+    try {
+        parse_scene_spec(text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(SceneSpec, RefusesWhatItDoesNotKnow) {
+    EXPECT_NE(complaint("gen:terain").find("did you mean 'terrain'?"), std::string::npos);
+    for (const SceneInfo& info : scene_list())
+        EXPECT_NE(complaint("gen:xyzzy").find(info.name), std::string::npos);
+    for (const char* bad : {"", "teapot", "gen:", "gen::5", "gen:teapot:", "gen:teapot:x", "gen:teapot:-5",
+                            "gen:teapot:5:6", "gen:teapot:5kk", "gen:teapot:1e5", "gen:teapot: 5"})
+        EXPECT_NE(complaint(bad), "") << bad;
+    for (const char* large : {"gen:cube:2147483649", "gen:cube:3G", "gen:cube:99999999999999999999999",
+                              "gen:cube:18446744073709551615k"})
+        EXPECT_NE(complaint(large).find("too large"), std::string::npos) << large;
+    EXPECT_THROW(generate<float>({"terain", {}, 0}), InputError);
+    EXPECT_THROW(generate<float>({"cube", largest_scene_size + 1, 0}), InputError);
+    EXPECT_THROW(soup<float>(largest_scene_size), InputError);
+}
+
+}  // namespace
+}  // namespace hedgerow
