@@ -7,13 +7,13 @@
 
 namespace hedgerow {
 
-/// `wanted` is the order of the walk: nearest first, unless what order brings is to be shown.
-template <class Set, class Filter = KeepAll, Order wanted = Order::nearest>
+/// Every offer that counts shrinks the limit, so the walk soon passes over what lies behind.
+template <class Set, class Filter = KeepAll>
 class ClosestHit : public RayQuery<Set, Filter> {
 public:
     using Base = RayQuery<Set, Filter>;
     using Scalar = typename Base::Scalar;
-    static constexpr Order order = wanted;
+    static constexpr Order order = Order::nearest;
 
     template <class Index, class Ray>
     ClosestHit(const Index& index, const Ray& ray, const Filter& filter = {})

@@ -3,5 +3,6 @@
 
 #include <hedgerow/structures/brute_force.h>
 #include <hedgerow/structures/bvh/bvh.h>
+#include <hedgerow/structures/fold.h>
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/kdtree/kdtree.h>

@@ -33,7 +33,7 @@ enum class Culling : bool { off, on };
 /// Opens the nearest entered child first (if the query wants an order), keeps the others on a stack with
 /// where they are entered, and passes over those that a shrunken limit has put out of reach. A leaf is tested
 /// at once. Allocates nothing: the stack holds (width − 1) entries a level.
-template <Culling culling = Culling::on, VolumeTree S, class Primitives, Query Q, class Count>
+template <Order order, Culling culling, VolumeTree S, class Primitives, Query Q, class Count>
 void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& count) {
     using T = typename Q::Probe::Scalar;
     struct Entry {
@@ -63,7 +63,7 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
             for (int i = 0; i < S::width; ++i) {
                 if (!(entered >> i & 1u)) continue;
                 int place = top++;
-                if constexpr (Q::order == Order::nearest)
+                if constexpr (order == Order::nearest)
                     for (; place > first && stack[place - 1].at < at[i]; --place)
                         stack[place] = stack[place - 1];
                 stack[place] = {tree.child(node, i), at[i]};
@@ -75,6 +75,10 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
         } while (culling == Culling::on && !(stack[top].at <= query.limit()));
         node = stack[top].node;
     }
+}
+template <VolumeTree S, class Primitives, Query Q, class Count>
+void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& count) {
+    walk_volumes<Q::order, Culling::on>(tree, primitives, query, count);
 }
 
 }  // namespace hedgerow

@@ -19,8 +19,9 @@ class Bvh {
 public:
     struct Options : SahOptions {
         BvhBuilder builder = BvhBuilder::binned;
-        /// Only to show what it brings: pass over what a shrunken limit has put out of reach.
-        bool culling = true;
+        /// Only to show what they bring: visit the nearer child first; pass over what a shrunken limit has
+        /// put out of reach.
+        bool ordered = true, culling = true;
     };
     struct Node {
         BoxPair<T, D> boxes;
@@ -69,10 +70,14 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (query.limit() < 0) return;
-        if (options_.culling) [[likely]]
-            walk_volumes<Culling::on>(*this, primitives, query, count);
+        if (options_.ordered && options_.culling) [[likely]]
+            walk_volumes(*this, primitives, query, count);
+        else if (options_.ordered)
+            walk_volumes<Q::order, Culling::off>(*this, primitives, query, count);
+        else if (options_.culling)
+            walk_volumes<Order::none, Culling::on>(*this, primitives, query, count);
         else
-            walk_volumes<Culling::off>(*this, primitives, query, count);
+            walk_volumes<Order::none, Culling::off>(*this, primitives, query, count);
     }
 
     /// Expected cost of a random line that meets the root's box, by the SAH.

@@ -1,0 +1,49 @@
+/// Values by node, gathered from the leaves up: counts, boxes, moments. What a query's `accept` looks at.
+#pragma once
+
+#include <vector>
+
+#include <hedgerow/structures/walk_planes.h>
+#include <hedgerow/structures/walk_volumes.h>
+
+namespace hedgerow {
+
+namespace detail {
+template <VolumeTree S, class V, class OfLeaf, class Combine>
+V fold_from(const S& tree, NodeRef node, NodeId id, std::vector<V>& values, OfLeaf& of_leaf,
+            Combine& combine) {
+    V value{};
+    if (node.leaf()) {
+        value = of_leaf(tree.leaf(node));
+    } else {
+        for (int i = 0; i < S::width; ++i)
+            if (const NodeRef child = tree.child(node, i); !child.empty())
+                value =
+                    combine(value, fold_from(tree, child, S::child_id(node, i), values, of_leaf, combine));
+    }
+    return values[id] = value;
+}
+template <PlaneTree S, class V, class OfLeaf, class Combine>
+V fold_from(const S& tree, NodeId node, std::vector<V>& values, OfLeaf& of_leaf, Combine& combine) {
+    if (tree.is_leaf(node)) return values[node] = of_leaf(tree.leaf(node));
+    const V low = fold_from(tree, tree.low_child(node), values, of_leaf, combine);
+    const V high = fold_from(tree, tree.high_child(node), values, of_leaf, combine);
+    return values[node] = combine(low, high);
+}
+}  // namespace detail
+
+/// values[node] = of_leaf(leaf), or `combine` over the children, starting from V{}. In a tree that holds a
+/// primitive in several leaves `combine` sees it as often. O(n), recursion no deeper than the tree.
+template <class S, class OfLeaf, class Combine>
+auto fold(const S& tree, OfLeaf of_leaf, Combine combine) {
+    using V = decltype(of_leaf(Leaf{}));
+    std::vector<V> values(tree.node_count());
+    if constexpr (VolumeTree<S>) {
+        if (!tree.root().empty()) detail::fold_from(tree, tree.root(), 0, values, of_leaf, combine);
+    } else {
+        if (!tree.empty()) detail::fold_from(tree, NodeId(0), values, of_leaf, combine);
+    }
+    return values;
+}
+
+}  // namespace hedgerow

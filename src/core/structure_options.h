@@ -1,0 +1,121 @@
+/// Reads a structure's options from text: "builder=sweep,max_leaf_size=4".
+#pragma once
+
+#include <charconv>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/error.h>
+#include <hedgerow/spelling.h>
+#include <hedgerow/structures/all.h>
+
+namespace hedgerow::detail {
+
+inline std::string choices(const std::vector<std::string_view>& all) {
+    std::string text;
+    for (const auto s : all) text += (text.empty() ? "" : ", ") + std::string(s);
+    return text;
+}
+
+/// The options of one structure, as pairs; each is taken once by its reader, and what is left over is
+/// unknown.
+class OptionReader {
+public:
+    OptionReader(std::string_view structure, std::string_view text) : structure_(structure) {
+        while (!text.empty()) {
+            const auto comma = text.find(',');
+            const std::string_view pair = text.substr(0, comma);
+            text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
+            const auto equals = pair.find('=');
+            if (equals == std::string_view::npos)
+                throw InputError("structure '" + structure_ + "': option '" + std::string(pair) +
+                                 "' lacks its '=value'");
+            given_[std::string(pair.substr(0, equals))] = std::string(pair.substr(equals + 1));
+        }
+    }
+
+    template <class T>
+    void number(const char* name, T& value, T least, T most) {
+        const auto text = take(name);
+        if (text.empty()) return;
+        T read{};
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
+        if (error != std::errc() || end != text.data() + text.size() || !(read >= least && read <= most))
+            fail(name, text, "a number from " + std::to_string(least) + " to " + std::to_string(most));
+        value = read;
+    }
+    template <class E>
+    void choice(const char* name, E& value, const std::vector<std::pair<std::string_view, E>>& all) {
+        const auto text = take(name);
+        if (text.empty()) return;
+        std::vector<std::string_view> names;
+        for (const auto& [known, meant] : all) {
+            names.push_back(known);
+            if (known == text) return void(value = meant);
+        }
+        fail(name, text, "one of " + choices(names) + suggestion(text, names));
+    }
+    void flag(const char* name, bool& value) { choice<bool>(name, value, {{"on", true}, {"off", false}}); }
+
+    void finish() const {
+        for (const auto& [name, value] : given_)
+            throw InputError("structure '" + structure_ + "' has no option '" + name + "'" +
+                             suggestion(name, known_) +
+                             (known_.empty() ? "" : "; it has " + choices(known_)));
+    }
+
+private:
+    std::string take(const char* name) {
+        known_.push_back(name);
+        const auto found = given_.find(name);
+        if (found == given_.end()) return {};
+        std::string value = found->second;
+        given_.erase(found);
+        if (value.empty()) fail(name, value, "a value");
+        return value;
+    }
+    [[noreturn]] void fail(const char* name, const std::string& text, const std::string& wanted) const {
+        throw InputError("structure '" + structure_ + "': " + name + "=" + text + " is not " + wanted);
+    }
+
+    std::string structure_;
+    std::map<std::string, std::string> given_;
+    std::vector<std::string_view> known_;
+};
+
+template <class T, int D>
+void read_options(OptionReader& in, typename BruteForce<T, D>::Options& o,
+                  std::type_identity<BruteForce<T, D>>) {
+    in.flag("box", o.box);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename KdTree<T, D>::Options& o, std::type_identity<KdTree<T, D>>) {
+    in.number<std::uint32_t>("leaf_size", o.leaf_size, 1, 1u << 20);
+    in.number("max_depth", o.max_depth, 0, KdTree<T, D>::max_depth);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename Grid<T, D>::Options& o, std::type_identity<Grid<T, D>>) {
+    in.number("density", o.density, 1e-9, 1e3);
+    in.number("resolution", o.resolution, 0, 1024);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_identity<Bvh<T, D>>) {
+    in.choice<BvhBuilder>("builder", o.builder,
+                          {{"binned", BvhBuilder::binned},
+                           {"sweep", BvhBuilder::sweep},
+                           {"equal-counts", BvhBuilder::equal_counts},
+                           {"midpoint", BvhBuilder::midpoint}});
+    in.number("bins", o.bins, 2, BinnedSplitter<T, D>::max_bins);
+    in.number("traversal_cost", o.traversal_cost, 0.0, 1e6);
+    in.number("intersection_cost", o.intersection_cost, 1e-6, 1e6);
+    in.number<std::uint32_t>("max_leaf_size", o.max_leaf_size, 1, 1u << 20);
+    in.flag("culling", o.culling);
+    in.flag("ordered", o.ordered);
+}
+
+}  // namespace hedgerow::detail
