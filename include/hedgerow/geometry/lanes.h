@@ -20,6 +20,7 @@ struct Lanes {
     T lane[4];
 
     static Lanes all(T x) { return {{x, x, x, x}}; }
+    static Lanes halves(T low, T high) { return {{low, low, high, high}}; }
     static Lanes load(const T* p) { return {{p[0], p[1], p[2], p[3]}}; }
     /// (p[0], p[1], q[0], q[1])
     static Lanes load_pairs(const T* p, const T* q) { return {{p[0], p[1], q[0], q[1]}}; }
@@ -77,6 +78,9 @@ struct Lanes<float> {
     __m128 v;
 
     static Lanes all(float x) { return {_mm_set1_ps(x)}; }
+    static Lanes halves(float low, float high) {
+        return {_mm_shuffle_ps(_mm_set_ss(low), _mm_set_ss(high), 0)};
+    }
     static Lanes load(const float* p) { return {_mm_loadu_ps(p)}; }
     static Lanes load_pairs(const float* p, const float* q) {
         double low, high;  // two floats each, moved as eight bytes
@@ -110,6 +114,7 @@ struct Lanes<float> {
     float32x4_t v;
 
     static Lanes all(float x) { return {vdupq_n_f32(x)}; }
+    static Lanes halves(float low, float high) { return {vcombine_f32(vdup_n_f32(low), vdup_n_f32(high))}; }
     static Lanes load(const float* p) { return {vld1q_f32(p)}; }
     static Lanes load_pairs(const float* p, const float* q) {
         return {vcombine_f32(vld1_f32(p), vld1_f32(q))};

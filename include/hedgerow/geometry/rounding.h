@@ -18,8 +18,9 @@
 
 namespace hedgerow {
 
-/// Returns x as it is, but hides from the optimiser that it came from a product, so that no multiply-add can be
-/// formed with it. Free: it emits no instruction. (g++ contracts across statements and ignores the pragma.)
+/// Returns x as it is, but hides from the optimiser that it came from a product, so that no multiply-add can
+/// be formed with it. Free: it emits no instruction. (g++ contracts across statements and ignores the
+/// pragma.)
 template <std::floating_point T>
 constexpr T rounded(T x) {
     if (!std::is_constant_evaluated()) {
@@ -83,8 +84,12 @@ constexpr T difference_of_products(T a, T b, T c, T d) {
 namespace detail {
 #if defined(__SSE2__)
 using FloatControl = unsigned;
-inline FloatControl float_control() { return _mm_getcsr(); }
-inline void set_float_control(FloatControl c) { _mm_setcsr(c); }
+inline FloatControl float_control() {
+    return _mm_getcsr();
+}
+inline void set_float_control(FloatControl c) {
+    _mm_setcsr(c);
+}
 inline constexpr FloatControl not_ieee = 0xE040;  // flush to zero, denormals are zero, rounding mode
 #elif defined(__aarch64__)
 using FloatControl = unsigned long;
@@ -93,11 +98,15 @@ inline FloatControl float_control() {
     asm volatile("mrs %0, fpcr" : "=r"(c));
     return c;
 }
-inline void set_float_control(FloatControl c) { asm volatile("msr fpcr, %0" ::"r"(c)); }
+inline void set_float_control(FloatControl c) {
+    asm volatile("msr fpcr, %0" ::"r"(c));
+}
 inline constexpr FloatControl not_ieee = 0x3C00000ul;  // rounding mode, flush to zero, default NaN
 #else
 using FloatControl = unsigned;
-inline FloatControl float_control() { return 0; }
+inline FloatControl float_control() {
+    return 0;
+}
 inline void set_float_control(FloatControl) {}
 inline constexpr FloatControl not_ieee = 0;
 #endif
@@ -113,7 +122,8 @@ template <class F>
 }
 }  // namespace detail
 
-/// Calls f with round-to-nearest and subnormals on, whatever the caller's thread has set, and restores it after.
+/// Calls f with round-to-nearest and subnormals on, whatever the caller's thread has set, and restores it
+/// after.
 template <class F>
 decltype(auto) in_ieee_mode(F&& f) {
     const auto saved = detail::float_control();

@@ -7,8 +7,9 @@
 
 namespace hedgerow {
 
-/// Given to long work (loading, building, rendering). `report(done, total)` may be called from any thread, with
-/// `total` 0 while it is unknown. Work looks at `cancelled()` now and then and ends early with what it has.
+/// Given to long work (loading, building, rendering). `report(done, total)` may be called from any thread,
+/// with `total` 0 while it is unknown. Work looks at `cancelled()` now and then and ends early with what it
+/// has.
 struct Progress {
     std::function<void(std::uint64_t done, std::uint64_t total)> report;
     const std::atomic<bool>* cancel = nullptr;

@@ -47,6 +47,8 @@ public:
             near_row_[i] = down ? 2 : 0;
             near_origin_[i] = down ? o - e : o + e;
             far_origin_[i] = down ? o + e : o - e;
+            pair_origin_[i] = Lanes<T>::halves(near_origin_[i], far_origin_[i]);
+            pair_inverse_[i] = Lanes<T>::halves(inverse_[i], -inverse_[i]);
         }
         if constexpr (D == 3) watertight_ = WatertightRay<T>(ray_.origin, ray_.direction);
     }
@@ -80,13 +82,11 @@ public:
     /// serves both. `at` has room for four.
     unsigned enter(const BoxPair<T, D>& pair, T limit, T* at) const {
         using L = Lanes<T>;
-        L t = L::load_pairs(bounds_of(ray_.t_min), bounds_of(-limit));
+        L t = L::halves(ray_.t_min, -limit);
         for (int i = 0; i < D; ++i) {
             const T* row = pair.plane[i];
             const L planes = L::load_pairs(row + near_row_[i], row + (2 - near_row_[i]));
-            const L origin = L::load_pairs(bounds_of(near_origin_[i]), bounds_of(far_origin_[i]));
-            const L inverse = L::load_pairs(bounds_of(inverse_[i]), bounds_of(-inverse_[i]));
-            t = max((planes - origin) * inverse, t);
+            t = max((planes - pair_origin_[i]) * pair_inverse_[i], t);
         }
         t.store(at);
         return less_equal(t + t.halves_swapped(), L::all(T(0))) & 3u;
@@ -165,12 +165,6 @@ public:
     }
 
 private:
-    struct Twice {
-        T value[2];
-        operator const T*() const { return value; }
-    };
-    static Twice bounds_of(T x) { return {{x, x}}; }
-
     /// −0 and subnormal components become +0; says whether anything can be hit.
     static bool clean(Ray<T, D>& ray) {
         bool any = false;
@@ -198,6 +192,7 @@ private:
 
     Ray<T, D> ray_;
     Vec<T, D> inverse_, near_origin_, far_origin_;
+    Lanes<T> pair_origin_[D], pair_inverse_[D];  // the same, near planes in the low half
     int near_row_[D] = {};
     T slack_ = T(0);
     bool usable_ = false;

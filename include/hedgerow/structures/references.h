@@ -16,8 +16,12 @@ namespace hedgerow {
 /// A box that only grows, in lanes.
 template <std::floating_point T>
 struct LaneBox {
-    Lanes<T> low = Lanes<T>::all(std::numeric_limits<T>::infinity());
-    Lanes<T> high = Lanes<T>::all(-std::numeric_limits<T>::infinity());
+    Lanes<T> low, high;
+
+    static LaneBox none() {
+        constexpr T infinity = std::numeric_limits<T>::infinity();
+        return {Lanes<T>::all(infinity), Lanes<T>::all(-infinity)};
+    }
 
     void expand(const LaneBox& b) { low = min(low, b.low), high = max(high, b.high); }
     void expand(Lanes<T> p) { low = min(low, p), high = max(high, p); }

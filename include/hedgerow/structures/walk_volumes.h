@@ -37,9 +37,10 @@ template <Order order, Culling culling, VolumeTree S, class Primitives, Query Q,
 void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& count) {
     using T = typename Q::Probe::Scalar;
     struct Entry {
-        NodeRef node;
+        std::uint32_t first, count;  // of a NodeRef; bare, so that the stack is not cleared for every ray
         T at;
     };
+    const auto kept = [](NodeRef child, T at) { return Entry{child.first, child.count, at}; };
     Entry stack[S::max_depth * (S::width - 1) + 1];
     int top = 0;
     NodeRef node = tree.root();
@@ -59,6 +60,31 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
                 for (int i = 0; i < S::width; ++i)
                     if ((entered >> i & 1u) && query.accept(S::child_id(node, i)) != Verdict::open)
                         entered &= ~(1u << i);
+            if constexpr (S::width == 2) {
+                // Branches, not selections: a guessed branch lets the next node's box test begin before this
+                // one's is done, where a computed address would have to wait for it.
+                const NodeRef left = tree.child(node, 0), right = tree.child(node, 1);
+                if (entered == 3) {
+                    if (order == Order::nearest && at[1] < at[0]) [[unlikely]] {
+                        tree.prefetch(left);
+                        stack[top++] = kept(left, at[0]);
+                        node = right;
+                    } else {
+                        tree.prefetch(right);
+                        stack[top++] = kept(right, at[1]);
+                        node = left;
+                    }
+                    continue;
+                }
+                if (entered == 1) {
+                    node = left;
+                    continue;
+                }
+                if (entered == 2) {
+                    node = right;
+                    continue;
+                }
+            }
             const int first = top;
             for (int i = 0; i < S::width; ++i) {
                 if (!(entered >> i & 1u)) continue;
@@ -66,14 +92,14 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
                 if constexpr (order == Order::nearest)
                     for (; place > first && stack[place - 1].at < at[i]; --place)
                         stack[place] = stack[place - 1];
-                stack[place] = {tree.child(node, i), at[i]};
+                stack[place] = kept(tree.child(node, i), at[i]);
             }
         }
         do {
             if (top == 0) return;
             --top;
         } while (culling == Culling::on && !(stack[top].at <= query.limit()));
-        node = stack[top].node;
+        node = {stack[top].first, stack[top].count};
     }
 }
 template <VolumeTree S, class Primitives, Query Q, class Count>

@@ -23,7 +23,7 @@ public:
         /// put out of reach.
         bool ordered = true, culling = true;
     };
-    struct Node {
+    struct alignas(D == 3 && sizeof(T) == 4 ? 64 : 16) Node {  // a cache line, where it fits
         BoxPair<T, D> boxes;
         NodeRef child[2];
     };
@@ -65,6 +65,10 @@ public:
     const BoxPair<T, D>& volumes(NodeRef r) const { return nodes_[r.first].boxes; }
     NodeRef child(NodeRef r, int i) const { return nodes_[r.first].child[i]; }
     Leaf leaf(NodeRef r) const { return {items_.data(), r.first, r.count}; }
+    /// The far child is most often opened soon: its cache miss may pass while the near one is walked.
+    void prefetch(NodeRef r) const {
+        if (!r.leaf()) __builtin_prefetch(nodes_.data() + r.first);
+    }
     static NodeId child_id(NodeRef parent, int i) { return 2 * parent.first + 1 + static_cast<NodeId>(i); }
 
     template <class Primitives, Query Q, class Count>

@@ -32,7 +32,14 @@ public:
 private:
     struct Bin {
         LaneBox<T> box;
-        std::uint32_t count = 0;
+        std::uint32_t count;
+
+        Bin() {}  // NOLINT: a node of few primitives shall not pay for bins that it does not use
+        static Bin none() {
+            Bin b;
+            b.box = LaneBox<T>::none(), b.count = 0;
+            return b;
+        }
     };
     struct Best {
         double cost = std::numeric_limits<double>::infinity();
@@ -69,6 +76,7 @@ private:
     /// The sum of area·count over both sides, at its least. Of equal costs the first axis and border.
     Best cheapest(const Range<T, D>& range, const Binning& binning) {
         Bin bins[D][max_bins];
+        for (auto& axis : bins) std::fill_n(axis, binning.count, Bin::none());
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             const auto& r = this->references_[i];
             const auto at = binning.bin(r);
@@ -84,14 +92,14 @@ private:
     }
     static void sweep(const Bin* bins, int count, std::uint32_t total, int axis, Best& best) {
         double right_cost[max_bins];
-        LaneBox<T> box;
+        auto box = LaneBox<T>::none();
         std::uint32_t right = 0;
         for (int b = count - 1; b > 0; --b) {
             box.expand(bins[b].box);
             right += bins[b].count;
             right_cost[b] = cost(box, right);
         }
-        box = {};
+        box = LaneBox<T>::none();
         std::uint32_t left = 0;
         for (int b = 1; b < count; ++b) {
             box.expand(bins[b - 1].box);

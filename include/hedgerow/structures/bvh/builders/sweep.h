@@ -66,12 +66,12 @@ public:
 private:
     void sweep(const Range<T, D>& range, int k, double& best, int& axis, std::uint32_t& border) {
         const auto& order = order_[k];
-        LaneBox<T> box;
+        auto box = LaneBox<T>::none();
         for (std::uint32_t i = range.last - 1; i > range.first; --i) {
             box.expand(references_[order[i]].lanes());
             right_cost_[i] = area(box) * (range.last - i);
         }
-        box = {};
+        box = LaneBox<T>::none();
         for (std::uint32_t i = range.first + 1; i < range.last; ++i) {
             box.expand(references_[order[i - 1]].lanes());
             const double c = area(box) * (i - range.first) + right_cost_[i];

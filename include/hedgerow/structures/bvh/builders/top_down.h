@@ -10,13 +10,13 @@ namespace hedgerow {
 /// A node to be split: its part of the references, its box, and the box of its centers (times 2).
 template <std::floating_point T, int D>
 struct Range {
-    std::uint32_t first, last;
-    LaneBox<T> box, centers2;
+    std::uint32_t first = 0, last = 0;
+    LaneBox<T> box = LaneBox<T>::none(), centers2 = LaneBox<T>::none();
 
     std::uint32_t size() const { return last - first; }
     template <class References>
     static Range over(const References& references, std::uint32_t first, std::uint32_t last) {
-        Range r{first, last, {}, {}};
+        Range r{first, last};
         for (std::uint32_t i = first; i < last; ++i) r.add(references[i]);
         return r;
     }
@@ -112,8 +112,8 @@ protected:
     /// Brings those that go left before the others; false if all are on one side.
     template <class GoesLeft>
     bool partition(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right, GoesLeft goes_left) {
-        left = {range.first, range.first, {}, {}};
-        right = {range.last, range.last, {}, {}};
+        left = {range.first, range.first};
+        right = {range.last, range.last};
         while (left.last < right.first) {
             Reference<T, D>& r = references_[left.last];
             if (goes_left(r)) {

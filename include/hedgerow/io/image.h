@@ -1,0 +1,43 @@
+/// 8-bit RGB images, and PNG files.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace hedgerow {
+
+/// Pixels in rows from the top, left to right; red, green, blue in sRGB.
+struct Image {
+    using Pixel = std::array<std::uint8_t, 3>;
+
+    int width = 0, height = 0;
+    std::vector<Pixel> pixels;
+
+    Image() = default;
+    /// All pixels of one colour. Sizes are > 0.
+    Image(int w, int h, const Pixel& colour = {})
+        : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), colour) {}
+
+    Pixel& at(int x, int y) { return pixels[index(x, y)]; }
+    const Pixel& at(int x, int y) const { return pixels[index(x, y)]; }
+
+    friend bool operator==(const Image&, const Image&) = default;
+
+private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+};
+
+/// Writes a PNG, by way of a file beside `path` that is then renamed. Throws InputError if the image has no
+/// pixels, or other than width × height, or the path cannot be written.
+void save_png(const std::filesystem::path& path, const Image& image);
+
+/// Reads any PNG: greys and palettes become RGB, 16 bits become 8, what is transparent lies on black. Throws
+/// InputError if the file is none, is damaged, or promises more pixels than its size can hold.
+Image load_png(const std::filesystem::path& path);
+
+}  // namespace hedgerow

@@ -1,0 +1,23 @@
+/// What all loaders share: their options, and how they end when they are cancelled.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace hedgerow {
+
+struct LoadOptions {
+    /// Leave out what has a coordinate that is NaN, infinite or beyond `largest_coordinate<T>`, instead of an
+    /// error. Of a mesh the faces go, whole, and such vertices; the faces that stay keep their ids (the
+    /// ordinals in the file), the vertices that stay are renumbered. Of a point cloud the points go; the rest
+    /// move up.
+    bool drop_bad = false;
+};
+
+/// Thrown by loaders once `Progress::cancelled()`: half a file is of no use to anyone.
+class Cancelled : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,49 @@
+/// Triangle meshes from and to files.
+#pragma once
+
+#include <filesystem>
+
+#include <hedgerow/io/load_options.h>
+#include <hedgerow/parallel/progress.h>
+#include <hedgerow/primitives/triangle_mesh.h>
+
+namespace hedgerow {
+
+/// Reads a mesh. The extension, in upper or lower case, says how:
+///
+/// - `.ply`, `.stl`, `.obj`, `.off`, each also with `.gz` behind it, in every variant (PLY ascii, little and
+/// big
+///   endian; STL ascii and binary). Numbers are rounded once, from what the file holds to T, so doubles are
+///   kept. Memory beyond the mesh itself is constant, and no count in a file's header is believed.
+/// - everything else that Assimp knows (glTF, GLB, 3DS, DAE, FBX, ...), the nodes' transforms applied and
+/// every
+///   instance written out. **Assimp rounds all coordinates to float**, whatever T is. It reads whole files
+///   into memory.
+///
+/// Faces with more than three corners become fans from their first corner. `faces` then holds each triangle's
+/// ordinal of the face in the file (from 0); it is empty if every face is a triangle. A face with fewer than
+/// three corners makes no triangle but is counted. STL has no shared vertices, and Assimp's formats split
+/// them for normals and textures: of both, corners at equal positions (−0 being 0) are joined, so closed
+/// surfaces are closed meshes. Normals, colours, textures and other properties are not read.
+///
+/// `progress` is told of the bytes of the file, about every 256 KiB (for Assimp: at the end). T is float or
+/// double. O(size of the file) time.
+///
+/// Throws InputError, naming the file, the place, what is wrong and what to do, for whatever is wrong with
+/// the file: see also validate.h for what every mesh is held against. Throws Cancelled if `progress` is
+/// cancelled.
+template <class T = float>
+TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& options = {},
+                          const Progress& progress = {});
+
+/// Writes a mesh as `.ply` (binary, little endian), `.stl` (binary; **float, whatever T is**), `.obj` or
+/// `.off` (the shortest decimals that read back to the same T). Triangles are written in their order; `faces`
+/// is not. The file is written under another name beside `path` and then renamed, so there never is half a
+/// file.
+///
+/// Throws InputError if the extension is none of these, the path cannot be written (the disk is full, say),
+/// or a triangle names a vertex that does not exist. T is float or double. O(vertices + triangles).
+template <class T>
+void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh);
+
+}  // namespace hedgerow
