@@ -34,7 +34,7 @@ public:
         : owner_(std::move(owner)),
           primitives_(std::move(primitives)),
           structure_(S::build(primitives_, options, executor)),
-          leaves_(pack(primitives_, structure_)) {}
+          leaves_(pack(primitives_, structure_, executor)) {}
 
     const S& structure() const { return structure_; }
     const P& primitives() const { return primitives_; }
@@ -63,14 +63,16 @@ public:
 private:
     struct Nothing {};
     static constexpr bool packs = S::exclusive && requires(const P& p) {
-        p.pack(std::span<const PrimitiveId>());
+        p.pack(std::span<const PrimitiveId>(), serial_executor());
     };
 
-    static auto pack(const P& primitives, const S& structure) {
-        if constexpr (packs)
-            return primitives.pack(structure.items());
-        else
+    static auto pack(const P& primitives, const S& structure, Executor& executor) {
+        if constexpr (packs) {
+            return primitives.pack(structure.items(), executor);
+        } else {
+            static_cast<void>(executor);
             return Nothing{};
+        }
     }
     /// What leaves are tested through for rays: the packed copy where there is one, else the view.
     struct Tested {
@@ -92,7 +94,8 @@ private:
     std::shared_ptr<const void> owner_;
     P primitives_;
     S structure_;
-    std::conditional_t<packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>())), Nothing>
+    std::conditional_t<
+        packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>(), serial_executor())), Nothing>
         leaves_;
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <hedgerow/geometry/shapes.h>
+#include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/packed_triangles.h>
 #include <hedgerow/primitives/strided.h>
@@ -58,9 +59,11 @@ public:
     }
 
     /// The triangles in the order of a structure's leaves: what makes a leaf one read.
-    PackedTriangles<T> pack(std::span<const PrimitiveId> order) const {
+    PackedTriangles<T> pack(std::span<const PrimitiveId> order, Executor& executor) const {
         PackedTriangles<T> packed(order.size());
-        for (std::size_t i = 0; i < order.size(); ++i) packed.set(i, triangle(order[i]), order[i]);
+        executor.for_each_piece(order.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) packed.set(i, triangle(order[i]), order[i]);
+        });
         return packed;
     }
 

@@ -25,6 +25,16 @@ struct LaneBox {
 
     void expand(const LaneBox& b) { low = min(low, b.low), high = max(high, b.high); }
     void expand(Lanes<T> p) { low = min(low, p), high = max(high, p); }
+    /// As Box::half_area, of a box that is not empty.
+    template <int D>
+    T half_area() const {
+        alignas(32) T e[4];
+        (high - low).store(e);
+        if constexpr (D == 2)
+            return e[0] + e[1];
+        else
+            return product(e[0] + e[1], e[2]) + product(e[0], e[1]);
+    }
     template <int D>
     Box<T, D> box() const {
         alignas(32) T l[4], h[4];

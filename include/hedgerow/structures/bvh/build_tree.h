@@ -1,23 +1,38 @@
 /// A BVH as builders make it: plain nodes with their boxes. What is walked is packed from it (bvh.h).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <hedgerow/structures/references.h>
 
 namespace hedgerow {
 
-/// Node k's children are `left` and `right`; a leaf (count > 0) holds items[first, first + count).
+/// A leaf (count > 0) holds items[first, first + count); an inner node has count 0 and two children. Bare,
+/// since a builder clears nothing that it does not use.
 template <std::floating_point T, int D>
 struct BuildNode {
-    Box<T, D> box;
-    std::uint32_t first = 0, count = 0;
-    std::uint32_t left = 0, right = 0;
+    struct Corners {
+        T low[D], high[D];
+    } corners;
+    std::uint32_t first, count;
+    std::uint32_t left, right;
+
+    void set(const Box<T, D>& b) {
+        for (int k = 0; k < D; ++k) corners.low[k] = b.low[k], corners.high[k] = b.high[k];
+    }
+    Box<T, D> box() const {
+        Box<T, D> b;
+        for (int k = 0; k < D; ++k) b.low[k] = corners.low[k], b.high[k] = corners.high[k];
+        return b;
+    }
 };
 
 template <std::floating_point T, int D>
 struct BuildTree {
-    std::vector<BuildNode<T, D>> nodes;  // node 0 is the root; there may be gaps
+    std::unique_ptr<BuildNode<T, D>[]>
+        nodes;  // node 0 is the root; none if there are no items; there may be gaps
+    std::uint32_t leaves = 0;
     std::vector<PrimitiveId> items;
 };
 

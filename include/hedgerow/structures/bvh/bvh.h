@@ -127,12 +127,10 @@ public:
     }
 
 private:
-    Bvh(const BuildTree<T, D>& tree, const Options& options) : options_(options), items_(tree.items) {
-        if (tree.nodes.empty()) return;
-        bounds_ = tree.nodes[0].box;
-        std::size_t inner = 0;
-        for (const auto& n : tree.nodes) inner += n.left != 0;
-        nodes_.reserve(inner);
+    Bvh(BuildTree<T, D> tree, const Options& options) : options_(options), items_(std::move(tree.items)) {
+        if (items_.empty()) return;
+        bounds_ = tree.nodes[0].box();
+        nodes_.reserve(tree.leaves - 1);
         root_ = pack(tree, 0, 1);
     }
     NodeRef pack(const BuildTree<T, D>& tree, std::uint32_t from, int depth) {
@@ -141,8 +139,8 @@ private:
         if (n.count > 0) return {n.first, n.count};
         const auto at = static_cast<std::uint32_t>(nodes_.size());
         nodes_.emplace_back();
-        nodes_[at].boxes.set(0, tree.nodes[n.left].box);
-        nodes_[at].boxes.set(1, tree.nodes[n.right].box);
+        nodes_[at].boxes.set(0, tree.nodes[n.left].box());
+        nodes_[at].boxes.set(1, tree.nodes[n.right].box());
         const NodeRef left = pack(tree, n.left, depth + 1);
         const NodeRef right = pack(tree, n.right, depth + 1);
         nodes_[at].child[0] = left;

@@ -18,15 +18,18 @@ public:
 
     bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
         const Binning binning(range, std::clamp(options_.bins, 2, max_bins));
-        const Best best = cheapest(range, binning);
+        Bins bins;
+        fill(bins, range, binning);
+        const Best best = cheapest(bins, binning.count, range.size());
         if (best.axis < 0) return false;  // all centers equal
-        const double area = static_cast<double>(range.box.template box<D>().half_area());
+        const double area = static_cast<double>(range.box.template half_area<D>());
         const double split_cost = options_.traversal_cost * area + options_.intersection_cost * best.cost;
         const double leaf_cost = options_.intersection_cost * range.size() * area;
         if (leaf_cost <= split_cost && range.size() <= options_.max_leaf_size) return false;
-        return this->partition(range, left, right, [&](const auto& r) {
-            return binning.bin(r)[static_cast<std::size_t>(best.axis)] < best.border;
-        });
+        this->partition(range, left, right, binning.before(best.axis, best.border));
+        for (int b = 0; b < binning.count; ++b)
+            (b < best.border ? left : right).box.expand(bins.of[best.axis][b].box);
+        return true;
     }
 
 private:
@@ -49,13 +52,15 @@ private:
     struct Binning {
         int count;
         Lanes<T> low, scale, last;
+        T low_of[4], scale_of[4] = {};  // the same, by axis
 
         Binning(const Range<T, D>& range, int most)
             : count(static_cast<int>(
                   std::min<std::uint32_t>(static_cast<std::uint32_t>(most), 4 + range.size() / 20))),
               low(range.centers2.low) {
             const Box<T, D> centers2 = range.centers2.template box<D>();
-            T s[4] = {};
+            auto& s = scale_of;
+            low.store(low_of);
             for (int k = 0; k < D; ++k) {
                 const T width = centers2.high[k] - centers2.low[k];
                 s[k] = width > 0 ? T(count) * T(0.999) / width : T(0);
@@ -63,6 +68,12 @@ private:
             }
             scale = Lanes<T>::load(s);
             last = Lanes<T>::all(T(count - 1));
+        }
+        /// Whether a reference lies in a bin before `border`. Comparing places is comparing bins: a border is
+        /// a whole number.
+        auto before(int axis, int border) const {
+            return [axis, low_at = low_of[axis], scale_at = scale_of[axis], end = static_cast<T>(border)](
+                       const auto& r) { return product(r.center2(axis) - low_at, scale_at) < end; };
         }
         std::array<int, 4> bin(const Reference<T, D>& r) const {
             T b[4];
@@ -73,21 +84,27 @@ private:
         }
     };
 
-    /// The sum of area·count over both sides, at its least. Of equal costs the first axis and border.
-    Best cheapest(const Range<T, D>& range, const Binning& binning) {
-        Bin bins[D][max_bins];
-        for (auto& axis : bins) std::fill_n(axis, binning.count, Bin::none());
+    struct Bins {
+        Bin of[D][max_bins];
+    };
+    void fill(Bins& bins, const Range<T, D>& range, const Binning& binning) {
+        for (auto& axis : bins.of) std::fill_n(axis, binning.count, Bin::none());
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             const auto& r = this->references_[i];
             const auto at = binning.bin(r);
+            const LaneBox<T> box = r.lanes();
             for (int k = 0; k < D; ++k) {
-                Bin& bin = bins[k][at[static_cast<std::size_t>(k)]];
-                bin.box.expand(r.lanes());
+                Bin& bin = bins.of[k][at[static_cast<std::size_t>(k)]];
+                bin.box.expand(box);
                 ++bin.count;
             }
         }
+    }
+
+    /// The sum of area·count over both sides, at its least. Of equal costs the first axis and border.
+    static Best cheapest(const Bins& bins, int count, std::uint32_t total) {
         Best best;
-        for (int k = 0; k < D; ++k) sweep(bins[k], binning.count, range.size(), k, best);
+        for (int k = 0; k < D; ++k) sweep(bins.of[k], count, total, k, best);
         return best;
     }
     static void sweep(const Bin* bins, int count, std::uint32_t total, int axis, Best& best) {
@@ -110,7 +127,7 @@ private:
         }
     }
     static double cost(const LaneBox<T>& box, std::uint32_t count) {
-        return static_cast<double>(box.template box<D>().half_area()) * count;
+        return count == 0 ? 0 : static_cast<double>(box.template half_area<D>()) * count;
     }
 
     SahOptions options_;

@@ -16,7 +16,11 @@ public:
         const Box<T, D> centers2 = range.centers2.template box<D>();
         const int axis = max_axis(centers2.extent());
         const T middle2 = centers2.center()[axis];
-        return this->partition(range, left, right, [&](const auto& r) { return r.center2(axis) < middle2; });
+        if (!this->partition(range, left, right, [&](const auto& r) { return r.center2(axis) < middle2; }))
+            return false;
+        left = Range<T, D>::over(this->references_, left.first, left.last);
+        right = Range<T, D>::over(this->references_, right.first, right.last);
+        return true;
     }
 
 private:

@@ -39,8 +39,8 @@ public:
     BuildTree<T, D> build() {
         const auto n = static_cast<std::uint32_t>(splitter_.references().size());
         if (n > 0) {
-            tree_.nodes.resize(2 * std::size_t(n) - 1);
-            grow(Range<T, D>::over(splitter_.references(), 0, n), 0, 1);
+            tree_.nodes = std::make_unique_for_overwrite<BuildNode<T, D>[]>(2 * std::size_t(n) - 1);
+            tree_.leaves = grow(Range<T, D>::over(splitter_.references(), 0, n), 0, 1);
         }
         tree_.items.reserve(n);
         for (const auto& r : splitter_.references()) tree_.items.push_back(r.id());
@@ -48,24 +48,28 @@ public:
     }
 
 private:
-    void grow(const Range<T, D>& range, std::uint32_t at, int depth) {
+    /// Returns how many leaves there are below.
+    std::uint32_t grow(const Range<T, D>& range, std::uint32_t at, int depth) {
         BuildNode<T, D>& node = tree_.nodes[at];
-        node.box = range.box.template box<D>();
+        node.set(range.box.template box<D>());
+        node.count = 0;
         Range<T, D> left, right;
         if (!divide(range, depth, left, right)) {
             node.first = range.first, node.count = range.size();
-            return;
+            return 1;
         }
         node.left = at + 1;
         node.right = at + 2 * left.size();
-        const auto grow_left = [&] { grow(left, node.left, depth + 1); };
-        const auto grow_right = [&] { grow(right, node.right, depth + 1); };
+        std::uint32_t on_left = 0, on_right = 0;
+        const auto grow_left = [&] { on_left = grow(left, node.left, depth + 1); };
+        const auto grow_right = [&] { on_right = grow(right, node.right, depth + 1); };
         if (range.size() > 4096) {
             executor_.both(grow_left, grow_right);
         } else {
             grow_left();
             grow_right();
         }
+        return on_left + on_right;
     }
 
     bool divide(const Range<T, D>& range, int depth, Range<T, D>& left, Range<T, D>& right) {
@@ -109,22 +113,20 @@ public:
     }
 
 protected:
-    /// Brings those that go left before the others; false if all are on one side.
+    /// Brings those that go left before the others and gathers both sides' centers, but not their boxes.
+    /// False if all are on one side.
     template <class GoesLeft>
     bool partition(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right, GoesLeft goes_left) {
         left = {range.first, range.first};
         right = {range.last, range.last};
-        while (left.last < right.first) {
-            Reference<T, D>& r = references_[left.last];
-            if (goes_left(r)) {
-                left.add(r);
-                ++left.last;
-            } else {
-                right.add(r);
-                std::swap(r, references_[--right.first]);
-            }
+        while (true) {
+            while (left.last < right.first && goes_left(references_[left.last]))
+                left.centers2.expand(references_[left.last++].center2());
+            while (left.last < right.first && !goes_left(references_[right.first - 1]))
+                right.centers2.expand(references_[--right.first].center2());
+            if (left.last == right.first) return left.size() > 0 && right.size() > 0;
+            std::swap(references_[left.last], references_[right.first - 1]);
         }
-        return left.size() > 0 && right.size() > 0;
     }
 
     std::vector<Reference<T, D>> references_;
