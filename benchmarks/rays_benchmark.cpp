@@ -8,100 +8,16 @@
 #include <string>
 #include <vector>
 
-#include <hedgerow/any_index.h>
-#include <hedgerow/io/mesh_file.h>
-#include <hedgerow/scenes/generate.h>
-#include <hedgerow/scenes/random.h>
+#include "ray_sets.h"
 
 #ifdef HEDGEROW_HAS_EMBREE
 #include <embree3/rtcore.h>
 #endif
 
 using namespace hedgerow;
+using namespace hedgerow::benchmark;
 
 namespace {
-
-double seconds() {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-double median(std::vector<double> all) {
-    std::sort(all.begin(), all.end());
-    return all[all.size() / 2];
-}
-
-TriangleMesh<float> scene(const std::string& name) {
-    if (name.starts_with("gen:"))
-        return std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec(name)));
-    return load_mesh<float>(name);
-}
-
-/// The processor's name, for the reader of the figures.
-std::string processor() {
-    std::string name = "unknown processor";
-    if (FILE* f = std::fopen("/proc/cpuinfo", "r")) {
-        char line[256];
-        while (std::fgets(line, sizeof line, f))
-            if (std::string(line).starts_with("model name"))
-                name = std::string(line).substr(std::string(line).find(':') + 2);
-        std::fclose(f);
-    }
-    while (!name.empty() && name.back() == '\n') name.pop_back();
-    return name;
-}
-
-/// A pinhole view of the scene from the side, in 16×16 tiles.
-std::vector<Ray3f> primary_rays(const Box3f& box, int size) {
-    const Vec3f center = box.center();
-    const float diagonal = length(box.extent());
-    const Vec3f eye = center + Vec3f(0.3f, 0.5f, 1.f) * (0.85f * diagonal);
-    const Vec3f forward = normalized(center - eye);
-    const Vec3f right = normalized(cross(forward, Vec3f(0, 1, 0)));
-    const Vec3f up = cross(right, forward);
-    std::vector<Ray3f> rays;
-    for (int ty = 0; ty < size; ty += 16)
-        for (int tx = 0; tx < size; tx += 16)
-            for (int y = ty; y < ty + 16; ++y)
-                for (int x = tx; x < tx + 16; ++x) {
-                    const float u = (float(x) + 0.5f) / float(size) - 0.5f,
-                                v = 0.5f - (float(y) + 0.5f) / float(size);
-                    rays.push_back({eye, normalized(forward + right * u + up * v)});
-                }
-    return rays;
-}
-
-/// From the primary hits: cosine-distributed about the normal.
-std::vector<Ray3f> diffuse_rays(const TriangleMesh<float>& mesh, const std::vector<Ray3f>& rays,
-                                const std::vector<Hit<float>>& hits) {
-    std::vector<Ray3f> result;
-    const auto view = mesh.view();
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (!hits[i]) continue;
-        Vec3f n = normalized(view.normal(hits[i].element));
-        if (dot(n, rays[i].direction) > 0) n = -n;
-        const Vec3f p = rays[i].at(hits[i].t);
-        Random random(7, i);
-        const Vec3f d(random.direction<3>());
-        result.push_back({offset_origin(p, n, n, hits[i].t), normalized(n + d * 0.999f)});
-    }
-    return result;
-}
-
-std::vector<Ray3f> random_rays(const Box3f& box, std::size_t n) {
-    std::vector<Ray3f> rays;
-    for (std::size_t i = 0; i < n; ++i) {
-        Random random(11, i);
-        const auto at = [&] {
-            Vec3f p;
-            for (int k = 0; k < 3; ++k)
-                p[k] = box.low[k] + float(random.uniform()) * (box.high[k] - box.low[k]);
-            return p;
-        };
-        const Vec3f a = at();
-        rays.push_back({a, at() - a});
-    }
-    return rays;
-}
 
 #ifdef HEDGEROW_HAS_EMBREE
 /// Embree, robust or not, its single-ray call.
@@ -215,13 +131,7 @@ void traces(const TriangleMesh<float>& mesh) {
     std::printf("  %.1f bytes a triangle, depth %d, SAH cost %.1f\n",
                 double(index.bytes()) / double(mesh.size()), index.structure().depth(),
                 index.structure().sah_cost());
-    const auto primary = primary_rays(index.bounds(), 1024);
-    std::vector<Hit<float>> hits(primary.size());
-    closest_hits(index, std::span<const Ray3f>(primary), std::span<Hit<float>>(hits));
-    const std::vector<std::pair<const char*, std::vector<Ray3f>>> sets = {
-        {"primary", primary},
-        {"diffuse", diffuse_rays(mesh, primary, hits)},
-        {"random", random_rays(index.bounds(), 1 << 19)}};
+    const auto sets = ray_sets(mesh, index.bounds(), 1024, 1 << 19);
 #ifdef HEDGEROW_HAS_EMBREE
     const Embree embree(mesh, false, 1, RTC_BUILD_QUALITY_MEDIUM),
         robust(mesh, true, 1, RTC_BUILD_QUALITY_MEDIUM);
@@ -242,7 +152,7 @@ void traces(const TriangleMesh<float>& mesh) {
 #endif
         const auto rate = rates(rays, contenders);
         const double n = double(rays.size());
-        std::printf("  %-8s %9.2f %8.2f %8.2f %8.2f", name, rate[0], double(v.nodes) / n,
+        std::printf("  %-8s %9.2f %8.2f %8.2f %8.2f", name.c_str(), rate[0], double(v.nodes) / n,
                     double(v.leaves) / n, double(v.primitives) / n);
         for (std::size_t c = 1; c < rate.size(); ++c)
             std::printf("   %9.2f (%.2f)", rate[c], rate[0] / rate[c]);

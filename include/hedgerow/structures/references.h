@@ -51,7 +51,7 @@ template <std::floating_point T, int D>
 struct Reference {
     using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 
-    alignas(4 * sizeof(T)) T low[4] = {};
+    alignas(16) T low[4] = {};
     T high[4] = {};
 
     Reference() = default;

@@ -1,0 +1,98 @@
+/// What order, culling and the SAH bring: visits and time a ray of each variant, side by side, and the SAH's
+/// prediction beside what is counted.
+///
+///   traversal_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:200000
+#include "ray_sets.h"
+
+using namespace hedgerow;
+using namespace hedgerow::benchmark;
+
+namespace {
+
+constexpr int repeats = 3;
+
+void variant(const char* spec, const TriangleMesh<float>& mesh, const RaySet& set) {
+    const auto index = build_any(spec, mesh);
+    std::vector<Hit<float>> hits(set.rays.size());
+    std::vector<Visits> visits(set.rays.size());
+    index->closest_hits(set.rays, hits, visits);
+    Visits all;
+    for (const auto& v : visits) all += v;
+    std::vector<double> times;
+    for (int r = 0; r < repeats; ++r) {
+        const double start = seconds();
+        index->closest_hits(set.rays, hits);
+        times.push_back(seconds() - start);
+    }
+    const double n = double(set.rays.size());
+    std::printf("| %-28s | %-8s | %8.2f | %8.2f | %8.2f | %9.0f |\n", spec, set.name.c_str(),
+                double(all.nodes) / n, double(all.leaves) / n, double(all.primitives) / n,
+                median(times) / n * 1e9);
+}
+
+/// Uniformly random lines of the scene's ball: chords between independent uniform points of its sphere.
+std::vector<Ray3f> random_lines(const Box3f& box, std::size_t n) {
+    const Vec3f center = box.center();
+    const float radius = 0.5f * length(box.extent());
+    std::vector<Ray3f> lines;
+    for (std::size_t i = 0; i < n; ++i) {
+        Random random(23, i);
+        const Vec3f a = center + Vec3f(random.direction<3>()) * radius,
+                    b = center + Vec3f(random.direction<3>()) * radius;
+        lines.push_back({a, b - a});
+    }
+    return lines;
+}
+
+/// Cost by counts (1 an inner node, 1 a primitive) of the rays that meet the scene's box at all.
+double counted_cost(const AnyIndex<float, 3>& index, const std::vector<Ray3f>& rays, bool all) {
+    std::vector<Hit<float>> hits;
+    Visits visits;
+    double met = 0;
+    for (const auto& ray : rays) {
+        if (!meet(ray, index.bounds())) continue;
+        ++met;
+        Hit<float> hit;
+        if (all)
+            index.all_hits(ray, hits, &visits);
+        else
+            index.closest_hits({&ray, 1}, {&hit, 1}, {&visits, 1});
+    }
+    return double(visits.nodes + visits.primitives) / met;
+}
+
+void prediction(const TriangleMesh<float>& mesh, const RaySet& primary) {
+    const auto index = build(mesh);
+    const auto any = build_any("bvh", mesh);
+    const auto lines = random_lines(index.bounds(), 100000);
+    std::printf(
+        "\nSAH cost predicted %.1f; counted: random lines, all hits %.1f; random lines, closest hit %.1f; "
+        "primary rays %.1f\n\n",
+        index.structure().sah_cost(), counted_cost(*any, lines, true), counted_cost(*any, lines, false),
+        counted_cost(*any, primary.rays, false));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    std::printf("%s, g++ %d.%d, one thread, medians of %d\n", processor().c_str(), __GNUC__, __GNUC_MINOR__,
+                repeats);
+    std::vector<std::string> names(arguments + 1, arguments + count);
+    if (names.empty()) names = {"gen:teapot-in-stadium", "gen:soup:200000"};
+    for (const auto& name : names) {
+        const auto mesh = scene(name);
+        Box3f box;
+        for (const auto& v : mesh.vertices) box.expand(v);
+        const auto sets = ray_sets(mesh, box, 256, 1 << 16);
+        std::printf("\n%s, %zu triangles\n\n", name.substr(name.rfind('/') + 1).c_str(), mesh.size());
+        std::printf(
+            "| structure                    | rays     | nodes    | leaves   | prims    | ns a ray  |\n");
+        std::printf(
+            "|------------------------------|----------|----------|----------|----------|-----------|\n");
+        for (const char* spec :
+             {"bvh", "bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts",
+              "bvh:ordered=off", "bvh:culling=off", "bvh:ordered=off,culling=off", "kdtree", "grid"})
+            for (const auto& set : sets) variant(spec, mesh, set);
+        prediction(mesh, sets[0]);
+    }
+}
