@@ -126,6 +126,12 @@ Vec<T, D> normalized(const Vec<T, D>& a) {
     const T l = length(a);
     return l > 0 ? a / l : a;
 }
+template <class T, int D>
+constexpr bool finite(const Vec<T, D>& a) {
+    for (int i = 0; i < D; ++i)
+        if (!(a[i] - a[i] == 0)) return false;
+    return true;
+}
 /// Largest component.
 template <class T, int D>
 constexpr T max_component(const Vec<T, D>& a) {

@@ -21,6 +21,9 @@ public:
     std::size_t size() const { return segments_.size(); }
     Segment<T, 2> segment(std::size_t i) const { return segments_[i]; }
     Box<T, 2> bounds(std::size_t i) const { return segments_[i].bounds(); }
+    bool finite(std::size_t i) const {
+        return hedgerow::finite(segments_[i].a) && hedgerow::finite(segments_[i].b);
+    }
     Vec<T, 2> closest_point(std::size_t i, const Vec<T, 2>& p) const {
         return hedgerow::closest_point(p, segments_[i]);
     }

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include <hedgerow/error.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/concepts.h>
@@ -40,12 +42,31 @@ public:
         return faces_.empty() ? static_cast<std::uint32_t>(i) : faces_[i];
     }
     Box<T, 3> bounds(std::size_t i) const { return triangle(i).bounds(); }
+    /// A box forgets a NaN; this does not.
+    bool finite(std::size_t i) const {
+        const auto t = triangle(i);
+        return hedgerow::finite(t.a) && hedgerow::finite(t.b) && hedgerow::finite(t.c);
+    }
     Vec<T, 3> normal(std::size_t i) const { return triangle(i).normal(); }
 
     Vec<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
         return hedgerow::closest_point(p, triangle(i));
     }
     bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }
+
+    /// Throws InputError for the first triangle that names a vertex that is not there. O(n).
+    void validate() const {
+        for (std::size_t i = 0; i < size(); ++i)
+            for (const std::uint32_t corner : triangles_[i])
+                if (corner >= vertices_.size())
+                    throw InputError("triangle " + std::to_string(i) + " names vertex " +
+                                     std::to_string(corner) + ", but there are " +
+                                     std::to_string(vertices_.size()) + ": mend its indices");
+        if (!faces_.empty() && faces_.size() != size())
+            throw InputError("a mesh of " + std::to_string(size()) + " triangles has " +
+                             std::to_string(faces_.size()) +
+                             " face ids: give each triangle one, or none any");
+    }
 
     /// Rays have the watertight test, whose error the probe knows.
     template <class Query>

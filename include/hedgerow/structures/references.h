@@ -84,7 +84,8 @@ auto references_of(const P& set, Executor& executor) {
             const Box<T, D> b = set.bounds(i);
             bool good = true;
             for (int k = 0; k < D; ++k)
-                good = good && b.low[k] >= -largest_coordinate<T> && b.high[k] <= largest_coordinate<T>;
+                good = good && b.low[k] <= b.high[k] && b.low[k] >= -largest_coordinate<T> &&
+                       b.high[k] <= largest_coordinate<T>;
             if constexpr (requires { set.finite(i); }) good = good && set.finite(i);
             references[i] = Reference<T, D>(b, static_cast<PrimitiveId>(i));
             for (std::size_t seen = first_bad;
