@@ -63,8 +63,10 @@ public:
             const bool go_on = for_each_in_shell(lattice, center, r, [&](const auto& cell) {
                 auto box = lattice.bounds(cell);
                 box.low = box.low - pad, box.high = box.high + pad;
-                const double at = distance2(p, box) * (1 - 0x1p-20);
-                if (at > static_cast<double>(limit())) return true;
+                // In T, since distances of tiny scenes underflow there; rounded down by more than they round
+                // up.
+                const T at = static_cast<T>(distance2(p, box) * (1 - 0x1p-20));
+                if (at - 4 * std::numeric_limits<T>::denorm_min() > limit()) return true;
                 any = true;
                 return visit(cell) == Flow::go_on;
             });

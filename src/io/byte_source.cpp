@@ -1,0 +1,120 @@
+/// Files through zlib, which reads plain ones too.
+#include "byte_source.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include <hedgerow/error.h>
+#include <hedgerow/io/load_options.h>
+
+namespace hedgerow::detail {
+
+namespace {
+constexpr std::size_t buffer_size = std::size_t(1) << 18;
+constexpr std::size_t longest_line = std::size_t(1) << 26;
+}  // namespace
+
+void check_readable(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        const bool missing = status.type() == std::filesystem::file_type::not_found;
+        throw InputError(name + ": " + (missing ? "there is no such file. Check the path" : error.message()));
+    }
+    if (std::filesystem::is_directory(status)) throw InputError(name + ": is a directory. Name a file in it");
+    if (!std::filesystem::is_regular_file(status))
+        throw InputError(name + ": is not a regular file. Copy what it yields to a file first");
+    if (std::filesystem::file_size(path, error) == 0 && !error)
+        throw InputError(name + ": the file is empty. Write it again");
+}
+
+ByteSource::ByteSource(const std::filesystem::path& path, const Progress& progress)
+    : name_(path.string()), progress_(progress) {
+    check_readable(path);
+    std::error_code error;
+    total_ = std::filesystem::file_size(path, error);
+    if (error) total_ = 0;
+    buffer_.resize(buffer_size);
+    errno = 0;
+    file_ = gzopen(path.c_str(), "rb");
+    if (file_ == nullptr) fail("cannot be opened: " + std::generic_category().message(errno));
+    gzbuffer(file_, 1u << 17);
+}
+
+ByteSource::~ByteSource() {
+    gzclose(file_);
+}
+
+bool ByteSource::refill() {
+    if (ended_) return false;
+    if (progress_.cancelled()) throw Cancelled(name_ + ": reading was cancelled");
+    before_ += filled_;
+    at_ = filled_ = 0;
+    const int got = gzread(file_, buffer_.data(), static_cast<unsigned>(buffer_.size()));
+    int code = Z_OK;
+    const std::string message = gzerror(file_, &code);
+    if (code == Z_ERRNO) fail_here("cannot be read: " + std::generic_category().message(errno));
+    if (code == Z_BUF_ERROR) fail_here("the compressed data end early. The file was cut off: fetch it again");
+    if (got < 0 || code < 0)
+        fail_here("the compressed data are damaged (" + message + "). Fetch the file again");
+    filled_ = static_cast<std::size_t>(got);
+    ended_ = got == 0;
+    const auto done = gzoffset(file_);
+    if (ended_)
+        progress_(total_, total_);
+    else
+        progress_(std::min(static_cast<std::uint64_t>(done < 0 ? 0 : done), total_), total_);
+    return !ended_;
+}
+
+std::size_t ByteSource::read(void* to, std::size_t size) {
+    std::size_t done = 0;
+    while (done < size && !at_end()) {
+        const std::size_t n = std::min(size - done, filled_ - at_);
+        std::memcpy(static_cast<unsigned char*>(to) + done, buffer_.data() + at_, n);
+        at_ += n, done += n;
+    }
+    return done;
+}
+
+bool ByteSource::skip(std::uint64_t size) {
+    while (size > 0 && !at_end()) {
+        const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(size, filled_ - at_));
+        at_ += n, size -= n;
+    }
+    return size == 0;
+}
+
+std::string_view ByteSource::ahead() {
+    if (at_end()) return {};
+    return {reinterpret_cast<const char*>(buffer_.data()) + at_, filled_ - at_};
+}
+
+bool ByteSource::line(std::string& text) {
+    text.clear();
+    if (at_end()) return false;
+    for (int c = next(); c != -1 && c != '\n'; c = next()) {
+        if (c == '\r') {
+            if (peek() == '\n') next();
+            break;
+        }
+        text.push_back(static_cast<char>(c));
+        if (text.size() > longest_line)
+            fail_here("a line is longer than 64 MiB. Is this a text file of the kind its extension says?");
+    }
+    return true;
+}
+
+void ByteSource::fail(const std::string& what) const {
+    throw InputError(name_ + ": " + what);
+}
+
+void ByteSource::fail_here(const std::string& what) const {
+    throw InputError(name_ + ", byte " + std::to_string(offset()) + ": " + what);
+}
+
+}  // namespace hedgerow::detail

@@ -1,0 +1,78 @@
+/// The bytes of a file, plain or gzipped, read once from front to back in bounded memory.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hedgerow/parallel/progress.h>
+
+struct gzFile_s;
+
+namespace hedgerow::detail {
+
+/// Throws InputError if there is no regular, non-empty file.
+void check_readable(const std::filesystem::path& path);
+
+/// Reports progress and notices cancellation whenever its buffer is filled. All errors are InputError.
+class ByteSource {
+public:
+    explicit ByteSource(const std::filesystem::path& path, const Progress& progress = {});
+    ~ByteSource();
+    ByteSource(const ByteSource&) = delete;
+    ByteSource& operator=(const ByteSource&) = delete;
+
+    const std::string& name() const { return name_; }
+    /// Bytes read so far, after decompression.
+    std::uint64_t offset() const { return before_ + at_; }
+    bool at_end() { return at_ == filled_ && !refill(); }
+    /// The next byte, or −1.
+    int peek() { return at_end() ? -1 : buffer_[at_]; }
+    int next() { return at_end() ? -1 : buffer_[at_++]; }
+    /// Up to `size` bytes; fewer only at the end of the file.
+    std::size_t read(void* to, std::size_t size);
+    /// Skips as many bytes; false if the file ends before.
+    bool skip(std::uint64_t size);
+    /// What lies ahead in the buffer: at the start of a file its first 256 KiB, or all of it.
+    std::string_view ahead();
+    /// The next line without its end (\n, \r\n or \r); false at the end of the file.
+    bool line(std::string& text);
+    /// Exactly the bytes of a U, in file order `order`; false if the file ends before.
+    template <class U>
+    bool value(U& v, std::endian order) {
+        unsigned char bytes[sizeof(U)];
+        if (filled_ - at_ >= sizeof(U)) {
+            std::memcpy(bytes, buffer_.data() + at_, sizeof(U));
+            at_ += sizeof(U);
+        } else if (read(bytes, sizeof(U)) != sizeof(U)) {
+            return false;
+        }
+        if (order != std::endian::native)
+            for (std::size_t i = 0; i < sizeof(U) / 2; ++i) std::swap(bytes[i], bytes[sizeof(U) - 1 - i]);
+        std::memcpy(&v, bytes, sizeof(U));
+        return true;
+    }
+
+    /// Throws InputError "NAME: WHAT".
+    [[noreturn]] void fail(const std::string& what) const;
+    /// Throws InputError "NAME, byte OFFSET: WHAT".
+    [[noreturn]] void fail_here(const std::string& what) const;
+
+private:
+    bool refill();
+
+    std::string name_;
+    Progress progress_;
+    std::uint64_t total_ = 0, before_ = 0;
+    gzFile_s* file_ = nullptr;
+    std::vector<unsigned char> buffer_;
+    std::size_t at_ = 0, filled_ = 0;
+    bool ended_ = false;
+};
+
+}  // namespace hedgerow::detail

@@ -1,0 +1,91 @@
+/// Which reader and which writer an extension stands for.
+#include <hedgerow/io/mesh_file.h>
+
+#include <hedgerow/error.h>
+#include <hedgerow/io/validate.h>
+
+#include "mesh_writers.h"
+#include "readers.h"
+#include "text.h"
+
+namespace hedgerow {
+
+namespace detail {
+
+std::string format_of(const std::filesystem::path& path) {
+    const std::string extension = lower_case(path.extension().string());
+    return extension == ".gz" ? lower_case(path.stem().extension().string()) : extension;
+}
+
+namespace {
+
+[[noreturn]] void fail_unknown(const std::filesystem::path& path, const std::string& known) {
+    const std::string extension = path.extension().string();
+    throw InputError(path.string() + ": " +
+                     (extension.empty() ? "the name has no extension, which says the format"
+                                        : "the extension " + shown(extension) + " is not known") +
+                     ". Known are " + known);
+}
+
+template <class T>
+TriangleMesh<T> read_any(const std::filesystem::path& path, const Progress& progress) {
+    const std::string format = format_of(path);
+    using Reader = TriangleMesh<T> (*)(ByteSource&);
+    Reader reader = nullptr;
+    if (format == ".ply") reader = read_ply_mesh<T>;
+    if (format == ".stl") reader = read_stl<T>;
+    if (format == ".obj") reader = read_obj<T>;
+    if (format == ".off") reader = read_off<T>;
+    if (reader != nullptr) {
+        ByteSource file(path, progress);
+        return reader(file);
+    }
+    const std::string extension = lower_case(path.extension().string());
+    if (extension.size() < 2 || !assimp_reads(extension)) {
+        check_readable(path);
+        fail_unknown(path, ".ply .stl .obj .off, each also with .gz, and " + assimp_extensions());
+    }
+    return read_assimp<T>(path, progress);
+}
+
+/// The writers only need to know that no index is out of range.
+template <class T>
+void check_indices(const TriangleMesh<T>& mesh) {
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        for (const std::uint32_t v : mesh.triangles[i])
+            if (v >= mesh.vertices.size())
+                throw InputError("triangle " + std::to_string(i) + " of the mesh to save names vertex " +
+                                 std::to_string(v) + ", but there are only " +
+                                 std::to_string(mesh.vertices.size()) + ". Repair the mesh");
+}
+
+}  // namespace
+}  // namespace detail
+
+template <class T>
+TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& options,
+                          const Progress& progress) {
+    return validated(detail::read_any<T>(path, progress), path.string(), options);
+}
+
+template <class T>
+void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh) {
+    const std::string extension = detail::lower_case(path.extension().string());
+    void (*write)(detail::OutputFile&, const TriangleMesh<T>&) = nullptr;
+    if (extension == ".ply") write = detail::write_ply;
+    if (extension == ".stl") write = detail::write_stl;
+    if (extension == ".obj") write = detail::write_obj;
+    if (extension == ".off") write = detail::write_off;
+    if (write == nullptr) detail::fail_unknown(path, ".ply .stl .obj .off");
+    detail::check_indices(mesh);
+    detail::OutputFile file(path);
+    write(file, mesh);
+    file.commit();
+}
+
+template TriangleMesh<float> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
+template TriangleMesh<double> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
+template void save_mesh(const std::filesystem::path&, const TriangleMesh<float>&);
+template void save_mesh(const std::filesystem::path&, const TriangleMesh<double>&);
+
+}  // namespace hedgerow

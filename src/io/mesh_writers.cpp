@@ -1,0 +1,102 @@
+/// PLY, STL, OBJ and OFF.
+#include "mesh_writers.h"
+
+#include <hedgerow/error.h>
+
+#include "text.h"
+
+namespace hedgerow::detail {
+
+namespace {
+template <class T>
+void append_point(std::string& line, const Vec<T, 3>& p) {
+    for (int i = 0; i < 3; ++i) {
+        if (i > 0) line += ' ';
+        append_number(line, p[i]);
+    }
+    line += '\n';
+}
+template <class T>
+void write_point(OutputFile& file, const Vec<T, 3>& p) {
+    for (int i = 0; i < 3; ++i) file.little(p[i]);
+}
+}  // namespace
+
+template <class T>
+void write_ply(OutputFile& file, const TriangleMesh<T>& mesh) {
+    const std::string type = std::is_same_v<T, float> ? "float" : "double";
+    const bool small = mesh.vertices.size() < (std::size_t(1) << 31);
+    std::string header = "ply\nformat binary_little_endian 1.0\n";
+    header += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
+    for (const char axis : {'x', 'y', 'z'}) header += "property " + type + " " + axis + "\n";
+    header += "element face " + std::to_string(mesh.size()) + "\n";
+    header +=
+        std::string("property list uchar ") + (small ? "int" : "uint") + " vertex_indices\nend_header\n";
+    file.write(header);
+    for (const Vec<T, 3>& p : mesh.vertices) write_point(file, p);
+    for (const TriangleIndices& t : mesh.triangles) {
+        file.little(std::uint8_t(3));
+        for (const std::uint32_t v : t) file.little(v);
+    }
+}
+
+template <class T>
+void write_stl(OutputFile& file, const TriangleMesh<T>& mesh) {
+    if (mesh.size() > 0xFFFFFFFFu)
+        throw InputError("a mesh of more than 4294967295 triangles does not fit STL. Save it as .ply");
+    std::string header = "binary STL";
+    header.resize(80, ' ');
+    file.write(header);
+    file.little(static_cast<std::uint32_t>(mesh.size()));
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3d p(mesh.vertices[a]), q(mesh.vertices[b]), r(mesh.vertices[c]);
+        write_point(file, Vec3f(normalized(cross(q - p, r - p))));
+        for (const std::uint32_t v : {a, b, c}) {
+            const Vec<T, 3>& corner = mesh.vertices[v];
+            for (int i = 0; i < 3; ++i) file.little(rounded<float>(static_cast<double>(corner[i])));
+        }
+        file.little(std::uint16_t(0));
+    }
+}
+
+template <class T>
+void write_obj(OutputFile& file, const TriangleMesh<T>& mesh) {
+    std::string line;
+    for (const Vec<T, 3>& p : mesh.vertices) {
+        line.assign("v ", 2);
+        append_point(line, p);
+        file.write(line);
+    }
+    for (const auto& [a, b, c] : mesh.triangles) {
+        line.assign(1, 'f');
+        for (const std::uint32_t v : {a, b, c}) line += ' ', append_number(line, std::uint64_t(v) + 1);
+        file.write(line += '\n');
+    }
+}
+
+template <class T>
+void write_off(OutputFile& file, const TriangleMesh<T>& mesh) {
+    file.write("OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.size()) + " 0\n");
+    std::string line;
+    for (const Vec<T, 3>& p : mesh.vertices) {
+        line.clear();
+        append_point(line, p);
+        file.write(line);
+    }
+    for (const auto& [a, b, c] : mesh.triangles) {
+        line.assign(1, '3');
+        for (const std::uint32_t v : {a, b, c}) line += ' ', append_number(line, v);
+        file.write(line += '\n');
+    }
+}
+
+template void write_ply(OutputFile&, const TriangleMesh<float>&);
+template void write_ply(OutputFile&, const TriangleMesh<double>&);
+template void write_stl(OutputFile&, const TriangleMesh<float>&);
+template void write_stl(OutputFile&, const TriangleMesh<double>&);
+template void write_obj(OutputFile&, const TriangleMesh<float>&);
+template void write_obj(OutputFile&, const TriangleMesh<double>&);
+template void write_off(OutputFile&, const TriangleMesh<float>&);
+template void write_off(OutputFile&, const TriangleMesh<double>&);
+
+}  // namespace hedgerow::detail

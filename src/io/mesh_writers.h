@@ -1,0 +1,19 @@
+/// The writers of single mesh formats.
+#pragma once
+
+#include <hedgerow/primitives/triangle_mesh.h>
+
+#include "output_file.h"
+
+namespace hedgerow::detail {
+
+template <class T>
+void write_ply(OutputFile& file, const TriangleMesh<T>& mesh);
+template <class T>
+void write_stl(OutputFile& file, const TriangleMesh<T>& mesh);
+template <class T>
+void write_obj(OutputFile& file, const TriangleMesh<T>& mesh);
+template <class T>
+void write_off(OutputFile& file, const TriangleMesh<T>& mesh);
+
+}  // namespace hedgerow::detail

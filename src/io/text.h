@@ -1,0 +1,102 @@
+/// Words and numbers of text files, whatever the locale.
+#pragma once
+
+#include <cctype>
+#include <charconv>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace hedgerow::detail {
+
+inline bool is_space(int c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+inline std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return lower;
+}
+
+inline std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_space(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
+    while (!text.empty() && is_space(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
+    return text;
+}
+
+/// Takes the first word from the front of `rest`; empty when there is none left.
+inline std::string_view take_word(std::string_view& rest) {
+    std::size_t begin = 0;
+    while (begin < rest.size() && is_space(static_cast<unsigned char>(rest[begin]))) ++begin;
+    std::size_t end = begin;
+    while (end < rest.size() && !is_space(static_cast<unsigned char>(rest[end]))) ++end;
+    const std::string_view word = rest.substr(begin, end - begin);
+    rest.remove_prefix(end);
+    return word;
+}
+
+/// A text from a file as it may stand in a message: short, and nothing but printable ASCII.
+inline std::string shown(std::string_view text) {
+    std::string q = "'";
+    for (const char c : text.substr(0, 40)) q.push_back(c >= ' ' && c <= '~' ? c : '?');
+    return q + (text.size() > 40 ? "...'" : "'");
+}
+
+/// Out of the range of T, where from_chars says nothing else.
+template <std::floating_point T>
+T out_of_range(std::string_view text) {
+    long double wide = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), wide);
+    if (error == std::errc()) {
+        if (wide > std::numeric_limits<T>::max()) return std::numeric_limits<T>::infinity();
+        if (wide < std::numeric_limits<T>::lowest()) return -std::numeric_limits<T>::infinity();
+        return static_cast<T>(wide);
+    }
+    const bool tiny = text.find("e-") != text.npos || text.find("E-") != text.npos;
+    const T magnitude = tiny ? T(0) : std::numeric_limits<T>::infinity();
+    return text.starts_with('-') ? -magnitude : magnitude;
+}
+
+/// All of `text` as a number, correctly rounded; too large becomes infinite. "nan" and "inf" are numbers.
+template <std::floating_point T>
+std::optional<T> parse_real(std::string_view text) {
+    if (text.starts_with('+') && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
+    if (error == std::errc::result_out_of_range) return out_of_range<T>(text);
+    return value;
+}
+
+template <std::integral I>
+std::optional<I> parse_integer(std::string_view text) {
+    if (text.starts_with('+') && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
+    I value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (end != text.data() + text.size() || error != std::errc()) return std::nullopt;
+    return value;
+}
+
+/// A double of a file as a T: too large becomes infinite.
+template <std::floating_point T>
+T rounded(double x) {
+    if (x > static_cast<double>(std::numeric_limits<T>::max())) return std::numeric_limits<T>::infinity();
+    if (x < static_cast<double>(std::numeric_limits<T>::lowest())) return -std::numeric_limits<T>::infinity();
+    return static_cast<T>(x);
+}
+
+/// The shortest decimals that read back as the same number.
+template <class T>
+void append_number(std::string& text, T value) {
+    char digits[64];
+    const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+    text.append(digits, end);
+}
+
+}  // namespace hedgerow::detail

@@ -1,0 +1,16 @@
+# cmake -D COMPILER=g++ -D INCLUDE=DIR -P fast_math.cmake: no header compiles under -ffast-math.
+cmake_minimum_required(VERSION 3.25)
+
+# Headers that compute nothing.
+set(allowed error.h spelling.h parallel/executor.h parallel/progress.h primitives/strided.h io/load_options.h
+            io/image.h io/npy.h)
+
+file(GLOB_RECURSE headers RELATIVE ${INCLUDE}/hedgerow ${INCLUDE}/hedgerow/*.h)
+foreach(header ${headers})
+  execute_process(COMMAND ${COMPILER} -std=c++20 -ffast-math -E -x c++ -I ${INCLUDE} ${INCLUDE}/hedgerow/${header}
+                  RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE messages)
+  if(NOT header IN_LIST allowed AND (result EQUAL 0 OR NOT messages MATCHES "numerics contract"))
+    message(SEND_ERROR "hedgerow/${header} compiles under -ffast-math; let it include <hedgerow/geometry/rounding.h>, "
+                       "or, if it computes nothing, name it in ${CMAKE_CURRENT_LIST_FILE}")
+  endif()
+endforeach()
