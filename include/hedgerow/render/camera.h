@@ -1,0 +1,55 @@
+/// A pinhole camera, and where to put it when nobody says.
+#pragma once
+
+#include <hedgerow/geometry/box.h>
+#include <hedgerow/geometry/ray.h>
+
+namespace hedgerow {
+
+struct Camera {
+    Vec3f eye, target, up{0, 0, 1};
+    float field_of_view = 45;  // vertical, in degrees
+};
+
+/// From three quarters above, far enough back that the box fills most of the picture. A box that is flattest
+/// along y stands on y, any other on z.
+inline Camera automatic_camera(const Box3f& box) {
+    Camera c;
+    const Vec3f extent = box.empty() ? Vec3f(1, 1, 1) : box.extent();
+    c.target = box.empty() ? Vec3f() : box.center();
+    const bool y_up = extent[1] < extent[2] && extent[1] < extent[0];
+    c.up = y_up ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1);
+    c.eye =
+        c.target + (y_up ? Vec3f(0.45f, 0.42f, 0.8f) : Vec3f(0.45f, -0.8f, 0.42f)) * (1.12f * length(extent));
+    return c;
+}
+
+/// The teapot in its stadium from a few paces away, the stands behind it: from afar it is a dot.
+inline Camera beside_the_teapot() {
+    return {{7, -12, 5.5f}, {0, 0, 2.4f}, {0, 0, 1}, 45};
+}
+
+/// Rays through the picture plane: x and y in pixels from the top left, fractions within a pixel.
+class RayMaker {
+public:
+    RayMaker(const Camera& c, int width, int height)
+        : eye_(c.eye),
+          forward_(normalized(c.target - c.eye)),
+          right_(normalized(cross(forward_, c.up))),
+          up_(cross(right_, forward_)),
+          scale_(2 * tangent(c.field_of_view / 2) / static_cast<float>(height)),
+          middle_x_(static_cast<float>(width) / 2),
+          middle_y_(static_cast<float>(height) / 2) {}
+    template <class T>
+    Ray<T, 3> ray(float x, float y) const {
+        const Vec3f d = forward_ + right_ * ((x - middle_x_) * scale_) + up_ * ((middle_y_ - y) * scale_);
+        return {Vec<T, 3>(eye_), Vec<T, 3>(normalized(d))};
+    }
+
+private:
+    static float tangent(float degrees) { return std::tan(degrees * 3.14159265f / 180); }
+    Vec3f eye_, forward_, right_, up_;
+    float scale_, middle_x_, middle_y_;
+};
+
+}  // namespace hedgerow

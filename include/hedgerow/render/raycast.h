@@ -1,0 +1,177 @@
+/// Ray casting: a picture from any index, in tiles over an executor.
+#pragma once
+
+#include <mutex>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/parallel/progress.h>
+#include <hedgerow/render/camera.h>
+#include <hedgerow/render/colour.h>
+#include <hedgerow/scenes/random.h>
+
+namespace hedgerow {
+
+enum class Shading { normals, depth, diffuse, steps };
+
+inline Shading parse_shading(std::string_view name) {
+    if (name == "normals") return Shading::normals;
+    if (name == "depth") return Shading::depth;
+    if (name == "steps") return Shading::steps;
+    return Shading::diffuse;
+}
+
+struct RenderOptions {
+    Camera camera;
+    int width = 1024, height = 768, samples = 1;
+    Shading shading = Shading::diffuse;
+    std::uint64_t seed = 0;
+    /// Top of the scale of `steps`; 0: the most that was seen.
+    std::uint64_t steps_max = 0;
+};
+
+struct Picture {
+    Image image;
+    std::uint64_t rays = 0;
+    Visits visits;
+};
+
+/// Casts one or more rays a pixel; diffuse adds a shadow ray where the light is faced. Rows that are not done
+/// when the progress is cancelled stay black.
+template <class T, class P>
+class Raycast {
+public:
+    Raycast(const AnyIndex<T, 3>& index, const P& primitives, const RenderOptions& o)
+        : index_(index),
+          primitives_(view_of(primitives)),
+          o_(o),
+          make_(o.camera, o.width, o.height),
+          values_(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height)),
+          done_(static_cast<std::size_t>(o.height)),
+          light_(normalized(o.camera.up +
+                            cross(normalized(o.camera.target - o.camera.eye), o.camera.up) * 0.5f -
+                            normalized(o.camera.target - o.camera.eye) * 0.35f)),
+          diagonal_(
+              static_cast<float>(length(index.bounds().empty() ? Vec<T, 3>() : index.bounds().extent()))) {}
+
+    Picture run(Executor& executor, const Progress& progress) {
+        std::atomic<std::uint64_t> rows{0};
+        executor.for_each_piece(static_cast<std::size_t>(o_.height), 1,
+                                [&](std::size_t begin, std::size_t end) {
+                                    for (std::size_t y = begin; y < end && !progress.cancelled(); ++y) {
+                                        if (!row(static_cast<int>(y), progress)) return;
+                                        progress(++rows, static_cast<std::uint64_t>(o_.height));
+                                    }
+                                });
+        return develop();
+    }
+
+private:
+    /// Colour, or for `steps` the number of visits, of every sample's mean.
+    bool row(int y, const Progress& progress) {
+        Visits visits;
+        std::uint64_t rays = 0;
+        for (int x = 0; x < o_.width; ++x) {
+            if (x % 16 == 0 && progress.cancelled()) return false;
+            Vec3f sum;
+            for (int s = 0; s < o_.samples; ++s) {
+                Random random(o_.seed, (static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(o_.width) +
+                                        static_cast<std::uint64_t>(x)) *
+                                               static_cast<std::uint64_t>(o_.samples) +
+                                           static_cast<std::uint64_t>(s));
+                const bool jitter = o_.samples > 1;
+                const float dx = jitter ? static_cast<float>(random.uniform()) : 0.5f,
+                            dy = jitter ? static_cast<float>(random.uniform()) : 0.5f;
+                sum = sum +
+                      sample(make_.template ray<T>(static_cast<float>(x) + dx, static_cast<float>(y) + dy),
+                             visits, rays);
+            }
+            values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) +
+                    static_cast<std::size_t>(x)] = sum / static_cast<float>(o_.samples);
+        }
+        const std::lock_guard lock(mutex_);
+        done_[static_cast<std::size_t>(y)] = 1;
+        visits_ += visits;
+        rays_ += rays;
+        return true;
+    }
+
+    Vec3f sample(const Ray<T, 3>& ray, Visits& visits, std::uint64_t& rays) const {
+        Hit<T> hit;
+        Visits here;
+        index_.closest_hits({&ray, 1}, {&hit, 1}, {&here, 1});
+        ++rays;
+        visits += here;
+        if (o_.shading == Shading::steps)
+            return Vec3f::all(static_cast<float>(here.nodes + here.leaves + here.primitives));
+        if (!hit) return background(Vec3f(ray.direction));
+        Vec3f n = normal(hit, ray);
+        if (dot(n, Vec3f(ray.direction)) > 0) n = -n;
+        if (o_.shading == Shading::normals) return (n + Vec3f(1, 1, 1)) * 0.5f;
+        if (o_.shading == Shading::depth)
+            return Vec3f::all(std::exp(-1.5f * static_cast<float>(hit.t) / (diagonal_ + 1e-30f)));
+        return lit(ray, hit, n, visits, rays);
+    }
+    Vec3f lit(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& n, Visits& visits,
+              std::uint64_t& rays) const {
+        const Vec3f sky = Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(n, o_.camera.up));
+        const float facing = dot(n, light_);
+        Vec3f light = sky;
+        if (facing > 0) {
+            const Vec<T, 3> origin = offset_origin(ray.at(hit.t), Vec<T, 3>(n), Vec<T, 3>(n), hit.t);
+            const Ray<T, 3> shadow{origin, Vec<T, 3>(light_)};
+            bool blocked = false;
+            Visits here;
+            index_.any_hits({&shadow, 1}, {&blocked, 1}, {&here, 1});
+            ++rays;
+            visits += here;
+            if (!blocked) light = light + Vec3f(0.85f, 0.80f, 0.70f) * facing;
+        }
+        return light * 0.62f;
+    }
+    static Vec3f background(const Vec3f&) { return {0.28f, 0.36f, 0.48f}; }
+
+    Vec3f normal(const Hit<T>& hit, const Ray<T, 3>& ray) const {
+        if constexpr (requires { primitives_.normal(hit.element); })
+            return normalized(Vec3f(normalized(Vec3d(primitives_.normal(hit.element)))));
+        else
+            return Vec3f(normalized(Vec3d(ray.at(hit.t)) - Vec3d(primitives_.sphere(hit.element).center)));
+    }
+
+    Picture develop() const {
+        Picture picture{Image(o_.width, o_.height), rays_, visits_};
+        float most = static_cast<float>(o_.steps_max);
+        if (o_.steps_max == 0)
+            for (const auto& v : values_) most = std::max(most, v[0]);
+        for (int y = 0; y < o_.height; ++y) {
+            if (!done_[static_cast<std::size_t>(y)]) continue;
+            for (int x = 0; x < o_.width; ++x) {
+                const Vec3f& v = values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) +
+                                         static_cast<std::size_t>(x)];
+                picture.image.at(x, y) =
+                    o_.shading == Shading::steps ? heat(most > 0 ? v[0] / most : 0) : srgb(v);
+            }
+        }
+        if (o_.shading == Shading::steps) draw_colour_bar(picture.image, static_cast<std::uint64_t>(most));
+        return picture;
+    }
+
+    const AnyIndex<T, 3>& index_;
+    ViewOf<P> primitives_;
+    RenderOptions o_;
+    RayMaker make_;
+    std::vector<Vec3f> values_;
+    std::vector<std::uint8_t> done_;
+    std::mutex mutex_;
+    Visits visits_;
+    std::uint64_t rays_ = 0;
+    Vec3f light_;
+    float diagonal_;
+};
+
+template <class T, class P>
+Picture raycast(const AnyIndex<T, 3>& index, const P& primitives, const RenderOptions& options,
+                Executor& executor, const Progress& progress = {}) {
+    return Raycast<T, P>(index, primitives, options).run(executor, progress);
+}
+
+}  // namespace hedgerow
