@@ -1,0 +1,140 @@
+/// The tool as its user sees it: exit codes, messages, pictures.
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include <hedgerow/io/image.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+    int code;
+    std::string output;  // both streams
+};
+
+Result run(const std::string& arguments) {
+    const std::string command = std::string(HEDGEROW_TOOL_PATH) + " " + arguments + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    Result result{-1, {}};
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) result.output.append(buffer, n);
+    result.code = WEXITSTATUS(pclose(pipe));
+    return result;
+}
+
+std::string bytes_of(const fs::path& path) {
+    std::ostringstream all;
+    all << std::ifstream(path, std::ios::binary).rdbuf();
+    return all.str();
+}
+
+class Cli : public testing::Test {
+protected:
+    fs::path folder = fs::temp_directory_path() / ("hedgerow-cli-" + std::to_string(getpid()));
+    void SetUp() override { fs::create_directories(folder); }
+    void TearDown() override { fs::remove_all(folder); }
+    std::string file(const std::string& name) const { return (folder / name).string(); }
+    void expect_bad(const std::string& arguments, const std::string& said) const {
+        const auto r = run(arguments);
+        EXPECT_EQ(r.code, 3) << arguments << "\n" << r.output;
+        EXPECT_NE(r.output.find(said), std::string::npos) << r.output;
+    }
+};
+
+TEST_F(Cli, HelpOpensWithExamples) {
+    for (const char* verb : {"", "render ", "info ", "generate "}) {
+        const auto r = run(std::string(verb) + "--help");
+        EXPECT_EQ(r.code, 0);
+        EXPECT_EQ(r.output.rfind("Examples:", 0), 0u) << r.output;
+    }
+    EXPECT_EQ(run("--version").code, 0);
+}
+
+TEST_F(Cli, WrongUsageIsTwo) {
+    EXPECT_EQ(run("").code, 2);
+    EXPECT_EQ(run("rendr gen:cube").code, 2);
+    EXPECT_EQ(run("render gen:cube").code, 2);
+    EXPECT_EQ(run("render gen:cube -o " + file("x.png") + " --shading nonsense").code, 2);
+}
+
+TEST_F(Cli, BadInputIsThreeAndNamed) {
+    const std::string to = " -o " + file("x.png");
+    expect_bad("render " + file("missing.ply") + to, "missing.ply");
+    std::ofstream(file("empty.ply")).flush();
+    expect_bad("render " + file("empty.ply") + to, "empty.ply");
+    std::ofstream(file("cut.ply"))
+        << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
+    expect_bad("info " + file("cut.ply"), "cut.ply");
+    std::ofstream(file("range.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n";
+    expect_bad("info " + file("range.obj"), "range.obj");
+    expect_bad("render gen:cube --structure kdtre" + to, "did you mean 'kdtree'");
+    expect_bad("render gen:cube --structure bvh:bilder=sweep" + to, "did you mean 'builder'");
+    expect_bad("render gen:cube --structure bvh:builder=swep" + to, "did you mean 'sweep'");
+    expect_bad("render gen:cub" + to, "did you mean 'cube'");
+    expect_bad("render gen:cube --size 0x0" + to, "--size");
+    expect_bad("render gen:cube -o " + file("no/such/folder/x.png"), "no folder");
+    expect_bad("render gen:points2d" + to, "can be rendered");
+}
+
+TEST_F(Cli, EveryStructureMakesTheSamePicture) {
+    for (const char* shading : {"normals", "depth", "diffuse"}) {
+        std::string first;
+        for (const char* structure : {"bvh", "kdtree", "grid", "brute-force", "bvh:builder=midpoint"}) {
+            const auto r =
+                run("render gen:teapot:500 --quiet --size 48x32 --shading " + std::string(shading) +
+                    " --structure " + structure + " -o " + file("same.png"));
+            ASSERT_EQ(r.code, 0) << r.output;
+            const auto picture = bytes_of(file("same.png"));
+            if (first.empty()) first = picture;
+            EXPECT_EQ(picture, first) << structure << ", " << shading;
+        }
+        const auto image = hedgerow::load_png(file("same.png"));
+        EXPECT_NE(image.at(24, 16), image.at(0, 0)) << "the teapot differs from what is behind it";
+    }
+}
+
+TEST_F(Cli, StepsAreDrawnAndReported) {
+    const auto r = run("render gen:teapot:500 --shading steps --json --size 320x240 -o " + file("steps.png"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_NE(r.output.find("\"nodes_per_ray\""), std::string::npos);
+    const auto image = hedgerow::load_png(file("steps.png"));
+    EXPECT_NE(image.at(140, 120), image.at(0, 0));
+}
+
+TEST_F(Cli, WhatIsGeneratedCanBeRead) {
+    ASSERT_EQ(run("generate gen:cube:300 -o " + file("cube.ply")).code, 0);
+    const auto r = run("info --json " + file("cube.ply"));
+    EXPECT_EQ(r.code, 0);
+    EXPECT_NE(r.output.find("\"closed\": true"), std::string::npos) << r.output;
+}
+
+TEST_F(Cli, AnInterruptedRenderSavesWhatIsDone) {
+    const std::string output = file("part.png");
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        execl(HEDGEROW_TOOL_PATH, HEDGEROW_TOOL_PATH, "render", "gen:teapot:20000", "--structure",
+              "brute-force", "--size", "1600x1200", "--quiet", "-o", output.c_str(), nullptr);
+        _exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    kill(child, SIGINT);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_EQ(hedgerow::load_png(output).width, 1600);
+}
+
+}  // namespace
