@@ -1,8 +1,10 @@
 /// What every builder starts from: the box of each primitive, checked.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
+#include <span>
 #include <string>
 #include <vector>
 
