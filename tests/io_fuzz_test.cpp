@@ -1,0 +1,151 @@
+/// Thousands of damaged files: every outcome is a sound result or an InputError.
+#include <hedgerow/io/image.h>
+#include <hedgerow/io/npy.h>
+#include <hedgerow/io/point_file.h>
+#include <hedgerow/io/validate.h>
+
+#include "io_support.h"
+
+namespace hedgerow {
+namespace {
+
+using namespace testing_io;
+
+/// One to four flipped bits, replaced bytes, cuts, insertions, repetitions or swapped digits.
+std::string damaged(std::string bytes, std::mt19937_64& random) {
+    for (std::uint64_t n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) {
+        const std::size_t at = random() % bytes.size(), length = 1 + random() % 16;
+        const std::string extremes[] = {"-1",
+                                        "nan",
+                                        "1e999",
+                                        "4294967295",
+                                        "99999999999999999999",
+                                        "-",
+                                        "\xFF\xFF\xFF\xFF",
+                                        std::string(4, '\0'),
+                                        "\n",
+                                        " ",
+                                        "/",
+                                        "\\\n"};
+        switch (random() % 7) {
+            case 0:
+                bytes[at] = static_cast<char>(bytes[at] ^ (1 << random() % 8));
+                break;
+            case 1:
+                bytes[at] = static_cast<char>(random());
+                break;
+            case 2:
+                bytes.resize(at);
+                break;
+            case 3:
+                bytes.erase(at, length);
+                break;
+            case 4:
+                bytes.insert(at, extremes[random() % std::size(extremes)]);
+                break;
+            case 5:
+                bytes.insert(at, bytes.substr(random() % bytes.size(), length));
+                break;
+            default:
+                bytes[at] = static_cast<char>('0' + random() % 10);
+                break;
+        }
+    }
+    return bytes;
+}
+
+/// How many of the damaged files could still be read.
+template <class F>
+int survivors(const TempFolder& folder, const std::string& name, const std::string& whole, int rounds,
+              F read) {
+    std::mt19937_64 random(std::hash<int>()(static_cast<int>(whole.size())));
+    int read_well = 0;
+    for (int i = 0; i < rounds; ++i) {
+        const auto path = folder.file(name, damaged(whole, random));
+        try {
+            read(path);
+            ++read_well;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+        }
+    }
+    return read_well;
+}
+
+const char* const ascii_stl =
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+    "facet normal 0 0 1\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
+    "a\n";
+const char* const ascii_ply =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty double "
+    "z\nproperty uchar r\n"
+    "element face 2\nproperty list uchar int vertex_indices\nproperty list short float uv\nend_header\n"
+    "0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0 4\n4 0 1 2 3 2 0.5 0.5\n3 0 1 2 0\n";
+const char* const obj =
+    "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1 4/1\nf -4//1 -3 \\\n-2\n";
+const char* const off = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0 255 0 0\n0 1 0\n4 0 1 2 3\n3 0 1 2 0.5 0.5 0.5\n";
+
+TEST(Fuzz, Meshes) {
+    TempFolder folder;
+    const auto read = [](const std::filesystem::path& path) {
+        validate_mesh(load_mesh<float>(path), "the result");
+        validate_mesh(load_mesh<double>(path, {.drop_bad = true}), "the result");
+    };
+    std::mt19937_64 random(4);
+    const auto mesh = random_mesh<double>(random);
+    for (const std::string name : {"a.ply", "a.stl"}) {
+        save_mesh(folder / name, mesh);
+        const std::string whole = contents(folder / name);
+        survivors(folder, name, whole, 1500, [&](const auto& path) {
+            validate_mesh(load_mesh<double>(path, {.drop_bad = true}), "the result");
+        });
+        gzip(folder / (name + ".gz"), whole);
+        survivors(folder, name + ".gz", contents(folder / (name + ".gz")), 500, read);
+    }
+    EXPECT_GT(survivors(folder, "b.ply", ascii_ply, 3000, read), 30);
+    EXPECT_GT(survivors(folder, "b.stl", ascii_stl, 3000, read), 30);
+    EXPECT_GT(survivors(folder, "b.obj", obj, 3000, read), 30);
+    EXPECT_GT(survivors(folder, "b.off", off, 3000, read), 30);
+}
+
+/// Few: what Assimp's own readers do with damage is not ours to prove.
+TEST(Fuzz, ThroughAssimp) {
+    TempFolder folder;
+    const std::string gltf =
+        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}]})";
+    const auto read = [](const std::filesystem::path& path) {
+        validate_mesh(load_mesh<float>(path), "the result");
+    };
+    EXPECT_GT(survivors(folder, "a.gltf", gltf, 300, read), 10);
+}
+
+TEST(Fuzz, PointsArraysAndImages) {
+    TempFolder folder;
+    const PointCloud<float, 3> cloud{{{1, 2, 3}, {4, 5, 6}, {0.5f, -1e-9f, 1e18f}}};
+    for (const std::string name : {"a.ply", "a.npy", "a.csv"}) {
+        save_points(folder / name, cloud);
+        const auto read = [](const std::filesystem::path& path) {
+            validate_points(load_points<float, 3>(path), "the result");
+            validate_points(load_points<double, 3>(path), "the result");
+        };
+        EXPECT_GT(survivors(folder, name, contents(folder / name), 2000, read), 50) << name;
+    }
+    save_points(folder / "b.npy", cloud);
+    survivors(folder, "b.npy", contents(folder / "b.npy"), 2000, [](const auto& path) {
+        const NpyArray array = load_npy(path);
+        EXPECT_EQ(array.as<double>().size(), array.size());
+    });
+    save_png(folder / "a.png", Image(9, 7, {1, 2, 3}));
+    survivors(folder, "a.png", contents(folder / "a.png"), 2000, [](const auto& path) {
+        const Image image = load_png(path);
+        EXPECT_EQ(image.pixels.size(),
+                  static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    });
+}
+
+}  // namespace
+}  // namespace hedgerow

@@ -1,0 +1,45 @@
+/// PNG images: round trips and bad input.
+#include <hedgerow/io/image.h>
+
+#include "io_support.h"
+
+namespace hedgerow {
+namespace {
+
+using namespace testing_io;
+
+TEST(Png, WhatIsSavedIsReadBack) {
+    TempFolder folder;
+    std::mt19937_64 random(2);
+    for (int round = 0; round < 50; ++round) {
+        Image image(1 + static_cast<int>(random() % 40), 1 + static_cast<int>(random() % 40));
+        for (auto& pixel : image.pixels)
+            for (auto& c : pixel) c = static_cast<std::uint8_t>(random());
+        save_png(folder / "a.png", image);
+        ASSERT_EQ(load_png(folder / "a.png"), image);
+    }
+    EXPECT_EQ(folder.file_count(), 1u);
+    const Image red(3000, 1000, {255, 0, 0});
+    save_png(folder / "red.png", red);
+    EXPECT_EQ(load_png(folder / "red.png"), red) << "packed most tightly";
+}
+
+TEST(Png, BadInput) {
+    TempFolder folder;
+    expect_input_error([&] { save_png(folder / "a.png", Image()); }, {"a.png", "0x0"});
+    Image odd(2, 2);
+    odd.pixels.pop_back();
+    expect_input_error([&] { save_png(folder / "a.png", odd); }, {"2x2", "3 pixels"});
+    expect_input_error([&] { save_png(folder / "none/a.png", Image(1, 1)); }, {"cannot be written"});
+    expect_input_error([&] { load_png(folder / "a.png"); }, {"no such file"});
+    expect_input_error([&] { load_png(folder.file("a.png", "")); }, {"empty"});
+    expect_input_error([&] { load_png(folder.file("a.png", "GIF89a")); }, {"not a sound PNG"});
+    save_png(folder / "b.png", Image(50, 50, {1, 2, 3}));
+    const std::string whole = contents(folder / "b.png");
+    const std::size_t data_end = whole.size() - 16;  // of the image: its checksum and IEND follow
+    for (std::size_t n = 1; n < data_end; ++n)
+        expect_input_error([&] { load_png(folder.file("a.png", whole.substr(0, n))); }, {"a.png"});
+}
+
+}  // namespace
+}  // namespace hedgerow

@@ -1,0 +1,294 @@
+/// Mesh files: what is written is read back, and every variant of a format means the same.
+#include <atomic>
+#include <charconv>
+#include <cmath>
+
+#include "io_support.h"
+
+#define TINYOBJLOADER_USE_DOUBLE
+#define TINYOBJLOADER_IMPLEMENTATION
+#define tinyobj tinyobj_oracle  // apart from the one that the library may be linked with
+#include <tiny_obj_loader.h>
+
+namespace hedgerow {
+namespace {
+
+using namespace testing_io;
+
+template <class T>
+class MeshFile : public testing::Test {
+protected:
+    TempFolder folder;
+    std::mt19937_64 random{7};
+};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(MeshFile, Scalars);
+
+/// The mesh as PLY, with more properties and elements than anyone asks for, in an order that nobody uses.
+template <class T>
+std::string odd_ply(const TriangleMesh<T>& mesh, const std::string& format) {
+    const std::string type = sizeof(T) == 4 ? "float32" : "double";
+    std::string s = "ply\r\nformat " + format + " 1.0\ncomment x y z\nobj_info none\n";
+    s += "element face " + std::to_string(mesh.size()) + "\nproperty short flags\n";
+    s += "property list ushort uint vertex_index\nproperty list uchar double texture\n";
+    s += "element material 2\nproperty int64 id\nproperty list int short more\nelement nothing "
+         "1000000000000000000\n";
+    s += "element vertex " + std::to_string(mesh.vertices.size()) + "\nproperty uchar red\n";
+    for (const char a : {'z', 'x', 'y'}) s += "property " + type + " " + a + "\n";
+    s += "property list uchar int ring\nend_header\n";
+    const auto put = [&](auto value) {
+        if (format != "ascii")
+            return append(s, value, format == "binary_big_endian" ? std::endian::big : std::endian::little);
+        char digits[64];
+        s.append(digits, std::to_chars(digits, digits + 64, value).ptr) += ' ';
+    };
+    for (const auto& t : mesh.triangles) {
+        put(std::int16_t(-5)), put(std::uint16_t(3));
+        for (const auto v : t) put(v);
+        put(std::uint8_t(2)), put(0.5), put(-1e300);
+    }
+    put(std::int64_t(-1)), put(std::int32_t(0)), put(std::int64_t(9)), put(std::int32_t(1)),
+        put(std::int16_t(3));
+    for (const auto& v : mesh.vertices) {
+        put(std::uint8_t(200)), put(v[2]), put(v[0]), put(v[1]), put(std::uint8_t(1)), put(std::int32_t(-9));
+    }
+    return s;
+}
+
+TYPED_TEST(MeshFile, EveryPlyIsTheSame) {
+    for (int round = 0; round < 50; ++round) {
+        const auto mesh = random_mesh<TypeParam>(this->random);
+        for (const std::string format : {"ascii", "binary_little_endian", "binary_big_endian"}) {
+            const std::string bytes = odd_ply(mesh, format);
+            gzip(this->folder / "a.ply.gz", bytes);
+            for (const auto& path : {this->folder.file("A.PLY", bytes), this->folder / "a.ply.gz"}) {
+                const auto read = load_mesh<TypeParam>(path);
+                ASSERT_TRUE(same_bits(read.vertices, mesh.vertices)) << format;
+                ASSERT_EQ(read.triangles, mesh.triangles);
+                ASSERT_TRUE(read.faces.empty());
+            }
+        }
+    }
+}
+
+TYPED_TEST(MeshFile, WhatIsSavedIsReadBack) {
+    for (int round = 0; round < 100; ++round) {
+        const auto mesh = random_mesh<TypeParam>(this->random);
+        for (const std::string extension : {".ply", ".obj", ".off", ".Ply"}) {
+            const auto path = this->folder / ("mesh" + extension);
+            save_mesh(path, mesh);
+            const auto read = load_mesh<TypeParam>(path);
+            ASSERT_TRUE(same_bits(read.vertices, mesh.vertices)) << extension;
+            ASSERT_EQ(read.triangles, mesh.triangles);
+            ASSERT_TRUE(read.faces.empty());
+        }
+    }
+    EXPECT_EQ(this->folder.file_count(), 4u) << "a temporary file was left";
+}
+
+TYPED_TEST(MeshFile, StlKeepsTrianglesAndJoinsCorners) {
+    for (int round = 0; round < 100; ++round) {
+        const auto mesh = random_mesh<float>(this->random);
+        save_mesh(this->folder / "mesh.stl", mesh);
+        const auto read = load_mesh<TypeParam>(this->folder / "mesh.stl");
+        ASSERT_EQ(read.size(), mesh.size());
+        for (std::size_t i = 0; i < mesh.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                ASSERT_EQ(read.vertices[read.triangles[i][k]],
+                          (Vec<TypeParam, 3>(mesh.vertices[mesh.triangles[i][k]])));
+        for (std::size_t i = 0; i < read.vertices.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k) ASSERT_NE(read.vertices[i], read.vertices[k]);
+    }
+}
+
+TEST(Stl, AsciiInAnyCaseWithSeveralSolidsAndNegativeZero) {
+    TempFolder folder;
+    const std::string text =
+        "SOLID one two\n FACET normal nan 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 "
+        "0.1 0\n"
+        "  endloop\n endfacet\nENDSOLID one two\nsolid b\nfacet normal 0 0 1 outer loop vertex -0 0.1 -0.0 "
+        "vertex 1 0 0 vertex 1 1e0 0 endloop endfacet\nendsolid b\n";
+    gzip(folder / "b.stl.gz", text);
+    for (const auto& path : {folder.file("a.stl", text), folder / "b.stl.gz"}) {
+        const auto mesh = load_mesh<double>(path);
+        EXPECT_EQ(mesh.vertices.size(), 4u);
+        EXPECT_EQ(mesh.triangles, (std::vector<TriangleIndices>{{0, 1, 2}, {2, 1, 3}}));
+        EXPECT_EQ(mesh.vertices[2][1], 0.1);
+    }
+}
+
+TEST(Stl, BinaryThatBeginsWithSolid) {
+    TempFolder folder;
+    TriangleMesh<float> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+    save_mesh(folder / "a.stl", mesh);
+    std::string bytes = contents(folder / "a.stl");
+    bytes.replace(0, 6, "solid ");
+    EXPECT_EQ(load_mesh(folder.file("b.stl", bytes)).triangles, mesh.triangles);
+}
+
+TEST(Polygons, BecomeFansThatKnowTheirFace) {
+    TempFolder folder;
+    const std::string vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 2 0\n";
+    const std::string faces = "3 0 1 2\n4 0 1 2 3\n2 0 1\n0\n5 0 1 2 4 3\n3 2 1 0\n";
+    std::string obj;
+    for (const std::string v : {"0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 2 0"}) obj += "v " + v + "\n";
+    obj += "f 1 2 3\nf 1/1 2/2/2 3//3 -2\nf 1 2\nf\nf 1 2 \\\n3 5 4 # end\nf 3 2 1\n";
+    const std::filesystem::path paths[] = {
+        folder.file("a.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty "
+                    "float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n" +
+                        vertices + faces),
+        folder.file("a.off", "OFF # a comment\n5 6 0\n\n" + vertices + faces),
+        folder.file("b.off", "COFF 5 6 0\n" + vertices + faces), folder.file("a.obj", obj)};
+    for (const auto& path : paths) {
+        const auto mesh = load_mesh(path);
+        EXPECT_EQ(mesh.triangles,
+                  (std::vector<TriangleIndices>{
+                      {0, 1, 2}, {0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {2, 1, 0}}))
+            << path;
+        EXPECT_EQ(mesh.faces, (std::vector<std::uint32_t>{0, 1, 1, 4, 4, 4, 5})) << path;
+    }
+}
+
+TEST(Obj, AgreesWithTinyobjloader) {
+    TempFolder folder;
+    std::mt19937_64 random(3);
+    for (int round = 0; round < 200; ++round) {
+        std::string text = "# random\nmtllib none.mtl\no thing\n";
+        int vertices = 0;
+        for (int i = 0; i < 30; ++i) {
+            if (vertices < 3 || random() % 2 == 0) {
+                text += "v";
+                for (int k = 0; k < 3; ++k) text += " " + std::to_string(int(random() % 2001) - 1000);
+                text += "\nvn 0 0 1\nvt 0.5 0.5\n", ++vertices;
+                continue;
+            }
+            text += random() % 5 == 0 ? "s off\nusemtl m\ng part\nf" : "f";
+            for (std::uint64_t k = 3 + random() % 3; k > 0; --k) {
+                const int v = 1 + int(random() % std::uint64_t(vertices));
+                const std::string index = std::to_string(random() % 2 == 0 ? v : v - vertices - 1);
+                const std::string forms[] = {index, index + "/" + index, index + "//" + index,
+                                             index + "/" + index + "/" + index};
+                text += " " + forms[random() % 4];
+            }
+            text += random() % 2 == 0 ? "\n" : "\r\n";
+        }
+        text += "f 1 2 3\n";
+        tinyobj::attrib_t attributes;
+        std::vector<tinyobj::shape_t> shapes;
+        std::vector<tinyobj::material_t> materials;
+        std::string warning, error;
+        std::istringstream in(text);
+        ASSERT_TRUE(
+            tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in, nullptr, false));
+        std::vector<TriangleIndices> expected;
+        std::vector<std::uint32_t> ids;
+        std::uint32_t face = 0;
+        for (const auto& shape : shapes) {
+            std::size_t at = 0;
+            for (const std::size_t n : shape.mesh.num_face_vertices) {
+                const auto v = [&](std::size_t k) {
+                    return std::uint32_t(shape.mesh.indices[at + k].vertex_index);
+                };
+                for (std::size_t k = 2; k < n; ++k)
+                    expected.push_back({v(0), v(k - 1), v(k)}), ids.push_back(face);
+                at += n, ++face;
+            }
+        }
+        const auto mesh = load_mesh<double>(folder.file("a.obj", text));
+        ASSERT_EQ(mesh.triangles, expected);
+        ASSERT_EQ(mesh.vertices.size() * 3, attributes.vertices.size());
+        for (std::size_t i = 0; i < attributes.vertices.size(); ++i)
+            ASSERT_EQ(mesh.vertices[i / 3][int(i % 3)], attributes.vertices[i]);
+        for (std::size_t i = 0; i < mesh.size(); ++i) ASSERT_EQ(mesh.view().id(i), ids[i]);
+    }
+}
+
+/// A triangle of glTF, used by two nodes: one moved, one mirrored.
+std::string gltf() {
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"translation":[10,0,0],"children":[1,2]},{"mesh":0},{"mesh":0,"scale":[-2,1,1]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}]})";
+}
+
+TEST(Assimp, AppliesTransformsAndInstances) {
+    TempFolder folder;
+    const auto mesh = load_mesh<double>(folder.file("a.gltf", gltf()));
+    ASSERT_EQ(mesh.size(), 2u);
+    EXPECT_EQ(mesh.vertices.size(), 4u) << "the instances share two corners";
+    const auto first = mesh.view().triangle(0), second = mesh.view().triangle(1);
+    EXPECT_EQ(first.a, Vec3d(10, 0, 0));
+    EXPECT_EQ(first.b, Vec3d(11, 0, 0));
+    EXPECT_EQ(first.normal()[2], 1);
+    EXPECT_EQ(second.normal()[2], 2) << "a mirrored face still shows its front";
+    EXPECT_EQ(second.bounds().low[0], 8);
+}
+
+TEST(DropBad, LeavesOutWholeFacesAndKeepsTheirIds) {
+    TempFolder folder;
+    const auto path = folder.file("a.obj",
+                                  "v 0 0 0\nv nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e30\nv 1 1 0\n"
+                                  "f 1 2 3\nf 1 3 4\nf 1 3 6 5\nf 3 6 4\n");
+    const auto mesh = load_mesh(path, {.drop_bad = true});
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+    EXPECT_EQ(mesh.triangles, (std::vector<TriangleIndices>{{0, 1, 2}, {1, 3, 2}}));
+    EXPECT_EQ(mesh.faces, (std::vector<std::uint32_t>{1, 3}));
+    EXPECT_EQ(load_mesh<double>(path, {.drop_bad = true}).size(), 4u) << "1e30 is near enough in double";
+}
+
+TEST(Progress, IsToldAndCancels) {
+    TempFolder folder;
+    std::mt19937_64 random(5);
+    TriangleMesh<float> mesh = random_mesh<float>(random);
+    mesh.triangles.resize(200000);
+    save_mesh(folder / "a.ply", mesh);
+    std::vector<std::uint64_t> seen;
+    std::atomic<bool> cancel = false;
+    const std::uint64_t size = std::filesystem::file_size(folder / "a.ply");
+    Progress progress{[&](std::uint64_t done, std::uint64_t total) {
+                          EXPECT_EQ(total, size);
+                          EXPECT_TRUE(seen.empty() || seen.back() <= done);
+                          seen.push_back(done);
+                      },
+                      &cancel};
+    load_mesh(folder / "a.ply", {}, progress);
+    EXPECT_GT(seen.size(), 5u);
+    progress.report = [&](std::uint64_t, std::uint64_t) { cancel = true; };
+    EXPECT_THROW(load_mesh(folder / "a.ply", {}, progress), Cancelled);
+    EXPECT_THROW(load_mesh(folder.file("a.gltf", gltf()), {}, progress), Cancelled);
+}
+
+TEST(SaveMesh, ReportsWhatItCannotWrite) {
+    TempFolder folder;
+    const TriangleMesh<float> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+    expect_input_error([&] { save_mesh(folder / "none/a.ply", mesh); }, {"a.ply", "cannot be written"});
+    expect_input_error([&] { save_mesh(folder / "a.xyz", mesh); }, {"a.xyz", ".ply .stl .obj .off"});
+    expect_input_error([&] { save_mesh(folder / "a", mesh); }, {"no extension"});
+    std::filesystem::create_directory(folder / "d.ply");
+    expect_input_error([&] { save_mesh(folder / "d.ply", mesh); }, {"d.ply", "directory"});
+    TriangleMesh<float> broken = mesh;
+    broken.triangles[0][1] = 3;
+    expect_input_error([&] { save_mesh(folder / "a.stl", broken); }, {"triangle 0", "vertex 3"});
+    EXPECT_EQ(folder.file_count(), 1u);
+    if (std::filesystem::exists("/dev/full")) {
+        std::filesystem::create_symlink("/dev/full", folder / "full.ply");
+        expect_input_error([&] { save_mesh(folder / "full.ply", mesh); }, {"full", "cannot be written"});
+    }
+}
+
+TEST(SaveMesh, ReplacesTheFileThatALinkNames) {
+    TempFolder folder;
+    const TriangleMesh<float> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+    folder.file("real.ply", "old");
+    std::filesystem::create_symlink(folder / "real.ply", folder / "link.ply");
+    save_mesh(folder / "link.ply", mesh);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.ply"));
+    EXPECT_EQ(load_mesh(folder / "real.ply").triangles, mesh.triangles);
+}
+
+}  // namespace
+}  // namespace hedgerow
