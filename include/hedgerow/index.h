@@ -11,6 +11,7 @@
 #include <hedgerow/queries/any_hit.h>
 #include <hedgerow/queries/closest_hit.h>
 #include <hedgerow/queries/closest_point.h>
+#include <hedgerow/queries/hit_count.h>
 #include <hedgerow/queries/nearest.h>
 #include <hedgerow/queries/overlapping.h>
 #include <hedgerow/structures/bvh/bvh.h>
@@ -58,6 +59,15 @@ public:
     void ask(Q& query) const {
         NoVisits none;
         ask(query, none);
+    }
+    /// What Q(*this, arguments...) answers. The query is made in IEEE mode too: its probe computes.
+    template <Query Q, class Count, class... Arguments>
+    auto answer(Count& count, Arguments&&... arguments) const {
+        return in_ieee_mode([&] {
+            Q query(*this, arguments...);
+            structure_.walk(leaves(), query, count);
+            return query.answer();
+        });
     }
 
 private:
@@ -140,33 +150,32 @@ template <class S, class P, class Filter = KeepAll, class Count = const NoVisits
 std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
                                                    const Ray<typename P::Scalar, P::dimension>& ray,
                                                    const Filter& filter = {}, Count& count = no_visits) {
-    ClosestHit<P, Filter> query(index, ray, filter);
-    index.ask(query, count);
-    return query.answer();
+    return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
 }
 /// Whether anything is hit.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
              const Filter& filter = {}, Count& count = no_visits) {
-    AnyHit<P, Filter> query(index, ray, filter);
-    index.ask(query, count);
-    return query.answer();
+    return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
 }
 /// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
                      std::vector<Hit<typename P::Scalar>>& hits, const Filter& filter = {},
                      Count& count = no_visits) {
-    AllHits<P, Filter> query(index, ray, hits, filter);
-    index.ask(query, count);
-    return query.answer();
+    return index.template answer<AllHits<P, Filter>>(count, ray, hits, filter);
 }
-/// How many primitives are hit (two at a shared edge).
+/// How many primitives are hit (two at a shared edge). A structure that may offer a primitive twice has its
+/// hits kept until they are told apart, in memory that the thread keeps.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
                       const Filter& filter = {}, Count& count = no_visits) {
-    static thread_local std::vector<Hit<typename P::Scalar>> hits;  // structures may offer a primitive again
-    return all_hits(index, ray, hits, filter, count);
+    if constexpr (S::exclusive) {
+        return index.template answer<HitCount<P, Filter>>(count, ray, filter);
+    } else {
+        static thread_local std::vector<Hit<typename P::Scalar>> hits;
+        return all_hits(index, ray, hits, filter, count);
+    }
 }
 /// The closest point of any primitive within a squared distance.
 template <class S, class P, class Count = const NoVisits>
@@ -174,9 +183,7 @@ std::optional<Near<typename P::Scalar, P::dimension>> closest_point(
     const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
     typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
     Count& count = no_visits) {
-    ClosestPoint<P> query(index, point, max_distance2);
-    index.ask(query, count);
-    return query.answer();
+    return index.template answer<ClosestPoint<P>>(count, point, max_distance2);
 }
 /// The k nearest primitives within a squared distance, in the order of (distance², id), into `found`.
 template <class S, class P, class Count = const NoVisits>
@@ -184,17 +191,13 @@ std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::d
                     std::size_t k, std::vector<Near<typename P::Scalar, P::dimension>>& found,
                     typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
                     Count& count = no_visits) {
-    Nearest<P> query(index, point, k, max_distance2, found);
-    index.ask(query, count);
-    return query.answer();
+    return index.template answer<Nearest<P>>(count, point, k, max_distance2, found);
 }
 /// The primitives that overlap a box, ascending, into `found`.
 template <class S, class P, class Count = const NoVisits>
 std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, P::dimension>& box,
                         std::vector<PrimitiveId>& found, Count& count = no_visits) {
-    Overlapping<P> query(box, found);
-    index.ask(query, count);
-    return query.answer();
+    return index.template answer<Overlapping<P>>(count, box, found);
 }
 
 /// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false.

@@ -106,7 +106,7 @@ const std::vector<StructureInfo>& structure_list() {
          "binary bounding volume hierarchy (the default)",
          {{"builder", "binned|sweep|equal-counts|midpoint", "binned", "how nodes are split"},
           {"bins", "2..64", "32", "most bins of the binned builder"},
-          {"traversal_cost", "NUMBER", "1", "of an inner node, for the SAH"},
+          {"traversal_cost", "NUMBER", "2", "of an inner node, for the SAH"},
           {"intersection_cost", "NUMBER", "1", "of a primitive, for the SAH"},
           {"max_leaf_size", "COUNT", "8", "larger nodes are always split"},
           {"ordered", "on|off", "on", "visit the nearer child first"},

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include <hedgerow/geometry/rounding.h>
+#include <hedgerow/geometry/vec.h>
 
 #if defined(__aarch64__)
 #include <arm_neon.h>
@@ -22,6 +22,11 @@ struct Lanes {
     static Lanes all(T x) { return {{x, x, x, x}}; }
     static Lanes halves(T low, T high) { return {{low, low, high, high}}; }
     static Lanes load(const T* p) { return {{p[0], p[1], p[2], p[3]}}; }
+    /// The components, then zeros.
+    template <int D>
+    static Lanes of(const Vec<T, D>& a) {
+        return {{a[0], a[1], D == 3 ? a[D - 1] : T(0), T(0)}};
+    }
     /// (p[0], p[1], q[0], q[1])
     static Lanes load_pairs(const T* p, const T* q) { return {{p[0], p[1], q[0], q[1]}}; }
     void store(T* p) const {
@@ -45,6 +50,21 @@ struct Lanes {
     }
     friend Lanes max(Lanes a, Lanes b) {
         return each([&](int i) { return a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i]; });
+    }
+    friend Lanes operator/(Lanes a, Lanes b) {
+        return each([&](int i) { return a.lane[i] / b.lane[i]; });
+    }
+    friend Lanes abs(Lanes a) {
+        return each([&](int i) { return std::abs(a.lane[i]); });
+    }
+    /// |a| with the sign of b.
+    friend Lanes copysign(Lanes a, Lanes b) {
+        return each([&](int i) { return std::copysign(a.lane[i], b.lane[i]); });
+    }
+    /// −0 and subnormal lanes become +0; NaN stays.
+    Lanes normal_or_zero() const {
+        return each(
+            [&](int i) { return std::abs(lane[i]) < std::numeric_limits<T>::min() ? T(0) : lane[i]; });
     }
     /// Lanes 2, 3, 0, 1.
     Lanes halves_swapped() const { return {{lane[2], lane[3], lane[0], lane[1]}}; }
@@ -82,6 +102,10 @@ struct Lanes<float> {
         return {_mm_shuffle_ps(_mm_set_ss(low), _mm_set_ss(high), 0)};
     }
     static Lanes load(const float* p) { return {_mm_loadu_ps(p)}; }
+    template <int D>
+    static Lanes of(const Vec<float, D>& a) {
+        return {_mm_setr_ps(a[0], a[1], D == 3 ? a[D - 1] : 0.0f, 0.0f)};
+    }
     static Lanes load_pairs(const float* p, const float* q) {
         double low, high;  // two floats each, moved as eight bytes
         std::memcpy(&low, p, 8);
@@ -98,6 +122,16 @@ struct Lanes<float> {
     }
     friend Lanes min(Lanes a, Lanes b) { return {_mm_min_ps(a.v, b.v)}; }
     friend Lanes max(Lanes a, Lanes b) { return {_mm_max_ps(a.v, b.v)}; }
+    friend Lanes operator/(Lanes a, Lanes b) { return {_mm_div_ps(a.v, b.v)}; }
+    friend Lanes abs(Lanes a) { return {_mm_andnot_ps(_mm_set1_ps(-0.0f), a.v)}; }
+    friend Lanes copysign(Lanes a, Lanes b) {
+        const __m128 sign = _mm_set1_ps(-0.0f);
+        return {_mm_or_ps(_mm_andnot_ps(sign, a.v), _mm_and_ps(sign, b.v))};
+    }
+    Lanes normal_or_zero() const {
+        const __m128 least = _mm_set1_ps(std::numeric_limits<float>::min());
+        return {_mm_andnot_ps(_mm_cmplt_ps(abs(*this).v, least), v)};
+    }
     Lanes halves_swapped() const { return {_mm_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 3, 2))}; }
     Lanes next_corner() const { return {_mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 0, 2, 1))}; }
     Lanes previous_corner() const { return {_mm_shuffle_ps(v, v, _MM_SHUFFLE(3, 1, 0, 2))}; }
@@ -116,6 +150,10 @@ struct Lanes<float> {
     static Lanes all(float x) { return {vdupq_n_f32(x)}; }
     static Lanes halves(float low, float high) { return {vcombine_f32(vdup_n_f32(low), vdup_n_f32(high))}; }
     static Lanes load(const float* p) { return {vld1q_f32(p)}; }
+    template <int D>
+    static Lanes of(const Vec<float, D>& a) {
+        return {{a[0], a[1], D == 3 ? a[D - 1] : 0.0f, 0.0f}};
+    }
     static Lanes load_pairs(const float* p, const float* q) {
         return {vcombine_f32(vld1_f32(p), vld1_f32(q))};
     }
@@ -129,6 +167,13 @@ struct Lanes<float> {
     }
     friend Lanes min(Lanes a, Lanes b) { return {vbslq_f32(vcltq_f32(a.v, b.v), a.v, b.v)}; }
     friend Lanes max(Lanes a, Lanes b) { return {vbslq_f32(vcgtq_f32(a.v, b.v), a.v, b.v)}; }
+    friend Lanes operator/(Lanes a, Lanes b) { return {vdivq_f32(a.v, b.v)}; }
+    friend Lanes abs(Lanes a) { return {vabsq_f32(a.v)}; }
+    friend Lanes copysign(Lanes a, Lanes b) { return {vbslq_f32(vdupq_n_u32(0x80000000u), b.v, a.v)}; }
+    Lanes normal_or_zero() const {
+        const uint32x4_t tiny = vcltq_f32(vabsq_f32(v), vdupq_n_f32(std::numeric_limits<float>::min()));
+        return {vbslq_f32(tiny, vdupq_n_f32(0), v)};
+    }
     Lanes halves_swapped() const { return {vextq_f32(v, v, 2)}; }
     Lanes next_corner() const { return permuted(1, 2, 0, 3); }
     Lanes previous_corner() const { return permuted(2, 0, 1, 3); }
@@ -149,5 +194,22 @@ private:
     }
 };
 #endif
+
+template <int D, std::floating_point T>
+Vec<T, D> first(Lanes<T> a) {
+    T l[4];
+    a.store(l);
+    Vec<T, D> v;
+    for (int i = 0; i < D; ++i) v[i] = l[i];
+    return v;
+}
+/// The largest lane.
+template <std::floating_point T>
+T greatest(Lanes<T> a) {
+    T l[4];
+    a.store(l);
+    const T x = l[0] < l[1] ? l[1] : l[0], y = l[2] < l[3] ? l[3] : l[2];
+    return x < y ? y : x;
+}
 
 }  // namespace hedgerow

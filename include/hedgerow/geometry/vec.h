@@ -143,9 +143,8 @@ constexpr T max_component(const Vec<T, D>& a) {
 template <class T, int D>
 constexpr int max_axis(const Vec<T, D>& a) {
     const Vec<T, D> m = abs(a);
-    int axis = 0;
-    for (int i = 1; i < D; ++i)
-        if (m[i] > m[axis]) axis = i;
+    int axis = m[1] > m[0];
+    if constexpr (D == 3) axis = m[2] > (m[1] > m[0] ? m[1] : m[0]) ? 2 : axis;
     return axis;
 }
 

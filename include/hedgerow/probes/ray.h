@@ -18,8 +18,9 @@ namespace hedgerow {
 /// largest component of |corner − o| over the scene's box and u the unit roundoff: corners relative to o
 /// carry u·M, the shear 4u·M more and t rounded u·M, together under 8u·M; computing a plane's t from o ± e,
 /// the difference, the reciprocal and the product costs 4u·M + 2u·|o| at most. e = 16u·M + 4u·|o| covers both
-/// with room to spare, and a few subnormal steps of t and of position cover underflow. Hence a box that holds
-/// the hit primitive is always entered at or before the hit's t, in each structure alike.
+/// with room to spare, and where t or a position may underflow a few subnormal steps of each are added.
+/// Hence a box that holds the hit primitive is always entered at or before the hit's t, in each structure
+/// alike.
 template <std::floating_point T, int D>
 class RayProbe {
 public:
@@ -28,27 +29,31 @@ public:
     using State = Interval<T>;
 
     RayProbe(const Ray<T, D>& ray, const Box<T, D>& scene) : ray_(ray) {
-        usable_ = !scene.empty() && clean(ray_);
+        using L = Lanes<T>;
+        using limits = std::numeric_limits<T>;
+        const L o = L::of(ray.origin), d = L::of(ray.direction).normal_or_zero();
+        ray_.direction = first<D>(d);
+        if (ray_.t_min < 0) ray_.t_min = T(0);
+        const T longest = greatest(abs(d));
+        const unsigned sound =
+            less_equal(abs(d), L::all(limits::max())) & less_equal(abs(o), L::all(largest_coordinate<T>));
+        usable_ = sound == 15u && longest > 0 && ray_.t_min <= ray_.t_max && !scene.empty();
         if (!usable_) return;
-        T reach = 0, far = 0;
+
+        const T reach = greatest(max(abs(L::of(scene.low) - o), abs(L::of(scene.high) - o)));
+        slack_ = product(16 * unit_roundoff<T>, reach) + product(4 * unit_roundoff<T>, greatest(abs(o)));
+        constexpr T steps = 16 * limits::denorm_min(), negligible = unit_roundoff<T> / (2 * steps);
+        if (1 + longest > reach * negligible) [[unlikely]]
+            slack_ += product(steps, 1 + longest);
+        const L outward = copysign(L::all(slack_), d);
+        (o + outward).store(near_origin_);
+        (o - outward).store(far_origin_);
+        (L::all(T(1)) / d).store(inverse_);  // infinite for 0: then only whether o ± e lies inside matters
+        const unsigned down = d.negative();
         for (int i = 0; i < D; ++i) {
-            const T o = ray_.origin[i];
-            reach = std::max({reach, std::abs(scene.low[i] - o), std::abs(scene.high[i] - o)});
-            far = std::max(far, std::abs(o));
-        }
-        constexpr T tiny = 16 * std::numeric_limits<T>::denorm_min();
-        const T e = product(16 * unit_roundoff<T>, reach) + product(4 * unit_roundoff<T>, far) +
-                    product(tiny, T(1) + max_component(abs(ray_.direction)));
-        slack_ = e;
-        for (int i = 0; i < D; ++i) {
-            const T d = ray_.direction[i], o = ray_.origin[i];
-            const bool down = d < 0;
-            inverse_[i] = T(1) / d;  // infinite for 0: then only whether o ± e lies inside matters
-            near_row_[i] = down ? 2 : 0;
-            near_origin_[i] = down ? o - e : o + e;
-            far_origin_[i] = down ? o + e : o - e;
-            pair_origin_[i] = Lanes<T>::halves(near_origin_[i], far_origin_[i]);
-            pair_inverse_[i] = Lanes<T>::halves(inverse_[i], -inverse_[i]);
+            near_row_[i] = static_cast<int>(down >> i & 1u) * 2;
+            pair_origin_[i] = L::halves(near_origin_[i], far_origin_[i]);
+            pair_inverse_[i] = L::halves(inverse_[i], -inverse_[i]);
         }
         if constexpr (D == 3) watertight_ = WatertightRay<T>(ray_.origin, ray_.direction);
     }
@@ -165,19 +170,6 @@ public:
     }
 
 private:
-    /// −0 and subnormal components become +0; says whether anything can be hit.
-    static bool clean(Ray<T, D>& ray) {
-        bool any = false;
-        for (int i = 0; i < D; ++i) {
-            T& d = ray.direction[i];
-            if (std::abs(d) < std::numeric_limits<T>::min()) d = T(0);
-            if (!std::isfinite(d) || !(std::abs(ray.origin[i]) <= largest_coordinate<T>)) return false;
-            any = any || d != 0;
-        }
-        if (ray.t_min < 0) ray.t_min = T(0);
-        return any && ray.t_min <= ray.t_max;
-    }
-
     template <class Visit>
     static bool visit_around(const Lattice<D>& lattice, const typename Lattice<D>::Cell& cell,
                              const typename Lattice<D>::Cell& reach, Visit& visit) {
@@ -191,7 +183,7 @@ private:
     }
 
     Ray<T, D> ray_;
-    Vec<T, D> inverse_, near_origin_, far_origin_;
+    T inverse_[4], near_origin_[4], far_origin_[4];
     Lanes<T> pair_origin_[D], pair_inverse_[D];  // the same, near planes in the low half
     int near_row_[D] = {};
     T slack_ = T(0);

@@ -16,7 +16,8 @@ public:
     using Probe = BoxProbe<Scalar, Set::dimension>;
     static constexpr Order order = Order::none;
 
-    Overlapping(const Box<Scalar, Set::dimension>& box, std::vector<PrimitiveId>& found)
+    template <class Index>
+    Overlapping(const Index&, const Box<Scalar, Set::dimension>& box, std::vector<PrimitiveId>& found)
         : probe_(box), found_(found) {
         found_.clear();
     }

@@ -36,10 +36,11 @@ struct BuildTree {
     std::vector<PrimitiveId> items;
 };
 
-/// How leaf or split is decided, in the field's usual units: testing a primitive costs `intersection_cost`,
-/// opening an inner node `traversal_cost`.
+/// How leaf or split is decided: testing a primitive costs `intersection_cost`, opening an inner node
+/// `traversal_cost`. The literature has 1 to 1; here a node costs as much as two triangles or more, as measured
+/// (docs/design/001-reference-bvh.md).
 struct SahOptions {
-    double traversal_cost = 1;
+    double traversal_cost = 2;
     double intersection_cost = 1;
     /// More than this many primitives are never a leaf; fewer become one when that is cheaper.
     std::uint32_t max_leaf_size = 8;

@@ -1,0 +1,32 @@
+/// How many primitives a ray hits.
+#pragma once
+
+#include <hedgerow/queries/ray_query.h>
+
+namespace hedgerow {
+
+/// Counts what it is offered: for structures that hold each primitive once.
+template <class Set, class Filter = KeepAll>
+class HitCount : public RayQuery<Set, Filter> {
+public:
+    using Base = RayQuery<Set, Filter>;
+    using Scalar = typename Base::Scalar;
+    static constexpr Order order = Order::none;
+
+    template <class Index, class Ray>
+    HitCount(const Index& index, const Ray& ray, const Filter& filter = {})
+        : Base(index, ray, filter), limit_(Base::first_limit()) {}
+
+    Scalar limit() const { return limit_; }
+    Flow offer(const RayCandidate<Scalar>& c) {
+        found_ += this->counts(c);
+        return Flow::go_on;
+    }
+    std::size_t answer() const { return found_; }
+
+private:
+    Scalar limit_;
+    std::size_t found_ = 0;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,180 @@
+/// What the matrix of tests is made of: structures, rays of every kind, and the comparison with brute force.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/scenes/random.h>
+
+namespace hedgerow::matrix {
+
+/// Every structure and builder; the last ones show or stress something and are slow on large scenes.
+inline constexpr const char* structures[] = {"bvh",
+                                             "bvh:builder=sweep",
+                                             "bvh:builder=midpoint",
+                                             "bvh:builder=equal-counts",
+                                             "kdtree",
+                                             "grid",
+                                             "bvh:ordered=off,culling=off",
+                                             "bvh:max_leaf_size=1",
+                                             "kdtree:leaf_size=1",
+                                             "grid:resolution=3",
+                                             "grid:resolution=100",
+                                             "brute-force:box=on"};
+inline constexpr std::size_t fast_structures = 6;
+
+/// HEDGEROW_LONG=1 in the environment asks for the long suites.
+inline std::size_t in_long_runs(std::size_t many, std::size_t few) {
+    return std::getenv("HEDGEROW_LONG") != nullptr ? many : few;
+}
+
+template <class T, int D>
+using Points = std::vector<Vec<T, D>>;
+
+template <class T, int D>
+Vec<T, D> point_in(const Box<T, D>& box, double beyond, Random& random) {
+    Vec<T, D> p;
+    for (int k = 0; k < D; ++k) {
+        const double low = static_cast<double>(box.low[k]), extent = static_cast<double>(box.high[k]) - low;
+        p[k] = static_cast<T>(low - beyond * extent + random.uniform() * extent * (1 + 2 * beyond));
+    }
+    return p;
+}
+
+/// Ray i of a scene. From near and far; aimed exactly at targets (vertices, middles of edges) and starting on
+/// them; parallel to axes with 0, −0 and subnormal components; very short and very long directions; intervals
+/// that begin or end on the way.
+template <class T, int D>
+Ray<T, D> ray_of(const Box<T, D>& box, const Points<T, D>& targets, std::uint64_t i) {
+    Random random(3, i);
+    const auto any_target = [&] { return targets[random.bits() % targets.size()]; };
+    Ray<T, D> ray;
+    ray.origin = point_in(box, i % 3 == 0 ? 2.0 : 0.1, random);
+    const Vec<T, D> target = i % 4 == 1 ? any_target() : point_in(box, 0.0, random);
+    if (i % 16 == 5) ray.origin = any_target();
+    if (i % 64 == 7) ray.origin = ray.origin + Vec<T, D>::all(T(1000) * length(box.extent()));
+    ray.direction = target - ray.origin;
+    if (i % 8 == 2) {
+        constexpr T small[] = {T(0), T(-0.0), std::numeric_limits<T>::denorm_min()};
+        const int axis = static_cast<int>(random.bits() % D);
+        for (int k = 0; k < D; ++k)
+            if (k != axis) ray.direction[k] = small[i / 8 % 3];
+        if (i % 16 == 2) {
+            ray.origin = any_target();
+            ray.origin[axis] -= ray.direction[axis];
+        }
+    }
+    if (i % 32 == 9) ray.direction = ray.direction * T(1e-20);
+    if (i % 32 == 11) ray.direction = ray.direction * T(1e15);
+    if (i % 32 == 13) ray.t_min = T(0.5);
+    if (i % 32 == 15) ray.t_max = T(1);
+    return ray;
+}
+
+/// What an index answers to some rays: closest hit and any hit of each, all hits of every eighth.
+template <class T, int D>
+struct RayAnswers {
+    std::vector<Hit<T>> closest;
+    std::unique_ptr<bool[]> any;
+    std::vector<std::vector<Hit<T>>> all;
+
+    RayAnswers(const AnyIndex<T, D>& index, std::span<const Ray<T, D>> rays)
+        : closest(rays.size()), any(new bool[rays.size()]), all((rays.size() + 7) / 8) {
+        default_executor().for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
+            const auto part = rays.subspan(begin, end - begin);
+            index.closest_hits(part, std::span(closest).subspan(begin, end - begin));
+            index.any_hits(part, {any.get() + begin, end - begin});
+            for (std::size_t i = begin; i < end; ++i)
+                if (i % 8 == 0) index.all_hits(rays[i], all[i / 8]);
+        });
+    }
+};
+
+template <class T, int D>
+void expect_same(const RayAnswers<T, D>& want, const RayAnswers<T, D>& got, std::uint64_t first_ray) {
+    for (std::size_t i = 0; i < want.closest.size(); ++i) {
+        ASSERT_EQ(want.closest[i], got.closest[i]) << "closest hit of ray " << first_ray + i << ": t "
+                                                   << want.closest[i].t << " and " << got.closest[i].t;
+        ASSERT_EQ(bool(want.closest[i]), got.any[i]) << "any hit of ray " << first_ray + i;
+    }
+    for (std::size_t i = 0; i < want.all.size(); ++i)
+        ASSERT_EQ(want.all[i], got.all[i]) << "all hits of ray " << first_ray + 8 * i;
+}
+
+template <class T, int D>
+using Indexes = std::vector<std::unique_ptr<AnyIndex<T, D>>>;
+
+/// Rays `begin` to `end` of the scene: the answers of the first index against those of all others.
+template <class T, int D>
+void expect_equal_rays(const Indexes<T, D>& indexes, const Points<T, D>& targets, std::size_t begin,
+                       std::size_t end) {
+    constexpr std::size_t at_once = 1 << 16;  // whole eighths
+    for (; begin < end; begin += at_once) {
+        std::vector<Ray<T, D>> rays(std::min(at_once, end - begin));
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            rays[i] = ray_of(indexes[0]->bounds(), targets, begin + i);
+        const RayAnswers<T, D> want(*indexes[0], rays);
+        for (std::size_t s = 1; s < indexes.size(); ++s) {
+            SCOPED_TRACE(indexes[s]->structure());
+            expect_same(want, RayAnswers<T, D>(*indexes[s], rays), begin);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    }
+}
+
+/// What an index answers to some points and boxes in and around its scene.
+template <class T, int D>
+struct RegionAnswers {
+    std::vector<Near<T, D>> closest;
+    std::vector<std::vector<Near<T, D>>> nearest;
+    std::vector<std::vector<PrimitiveId>> overlapping;
+
+    RegionAnswers(const AnyIndex<T, D>& index, std::size_t count)
+        : closest(count), nearest(count), overlapping(count) {
+        default_executor().for_each_piece(count, 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                Random random(9, i);
+                const auto p = point_in(index.bounds(), i % 2 == 0 ? 0.0 : 3.0, random);
+                index.closest_points({&p, 1}, {&closest[i], 1});
+                index.nearest(p, i % 20, nearest[i]);
+                Box<T, D> box;
+                for (int corner = 0; corner < 2; ++corner) box.expand(point_in(index.bounds(), 0.2, random));
+                index.overlapping(box, overlapping[i]);
+            }
+        });
+    }
+};
+
+template <class T, int D>
+void expect_same(const RegionAnswers<T, D>& want, const RegionAnswers<T, D>& got) {
+    for (std::size_t i = 0; i < want.closest.size(); ++i) {
+        ASSERT_EQ(want.closest[i], got.closest[i]) << "closest point of " << i;
+        ASSERT_EQ(want.nearest[i], got.nearest[i]) << "nearest of " << i;
+        ASSERT_EQ(want.overlapping[i], got.overlapping[i]) << "overlap of " << i;
+    }
+}
+
+/// The answers of the first index against those of all others.
+template <class T, int D>
+void expect_equal_regions(const Indexes<T, D>& indexes, std::size_t count) {
+    const RegionAnswers<T, D> want(*indexes[0], count);
+    for (std::size_t s = 1; s < indexes.size(); ++s) {
+        SCOPED_TRACE(indexes[s]->structure());
+        expect_same(want, RegionAnswers<T, D>(*indexes[s], count));
+        if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+/// The vertices, and a middle of each triangle's first edge.
+template <class T>
+Points<T, 3> targets_of(const TriangleMesh<T>& mesh) {
+    auto targets = mesh.vertices;
+    for (const auto& t : mesh.triangles)
+        targets.push_back(mesh.vertices[t[0]] * T(0.5) + mesh.vertices[t[1]] * T(0.5));
+    return targets;
+}
+
+}  // namespace hedgerow::matrix

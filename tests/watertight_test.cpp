@@ -1,0 +1,60 @@
+/// No ray gets through a closed mesh at an edge or a vertex, in any structure.
+#include "matrix.h"
+
+#include <hedgerow/scenes/meshes.h>
+
+using namespace hedgerow;
+using namespace hedgerow::matrix;
+
+namespace {
+
+/// A closed mesh without symmetry: a finely cut cube whose every vertex is moved outward by its own amount.
+template <class T>
+TriangleMesh<T> boulder() {
+    TriangleMesh<T> mesh = cube<T>(1200);
+    for (auto& v : mesh.vertices) {
+        Random random(23, static_cast<std::uint64_t>(std::lround(double(v[0]) * 1e3) * 4000003 +
+                                                     std::lround(double(v[1]) * 1e3) * 2003 +
+                                                     std::lround(double(v[2]) * 1e3)));
+        v = Vec<T, 3>(Vec3d(v) * (1 + 0.2 * random.uniform()) + Vec3d(0.1, 0.2, 0.3));
+    }
+    return mesh;
+}
+
+/// From inside, at a vertex or at a point of an edge, rounded.
+template <class T>
+Ray<T, 3> at_an_edge(const TriangleMesh<T>& mesh, std::uint64_t i) {
+    Random random(17, i);
+    const auto& t = mesh.triangles[random.bits() % mesh.size()];
+    const double u = i % 3 == 0 ? 0 : random.uniform();
+    const Vec3d on_edge = Vec3d(mesh.vertices[t[0]]) * (1 - u) + Vec3d(mesh.vertices[t[1]]) * u;
+    const Vec<T, 3> origin(Vec3d(0.1, 0.2, 0.3) + random.direction<3>() * 0.5);
+    return {origin, Vec<T, 3>(on_edge) - origin};
+}
+
+template <class T>
+class Watertight : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Watertight, Scalars);
+
+TYPED_TEST(Watertight, NoRayLeaksOutOfAClosedMesh) {
+    using T = TypeParam;
+    const auto mesh = boulder<T>();
+    const std::size_t count = in_long_runs(10000000, 1000000);
+    for (const char* spec : {"bvh", "bvh:builder=midpoint", "kdtree", "grid"}) {
+        SCOPED_TRACE(spec);
+        const auto index = build_any(spec, mesh);
+        std::atomic<std::uint64_t> leaks{0}, first_leak{~0ull};
+        default_executor().for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto ray = at_an_edge(mesh, i);
+                bool hit = false;
+                index->any_hits({&ray, 1}, {&hit, 1});
+                if (!hit && leaks++ == 0) first_leak = i;
+            }
+        });
+        EXPECT_EQ(leaks, 0u) << "the first found is ray " << first_leak;
+    }
+}
+
+}  // namespace
