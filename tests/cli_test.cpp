@@ -120,6 +120,35 @@ TEST_F(Cli, WhatIsGeneratedCanBeRead) {
     EXPECT_NE(r.output.find("\"closed\": true"), std::string::npos) << r.output;
 }
 
+TEST_F(Cli, PointsAreKnownByWhatTheirFileHoldsAndDrawnAsSpheres) {
+    for (const char* name : {"p.ply", "p.npy", "p.csv"}) {
+        ASSERT_EQ(run("generate gen:points:100 -o " + file(name)).code, 0);
+        const auto r = run("info --json " + file(name));
+        EXPECT_NE(r.output.find("\"points\": 100"), std::string::npos) << r.output;
+        ASSERT_EQ(run("render --quiet --size 64x48 " + file(name) + " -o " + file("p.png")).code, 0);
+        const auto image = hedgerow::load_png(file("p.png"));
+        int drawn = 0;
+        for (int y = 0; y < 48; ++y)
+            for (int x = 0; x < 64; ++x) drawn += image.at(x, y) != image.at(0, 0);
+        EXPECT_GT(drawn, 50) << name;
+    }
+    ASSERT_EQ(run("generate gen:points2d:100 -o " + file("flat.npy")).code, 0);
+    EXPECT_NE(run("info " + file("flat.npy")).output.find("dimension              2"), std::string::npos);
+}
+
+TEST_F(Cli, DoublesAreKept) {
+    std::ofstream(file("one.csv")) << "0.1,0.2,0.3\n";
+    EXPECT_NE(run("info --json --precision double " + file("one.csv")).output.find("0.1,"),
+              std::string::npos);
+    EXPECT_EQ(run("info --json " + file("one.csv")).output.find("0.1,"), std::string::npos);
+    ASSERT_EQ(run("render gen:teapot:200 --quiet --size 32x24 --precision double -o " + file("d.png")).code,
+              0);
+}
+
+TEST_F(Cli, AViewAlongUpIsRefused) {
+    expect_bad("render gen:cube --eye 0,0,5 --target 0,0,0 --up z -o " + file("x.png"), "--eye");
+}
+
 TEST_F(Cli, AnInterruptedRenderSavesWhatIsDone) {
     const std::string output = file("part.png");
     const pid_t child = fork();

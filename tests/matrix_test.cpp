@@ -20,7 +20,11 @@ void expect_equal(const char* name, const P& set, const Points<typename P::Scala
         EXPECT_EQ(indexes.back()->validate(), "") << spec;
     }
     if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(10000, 200));
-    if (!targets.empty()) expect_equal_rays(indexes, targets, 0, in_long_runs(1000000, 1500));
+    if (targets.empty()) return;
+    const std::size_t for_all = in_long_runs(100000, 1500);
+    expect_equal_rays(indexes, targets, 0, for_all);
+    indexes.resize(1 + fast_structures);
+    expect_equal_rays(indexes, targets, for_all, in_long_runs(1000000, for_all));
 }
 template <class T>
 void expect_equal(const char* name, const TriangleMesh<T>& mesh) {

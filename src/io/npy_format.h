@@ -9,6 +9,8 @@
 namespace hedgerow::detail {
 
 NpyArray read_npy(ByteSource& file);
+/// Only the header's elements along each axis.
+std::vector<std::size_t> read_npy_shape(ByteSource& file);
 
 /// The header of version 1. `dtype` as in NpyArray.
 std::string npy_header(const std::string& dtype, const std::vector<std::size_t>& shape);

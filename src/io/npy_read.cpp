@@ -176,6 +176,10 @@ std::vector<std::byte> transposed(const std::vector<std::byte>& from, const Head
 
 }  // namespace
 
+std::vector<std::size_t> read_npy_shape(ByteSource& file) {
+    return read_header(file).shape;
+}
+
 NpyArray read_npy(ByteSource& file) {
     const Header header = read_header(file);
     NpyArray array;

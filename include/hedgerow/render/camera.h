@@ -1,6 +1,9 @@
 /// A pinhole camera, and where to put it when nobody says.
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/geometry/ray.h>
 
@@ -9,6 +12,8 @@ namespace hedgerow {
 struct Camera {
     Vec3f eye, target, up{0, 0, 1};
     float field_of_view = 45;  // vertical, in degrees
+    /// Towards the light, which is far away; 0: from above, behind and beside the camera.
+    Vec3f light{0, 0, 0};
 };
 
 /// From three quarters above, far enough back that the box fills most of the picture. A box that is flattest
@@ -20,13 +25,17 @@ inline Camera automatic_camera(const Box3f& box) {
     const bool y_up = extent[1] < extent[2] && extent[1] < extent[0];
     c.up = y_up ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1);
     c.eye =
-        c.target + (y_up ? Vec3f(0.45f, 0.42f, 0.8f) : Vec3f(0.45f, -0.8f, 0.42f)) * (1.12f * length(extent));
+        c.target + (y_up ? Vec3f(0.45f, 0.42f, 0.8f) : Vec3f(0.45f, -0.8f, 0.42f)) * (1.25f * length(extent));
     return c;
 }
 
-/// The teapot in its stadium from a few paces away, the stands behind it: from afar it is a dot.
-inline Camera beside_the_teapot() {
-    return {{7, -12, 5.5f}, {0, 0, 2.4f}, {0, 0, 1}, 45};
+/// Where a generated scene is best seen from, for those that the automatic view does not serve.
+inline std::optional<Camera> camera_for(std::string_view scene) {
+    if (scene == "teapot-in-stadium")  // from a few paces away, the stands behind it: from afar it is a dot
+        return Camera{{7, -12, 5.5f}, {0, 0, 2.4f}, {0, 0, 1}, 45};
+    if (scene == "cornell-box")  // through its open side, as it was photographed (Goral et al. 1984)
+        return Camera{{278, 273, -800}, {278, 273, 0}, {0, 1, 0}, 39.3f, {0.3f, 0.25f, -1}};
+    return std::nullopt;
 }
 
 /// Rays through the picture plane: x and y in pixels from the top left, fractions within a pixel.

@@ -47,9 +47,7 @@ public:
           make_(o.camera, o.width, o.height),
           values_(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height)),
           done_(static_cast<std::size_t>(o.height)),
-          light_(normalized(o.camera.up +
-                            cross(normalized(o.camera.target - o.camera.eye), o.camera.up) * 0.5f -
-                            normalized(o.camera.target - o.camera.eye) * 0.35f)),
+          light_(light_of(o.camera)),
           diagonal_(
               static_cast<float>(length(index.bounds().empty() ? Vec<T, 3>() : index.bounds().extent()))) {}
 
@@ -66,6 +64,11 @@ public:
     }
 
 private:
+    static Vec3f light_of(const Camera& c) {
+        if (length2(c.light) > 0) return normalized(c.light);
+        const Vec3f forward = normalized(c.target - c.eye);
+        return normalized(c.up + cross(forward, c.up) * 0.5f - forward * 0.35f);
+    }
     /// Colour, or for `steps` the number of visits, of every sample's mean.
     bool row(int y, const Progress& progress) {
         Visits visits;

@@ -1,0 +1,53 @@
+#include "common.h"
+
+#include <chrono>
+#include <filesystem>
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include <hedgerow/error.h>
+
+namespace hedgerow::cli {
+
+std::atomic<bool> interrupted{false};
+
+double now() {
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+ProgressLine::ProgressLine(std::string what, bool quiet)
+    : what_(std::move(what)), shown_(!quiet && isatty(2)), start_(now()) {}
+ProgressLine::~ProgressLine() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+}
+Progress ProgressLine::progress() {
+    return {[this](std::uint64_t done, std::uint64_t total) { show(done, total); }, &interrupted};
+}
+void ProgressLine::show(std::uint64_t done, std::uint64_t total) {
+    const std::lock_guard lock(mutex_);
+    if (!shown_ || now() - last_ < 0.1) return;
+    last_ = now();
+    const double rate = double(done) / (last_ - start_ + 1e-9);
+    if (total > 0)
+        fmt::print(stderr, "\r\033[K{} {:3.0f}%  {:.3g}/s  {:.0f} s left", what_,
+                   100.0 * double(done) / double(total), rate, double(total - done) / (rate + 1e-9));
+    else
+        fmt::print(stderr, "\r\033[K{} {}  {:.3g}/s", what_, done, rate);
+}
+
+std::string generated_name(const Common& c) {
+    return c.scene.starts_with("gen:") ? parse_scene_spec(c.scene).name : std::string();
+}
+
+void check_writable(const std::string& path) {
+    const auto folder = std::filesystem::absolute(path).parent_path();
+    if (!std::filesystem::is_directory(folder))
+        throw InputError(fmt::format("{}: there is no folder {}; make it first", path, folder.string()));
+    if (std::filesystem::is_directory(path) || access(folder.c_str(), W_OK) != 0)
+        throw InputError(path + ": cannot be written; choose another output");
+}
+
+}  // namespace hedgerow::cli

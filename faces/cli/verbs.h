@@ -1,0 +1,21 @@
+/// The verbs. Each adds its options to the tool and returns what runs it once they are read: the exit code.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include "common.h"
+
+namespace hedgerow::cli {
+
+using Run = std::function<int()>;
+
+Run add_render(CLI::App& verb);
+Run add_info(CLI::App& verb);
+Run add_generate(CLI::App& verb);
+
+/// The options that every verb has.
+void add_common(CLI::App& verb, Common& c, bool output);
+
+}  // namespace hedgerow::cli
