@@ -146,7 +146,7 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--up", a->up, "x, y or z")->check(CLI::IsMember({"auto", "x", "y", "z"}));
     verb.add_option("--fov", a->fov, "vertical angle of view in degrees; 45 if not given")
         ->check(CLI::Range(1.0f, 170.0f));
-    verb.add_option("--radius", a->radius, "of points, drawn as spheres; 0: a 400th of the diagonal")
+    verb.add_option("--radius", a->radius, "of points, drawn as spheres; 0: by their number")
         ->check(CLI::NonNegativeNumber);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
     return [a] {
