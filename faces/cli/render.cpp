@@ -1,4 +1,6 @@
 /// hedgerow render: a picture, by rays.
+#include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -113,8 +115,9 @@ template <class T>
 int render(const RenderArguments& a, const PointCloud<T, 3>& cloud) {
     Box<T, 3> box;
     for (const auto& p : cloud.points) box.expand(p);
-    const T radius =
-        a.radius > 0 ? static_cast<T>(a.radius) : (cloud.size() == 0 ? T(0) : length(box.extent()) / T(400));
+    T radius = static_cast<T>(a.radius);
+    if (radius == 0 && cloud.size() > 0)
+        radius = length(box.extent()) / (10 * std::cbrt(static_cast<T>(cloud.size())));
     SphereSet<T, 3> spheres;
     for (const auto& p : cloud.points) spheres.spheres.push_back({p, radius > 0 ? radius : T(1)});
     return render(a, spheres);
