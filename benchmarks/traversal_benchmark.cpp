@@ -44,8 +44,9 @@ std::vector<Ray3f> random_lines(const Box3f& box, std::size_t n) {
     return lines;
 }
 
-/// Cost by counts (1 an inner node, 1 a primitive) of the rays that meet the scene's box at all.
-double counted_cost(const AnyIndex<float, 3>& index, const std::vector<Ray3f>& rays, bool all) {
+/// Cost by counts, in the SAH's units, of the rays that meet the scene's box at all.
+double counted_cost(const SahOptions& unit, const AnyIndex<float, 3>& index, const std::vector<Ray3f>& rays,
+                    bool all) {
     std::vector<Hit<float>> hits;
     Visits visits;
     double met = 0;
@@ -58,18 +59,20 @@ double counted_cost(const AnyIndex<float, 3>& index, const std::vector<Ray3f>& r
         else
             index.closest_hits({&ray, 1}, {&hit, 1}, {&visits, 1});
     }
-    return double(visits.nodes + visits.primitives) / met;
+    return (unit.traversal_cost * double(visits.nodes) + unit.intersection_cost * double(visits.primitives)) /
+           met;
 }
 
 void prediction(const TriangleMesh<float>& mesh, const RaySet& primary) {
     const auto index = build(mesh);
     const auto any = build_any("bvh", mesh);
     const auto lines = random_lines(index.bounds(), 100000);
+    const SahOptions& unit = index.structure().options();
     std::printf(
         "\nSAH cost predicted %.1f; counted: random lines, all hits %.1f; random lines, closest hit %.1f; "
         "primary rays %.1f\n\n",
-        index.structure().sah_cost(), counted_cost(*any, lines, true), counted_cost(*any, lines, false),
-        counted_cost(*any, primary.rays, false));
+        index.structure().sah_cost(), counted_cost(unit, *any, lines, true),
+        counted_cost(unit, *any, lines, false), counted_cost(unit, *any, primary.rays, false));
 }
 
 }  // namespace

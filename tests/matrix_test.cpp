@@ -19,7 +19,7 @@ void expect_equal(const char* name, const P& set, const Points<typename P::Scala
         indexes.push_back(build_any(spec, set));
         EXPECT_EQ(indexes.back()->validate(), "") << spec;
     }
-    if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(10000, 200));
+    if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));
     if (targets.empty()) return;
     const std::size_t for_all = in_long_runs(100000, 1500);
     expect_equal_rays(indexes, targets, 0, for_all);
