@@ -7,7 +7,6 @@
 
 #define TINYOBJLOADER_USE_DOUBLE
 #define TINYOBJLOADER_IMPLEMENTATION
-#define tinyobj tinyobj_oracle  // apart from the one that the library may be linked with
 #include <tiny_obj_loader.h>
 
 namespace hedgerow {
