@@ -1,0 +1,134 @@
+/// AnyIndex over each structure and kind of primitives. Each scalar is instantiated in a file of its own,
+/// since it takes the compiler a while.
+#pragma once
+
+#include <hedgerow/any_index.h>
+
+#include "structure_options.h"
+
+namespace hedgerow {
+
+namespace detail {
+
+/// Calls f(i, count) for each i, with that query's count or with none.
+template <class F>
+void for_each_query(std::size_t n, std::span<Visits> visits, F f) {
+    if (visits.empty()) {
+        for (std::size_t i = 0; i < n; ++i) f(i, no_visits);
+    } else {
+        for (std::size_t i = 0; i < n; ++i) f(i, visits[i]);
+    }
+}
+template <class F>
+std::size_t counted(Visits* visits, F f) {
+    return visits == nullptr ? f(no_visits) : f(*visits);
+}
+
+template <class S, class P>
+class Holder final : public AnyIndex<typename P::Scalar, P::dimension> {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+
+    Holder(std::string name, const P& primitives, const typename S::Options& options, Executor& executor)
+        : name_(std::move(name)), index_(primitives, options, executor) {}
+
+    std::string_view structure() const override { return name_; }
+    const Box<T, D>& bounds() const override { return index_.bounds(); }
+    std::size_t size() const override { return index_.size(); }
+    std::size_t bytes() const override { return index_.bytes(); }
+    std::size_t node_count() const override { return index_.structure().node_count(); }
+    std::size_t leaf_count() const override { return index_.structure().leaf_count(); }
+    std::size_t item_count() const override { return index_.structure().items().size(); }
+    int depth() const override { return index_.structure().depth(); }
+    std::string validate() const override { return index_.validate(); }
+
+    void closest_hits(std::span<const Ray<T, D>> rays, std::span<Hit<T>> hits,
+                      std::span<Visits> visits) const override {
+        for_each_query(rays.size(), visits, [&](std::size_t i, auto& count) {
+            hits[i] = closest_hit(index_, rays[i], KeepAll{}, count).value_or(Hit<T>{});
+        });
+    }
+    void any_hits(std::span<const Ray<T, D>> rays, std::span<bool> hits,
+                  std::span<Visits> visits) const override {
+        for_each_query(rays.size(), visits, [&](std::size_t i, auto& count) {
+            hits[i] = any_hit(index_, rays[i], KeepAll{}, count);
+        });
+    }
+    std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits) const override {
+        return counted(visits,
+                       [&](auto& count) { return hedgerow::all_hits(index_, ray, hits, KeepAll{}, count); });
+    }
+    void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
+                        std::span<Visits> visits) const override {
+        constexpr T anywhere = std::numeric_limits<T>::max();
+        for_each_query(points.size(), visits, [&](std::size_t i, auto& count) {
+            found[i] = closest_point(index_, points[i], anywhere, count).value_or(Near<T, D>{});
+        });
+    }
+    std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
+                        Visits* visits) const override {
+        constexpr T anywhere = std::numeric_limits<T>::max();
+        return counted(
+            visits, [&](auto& count) { return hedgerow::nearest(index_, point, k, found, anywhere, count); });
+    }
+    std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
+                            Visits* visits) const override {
+        return counted(visits, [&](auto& count) { return hedgerow::overlapping(index_, box, found, count); });
+    }
+
+private:
+    std::string name_;
+    Index<S, P> index_;
+};
+
+/// The one list of structures: its names are what the tool, the tests and the bindings know.
+template <class F>
+void for_each_structure(F f) {
+    f.template operator()<BruteForce>("brute-force");
+    f.template operator()<Grid>("grid");
+    f.template operator()<KdTree>("kdtree");
+    f.template operator()<Bvh>("bvh");
+}
+
+}  // namespace detail
+
+template <class P>
+std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(std::string_view spec,
+                                                                      const P& primitives,
+                                                                      Executor& executor) {
+    using T = typename P::Scalar;
+    constexpr int D = P::dimension;
+    const auto colon = spec.find(':');
+    const std::string_view wanted = spec.substr(0, colon);
+    detail::OptionReader in(wanted,
+                            colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1));
+    std::unique_ptr<AnyIndex<T, D>> built;
+    std::vector<std::string_view> known;
+    detail::for_each_structure([&]<template <class, int> class S>(std::string_view name) {
+        known.push_back(name);
+        if (name != wanted) return;
+        typename S<T, D>::Options options;
+        detail::read_options(in, options, std::type_identity<S<T, D>>());
+        in.finish();
+        const auto view = view_of(primitives);
+        built = std::make_unique<detail::Holder<S<T, D>, std::remove_const_t<decltype(view)>>>(
+            std::string(spec), view, options, executor);
+    });
+    if (!built)
+        throw InputError("no structure is called '" + std::string(wanted) + "'" + suggestion(wanted, known) +
+                         "; there are " + detail::choices(known));
+    return built;
+}
+
+/// Everything for one scalar.
+#define HEDGEROW_BUILD_ANY(T)                                                                                \
+    template std::unique_ptr<AnyIndex<T, 3>> build_any(std::string_view, const TriangleMesh<T>&, Executor&); \
+    template std::unique_ptr<AnyIndex<T, 3>> build_any(std::string_view, const SphereSet<T, 3>&, Executor&); \
+    template std::unique_ptr<AnyIndex<T, 3>> build_any(std::string_view, const PointCloud<T, 3>&,            \
+                                                       Executor&);                                           \
+    template std::unique_ptr<AnyIndex<T, 2>> build_any(std::string_view, const PointCloud<T, 2>&,            \
+                                                       Executor&);                                           \
+    template std::unique_ptr<AnyIndex<T, 2>> build_any(std::string_view, const SegmentSet<T>&, Executor&);
+
+}  // namespace hedgerow
