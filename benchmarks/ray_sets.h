@@ -72,10 +72,10 @@ inline std::vector<Ray3f> diffuse_rays(const TriangleMesh<float>& mesh, const st
         if (!hits[i]) continue;
         Vec3f n = normalized(view.normal(hits[i].element));
         if (dot(n, rays[i].direction) > 0) n = -n;
-        const Vec3f p = rays[i].at(hits[i].t);
         Random random(7, i);
         const Vec3f d(random.direction<3>());
-        result.push_back({offset_origin(p, n, n, hits[i].t), normalized(n + d * 0.999f)});
+        result.push_back({offset_origin(rays[i], hits[i].t, view.triangle(hits[i].element), n),
+                          normalized(n + d * 0.999f)});
     }
     return result;
 }

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <hedgerow/geometry/offset.h>
+#include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/all_hits.h>
 #include <hedgerow/queries/any_hit.h>
@@ -34,7 +36,10 @@ public:
           std::shared_ptr<const void> owner = {})
         : owner_(std::move(owner)),
           primitives_(std::move(primitives)),
-          structure_(S::build(primitives_, options, executor)),
+          structure_(in_ieee_mode([&] {
+              IeeeExecutor threads(executor);
+              return S::build(primitives_, options, threads);
+          })),
           leaves_(pack(primitives_, structure_, executor)) {}
 
     const S& structure() const { return structure_; }
@@ -224,15 +229,6 @@ void any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, 
     executor.for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(index, rays[i]);
     });
-}
-
-/// A ray's new origin off the surface that was hit, on the side that `toward` points to: moved along the
-/// normal by the error that a point computed as ray.at(t) can have.
-template <class T>
-Vec<T, 3> offset_origin(const Vec<T, 3>& point, const Vec<T, 3>& normal, const Vec<T, 3>& toward, T reach) {
-    const Vec<T, 3> n = normalized(normal);
-    const T step = (max_component(abs(point)) + std::abs(reach)) * (64 * unit_roundoff<T>);
-    return dot(n, toward) < 0 ? point - n * step : point + n * step;
 }
 
 }  // namespace hedgerow

@@ -3,6 +3,9 @@
 /// monotone, and closest points are clamped into the box of their shape).
 #pragma once
 
+#include <algorithm>
+#include <type_traits>
+
 #include <hedgerow/geometry/shapes.h>
 
 namespace hedgerow {
@@ -30,51 +33,58 @@ constexpr Vec<T, D> clamped(const Vec<T, D>& p, const Box<T, D>& box) {
     return min(max(p, box.low), box.high);
 }
 
+namespace detail {
+/// What brings vectors to lengths whose fourth powers are numbers. Floats in double need nothing.
+template <class T, int D, class... More>
+double safe_scale(const Vec<double, D>& first, const More&... more) {
+    if constexpr (std::is_same_v<T, float>) return 1;
+    return scale_to_one(std::max({max_component(abs(first)), max_component(abs(more))...}));
+}
+}  // namespace detail
+
 template <class T, int D>
-Vec<T, D> closest_point(const Vec<T, D>& p, const Segment<T, D>& s) {
-    const Vec<double, D> a(s.a), ab = Vec<double, D>(s.b) - a;
+Vec<T, D> closest_point(const Vec<T, D>& query, const Segment<T, D>& s) {
+    using V = Vec<double, D>;
+    V ab = V(s.b) - V(s.a), ap = V(query) - V(s.a);
+    const double scale = detail::safe_scale<T>(ab, ap);
+    ab = ab * scale, ap = ap * scale;
     const double l = length2(ab);
-    double u = l > 0 ? dot(Vec<double, D>(p) - a, ab) / l : 0;
-    u = u < 0 ? 0 : (u > 1 ? 1 : u);
-    return clamped(Vec<T, D>(a + ab * u), s.bounds());
+    const double u = l > 0 ? std::clamp(dot(ap, ab) / l, 0.0, 1.0) : 0;
+    return clamped(Vec<T, D>(V(s.a) + (V(s.b) - V(s.a)) * u), s.bounds());
 }
 
-/// By the seven regions of the triangle's plane (Ericson, Real-Time Collision Detection, 5.1.5), in double.
+/// The foot on the plane if it lies inside, else the best of the edges: in double. In a sliver rounding may
+/// take a foot for inside or not, so there both are tried; it then errs by no more than the sliver's width.
 template <class T, int D>
 Vec<T, D> closest_point(const Vec<T, D>& query, const Triangle<T, D>& tri) {
     using V = Vec<double, D>;
-    const V p(query), a(tri.a), b(tri.b), c(tri.c);
-    const V ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return tri.a;
-    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return tri.b;
-    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return tri.c;
-    const auto on_edge = [&](const Vec<T, D>& from, const Vec<T, D>& to) {
-        return clamped(closest_point(query, Segment<T, D>{from, to}), tri.bounds());
-    };
-    const double vc = product(d1, d4) - product(d3, d2);
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return on_edge(tri.a, tri.b);
-    const double vb = product(d5, d2) - product(d1, d6);
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return on_edge(tri.a, tri.c);
-    const double va = product(d3, d6) - product(d5, d4);
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return on_edge(tri.b, tri.c);
-    const double sum = va + vb + vc;
-    if (!(sum > 0)) {  // no area, and rounding hid it: the best of the edges
-        Vec<T, D> best = on_edge(tri.a, tri.b);
-        for (const auto& q : {on_edge(tri.a, tri.c), on_edge(tri.b, tri.c)})
-            if (distance2(query, q) < distance2(query, best)) best = q;
-        return best;
+    const V whole_ab = V(tri.b) - V(tri.a), whole_ac = V(tri.c) - V(tri.a);
+    V ab = whole_ab, ac = whole_ac, ap = V(query) - V(tri.a);
+    const double scale = detail::safe_scale<T>(ab, ac, ap);
+    ab = ab * scale, ac = ac * scale, ap = ap * scale;
+    // Least squares for ap = v·ab + w·ac, by Cramer's rule.
+    const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
+    const double area2 = product(bb, cc) - product(bc, bc);
+    const double v = (product(cc, pb) - product(bc, pc)) / area2;
+    const double w = (product(bb, pc) - product(bc, pb)) / area2;
+    const bool inside = v >= 0 && w >= 0 && v + w <= 1;  // no, if there is no area
+    const Vec<T, D> foot =
+        inside ? clamped(Vec<T, D>(V(tri.a) + whole_ab * v + whole_ac * w), tri.bounds()) : tri.a;
+    if (inside && area2 > 0x1p-8 * product(bb, cc)) return foot;
+
+    Vec<T, D> best = foot;
+    for (const auto& edge : {Segment<T, D>{tri.a, tri.b}, {tri.b, tri.c}, {tri.c, tri.a}}) {
+        const auto q = clamped(closest_point(query, edge), tri.bounds());
+        if (distance2(query, q) < distance2(query, best)) best = q;
     }
-    const V inside = a + ab * (vb / sum) + ac * (vc / sum);
-    return clamped(Vec<T, D>(inside), tri.bounds());
+    return best;
 }
 
 /// On the surface; for the center itself, the point along the first axis.
 template <class T, int D>
 Vec<T, D> closest_point(const Vec<T, D>& p, const Sphere<T, D>& s) {
     Vec<double, D> from = Vec<double, D>(p) - Vec<double, D>(s.center);
+    from = from * detail::safe_scale<T>(from);
     double l = length(from);
     if (!(l > 0)) from = {}, from[0] = l = 1;
     return clamped(Vec<T, D>(Vec<double, D>(s.center) + from * (static_cast<double>(s.radius) / l)),

@@ -122,8 +122,7 @@ inline double scale_of(const ShearedCorner<double>& a, const ShearedCorner<doubl
                        const ShearedCorner<double>& c) {
     double m = 0;
     for (const double x : {a.x, a.y, b.x, b.y, c.x, c.y}) m = std::fabs(x) > m ? std::fabs(x) : m;
-    if (!(m > 0) || (m > 0x1p-200 && m < 0x1p200)) return 1;
-    return std::ldexp(1.0, -std::ilogb(m));
+    return scale_to_one(m);
 }
 /// x1·y2 − x2·y1, exact in sign. Products of floats are exact in double.
 constexpr double edge(const ShearedCorner<float>& p, const ShearedCorner<float>& q, double) {

@@ -27,15 +27,25 @@ constexpr bool meet_along(const Vec<double, D>& axis, const std::array<Vec<doubl
     const double radius = dot(abs(axis), half);
     return low <= radius && high >= -radius;
 }
+/// Brings everything to about 1 where products of three could over- or underflow.
+template <class T, int D, std::size_t N>
+void scale(Vec<double, D>& half, std::array<Vec<double, D>, N>& points) {
+    Vec<double, D> most = half;
+    for (const auto& p : points) most = max(most, abs(p));
+    const double s = safe_scale<T>(most);
+    half = half * s;
+    for (auto& p : points) p = p * s;
+}
 }  // namespace detail
 
 /// Separating axes: the box's, the plane's, the nine products of edges (Akenine-Möller 2001), in double.
 template <class T>
-constexpr bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
+bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
     if (!overlap(tri.bounds(), box)) return false;
     const Vec3d center = Box3d{Vec3d(box.low), Vec3d(box.high)}.center();
-    const Vec3d half = Vec3d(box.high) - center;
-    const std::array<Vec3d, 3> p = {Vec3d(tri.a) - center, Vec3d(tri.b) - center, Vec3d(tri.c) - center};
+    Vec3d half = Vec3d(box.high) - center;
+    std::array<Vec3d, 3> p = {Vec3d(tri.a) - center, Vec3d(tri.b) - center, Vec3d(tri.c) - center};
+    detail::scale<T>(half, p);
     if (!detail::meet_along(cross(p[1] - p[0], p[2] - p[0]), p, half)) return false;
     for (int i = 0; i < 3; ++i) {
         const Vec3d edge = p[static_cast<std::size_t>((i + 1) % 3)] - p[static_cast<std::size_t>(i)];
@@ -49,21 +59,24 @@ constexpr bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
 }
 
 template <class T>
-constexpr bool overlap(const Segment<T, 2>& s, const Box<T, 2>& box) {
+bool overlap(const Segment<T, 2>& s, const Box<T, 2>& box) {
     if (!overlap(s.bounds(), box)) return false;
     const Vec2d center = Box2d{Vec2d(box.low), Vec2d(box.high)}.center();
-    const std::array<Vec2d, 2> p = {Vec2d(s.a) - center, Vec2d(s.b) - center};
+    Vec2d half = Vec2d(box.high) - center;
+    std::array<Vec2d, 2> p = {Vec2d(s.a) - center, Vec2d(s.b) - center};
+    detail::scale<T>(half, p);
     const Vec2d along = p[1] - p[0];
-    return detail::meet_along(Vec2d(-along[1], along[0]), p, Vec2d(box.high) - center);
+    return detail::meet_along(Vec2d(-along[1], along[0]), p, half);
 }
 
 /// The solid ball against the box.
 template <class T, int D>
-constexpr bool overlap(const Sphere<T, D>& s, const Box<T, D>& box) {
+bool overlap(const Sphere<T, D>& s, const Box<T, D>& box) {
     if (!overlap(s.bounds(), box)) return false;
-    const double r = static_cast<double>(s.radius);
     const Box<double, D> wide{Vec<double, D>(box.low), Vec<double, D>(box.high)};
-    return distance2(Vec<double, D>(s.center), wide) <= product(r, r);
+    const Vec<double, D> outside = offset_outside(Vec<double, D>(s.center), wide);
+    const double r = static_cast<double>(s.radius), unit = std::is_same_v<T, float> ? 1 : scale_to_one(r);
+    return length2(outside * unit) <= product(r * unit, r * unit);
 }
 
 }  // namespace hedgerow

@@ -6,6 +6,7 @@
 #error "hedgerow: -ffast-math (or -Ofast) breaks the numerics contract; build without it"
 #endif
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -81,6 +82,13 @@ constexpr T difference_of_products(T a, T b, T c, T d) {
     return (p.high - q.high) + (p.low - q.low);
 }
 
+/// A power of two that brings a number of magnitude m to about 1; 1 where products of four such numbers
+/// neither over- nor underflow anyway.
+inline double scale_to_one(double m) {
+    if (!(m > 0) || (m > 0x1p-200 && m < 0x1p200)) return 1;
+    return std::ldexp(1.0, -std::max(std::ilogb(m), -1000));
+}
+
 namespace detail {
 #if defined(__SSE2__)
 using FloatControl = unsigned;
@@ -111,6 +119,12 @@ inline void set_float_control(FloatControl) {}
 inline constexpr FloatControl not_ieee = 0;
 #endif
 
+/// A function of its own: the compiler may move arithmetic, but not a call, past a change of the mode.
+template <class F>
+[[gnu::noinline]] decltype(auto) call(F& f) {
+    asm volatile("" ::: "memory");
+    return f();
+}
 template <class F>
 [[gnu::noinline]] decltype(auto) run_in_ieee_mode(F& f, FloatControl saved) {
     struct Restore {
@@ -118,7 +132,7 @@ template <class F>
         ~Restore() { set_float_control(saved); }
     } restore{saved};
     set_float_control(saved & ~not_ieee);
-    return f();
+    return call(f);
 }
 }  // namespace detail
 

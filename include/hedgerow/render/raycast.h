@@ -120,7 +120,8 @@ private:
         const float facing = dot(n, light_);
         Vec3f light = sky;
         if (facing > 0) {
-            const Vec<T, 3> origin = offset_origin(ray.at(hit.t), Vec<T, 3>(n), Vec<T, 3>(n), hit.t);
+            const Vec<T, 3> origin =
+                offset_origin(ray, hit.t, primitives_.bounds(hit.element), Vec<T, 3>(n), Vec<T, 3>(n));
             const Ray<T, 3> shadow{origin, Vec<T, 3>(light_)};
             bool blocked = false;
             Visits here;

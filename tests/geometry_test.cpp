@@ -1,0 +1,322 @@
+/// The floor of geometry against exact or wider arithmetic: rounding, vectors and boxes, closest points,
+/// overlap.
+#include "exact.h"
+
+#include <hedgerow/geometry/overlap.h>
+
+using namespace hedgerow;
+using namespace hedgerow::exact;
+
+namespace {
+
+template <class T>
+class Geometry : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Geometry, Scalars);
+
+// ---- Rounding
+
+TYPED_TEST(Geometry, TwoProductsAreExact) {
+    using T = TypeParam;
+    static_assert(two_product(T(3), T(5)).high == 15 && two_product(T(3), T(5)).low == 0);
+    for (std::uint64_t i = 0; i < 100000; ++i) {
+        Random random(1, i);
+        constexpr int reach = std::is_same_v<T, float> ? 30 : 400;
+        const T a = std::ldexp(T(random.uniform(-1, 1)), integer(random, reach));
+        const T b = std::ldexp(T(random.uniform(-1, 1)), integer(random, reach));
+        const auto p = two_product(a, b);
+        ASSERT_EQ(p.high, product(a, b));
+        ASSERT_EQ(p.high, a * b);
+        ASSERT_EQ(p.low, std::fma(a, b, -p.high)) << a << " * " << b;
+    }
+}
+
+TYPED_TEST(Geometry, DifferencesOfProductsHaveTheExactSign) {
+    using T = TypeParam;
+    constexpr int digits = std::numeric_limits<T>::digits;
+    int zeros = 0;
+    for (std::uint64_t i = 0; i < 100000; ++i) {
+        Random random(2, i);
+        const auto any = [&] { return static_cast<std::int64_t>(random.bits() >> (64 - digits)); };
+        std::int64_t a = any(), b = any(), c = a + integer(random, 2), d = b + integer(random, 2);
+        if (i % 2 == 0) c = any(), d = any();
+        const Int top = Int(1) << digits;
+        if (c < 0 || d < 0 || c > top || d > top) continue;
+        const Int exact = Int(a) * b - Int(c) * d;
+        const T got = difference_of_products(T(a), T(b), T(c), T(d));
+        ASSERT_EQ(got > 0, exact > 0) << a << ' ' << b << ' ' << c << ' ' << d;
+        ASSERT_EQ(got < 0, exact < 0) << a << ' ' << b << ' ' << c << ' ' << d;
+        const Real error = static_cast<Real>(got) - static_cast<Real>(exact);
+        ASSERT_LE(std::fabs(error), 8 * unit_roundoff<T> * std::fabs(static_cast<Real>(exact)));
+        zeros += exact == 0;
+    }
+    EXPECT_GT(zeros, 100);
+}
+
+#if defined(__SSE2__)
+TYPED_TEST(Geometry, InIeeeModeSubnormalsLiveAndTheModeIsRestored) {
+    using T = TypeParam;
+    const volatile T least = std::numeric_limits<T>::min();
+    const unsigned before = _mm_getcsr();
+    const unsigned flushing = before | 0xC040;  // to zero, also on the way in; rounding up
+    const auto half = [&] { return least * T(0.5); };
+    struct Thrown {};
+    _mm_setcsr(flushing);
+    const T outside = half();
+    const T inside = in_ieee_mode(half);
+    const unsigned after = _mm_getcsr();
+    unsigned after_throw = 0;
+    try {
+        in_ieee_mode([] { throw Thrown(); });
+    } catch (const Thrown&) {
+        after_throw = _mm_getcsr();
+    }
+    _mm_setcsr(before);
+    EXPECT_EQ(outside, 0);
+    EXPECT_EQ(inside, std::numeric_limits<T>::min() / 2);
+    EXPECT_EQ(after & 0xFFC0, flushing & 0xFFC0);
+    EXPECT_EQ(after_throw & 0xFFC0, flushing & 0xFFC0);
+    EXPECT_EQ(in_ieee_mode([&]() -> const volatile T& { return least; }), least);
+}
+#endif
+
+// ---- Vectors and boxes
+
+TYPED_TEST(Geometry, VectorsAndBoxesDoAsTheySay) {
+    using T = TypeParam;
+    using V = Vec<T, 3>;
+    using B = Box<T, 3>;
+    EXPECT_EQ(cross(V(1, 2, 3), V(4, 5, 6)), V(-3, 6, -3));
+    EXPECT_EQ(dot(V(1, 2, 3), V(4, 5, 6)), 32);
+    EXPECT_EQ(normalized(V(0, 3, 4)), V(0, T(3) / 5, T(4) / 5));
+    EXPECT_EQ(normalized(V()), V());
+    EXPECT_EQ(max_axis(V(1, -2, 2)), 1);  // the first of equals
+    EXPECT_EQ(max_axis(V(1, -2, 3)), 2);
+    EXPECT_EQ(max_axis(V(-2, 2, 2)), 0);
+    EXPECT_FALSE(std::signbit(abs(V(T(-0.0), 1, 1))[0]));
+    EXPECT_FALSE(finite(V(0, std::numeric_limits<T>::infinity(), 0)));
+    EXPECT_EQ((Triangle<T, 3>{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}).normal(), V(0, 0, 6));
+
+    const B none, box{{0, 0, 0}, {2, 3, 4}}, flat{{1, 1, 4}, {2, 2, 4}};
+    EXPECT_TRUE(none.empty());
+    EXPECT_EQ(none.half_area(), 0);
+    EXPECT_FALSE(none.contains(V()));
+    EXPECT_FALSE(overlap(none, box));
+    EXPECT_EQ(merged(none, box), box);
+    EXPECT_FALSE(flat.empty());
+    EXPECT_EQ(flat.half_area(), 1);
+    EXPECT_EQ(box.half_area(), 2 * 3 + 3 * 4 + 4 * 2);
+    EXPECT_EQ((Box<T, 2>{{0, 0}, {2, 3}}).half_area(), 5);
+    EXPECT_EQ(box.center(), V(1, T(1.5), 2));
+    EXPECT_TRUE(box.contains(flat) && box.contains(V(2, 3, 4)) && overlap(flat, box));
+    EXPECT_FALSE(flat.contains(box) || box.contains(V(2, 3, T(4.5))));
+    EXPECT_EQ(intersection(box, B{{1, 1, 1}, {9, 9, 9}}), (B{{1, 1, 1}, {2, 3, 4}}));
+    EXPECT_TRUE(intersection(box, B{{3, 0, 0}, {4, 1, 1}}).empty());
+    EXPECT_TRUE(overlap(box, B{{2, 3, 4}, {9, 9, 9}}));  // at a corner
+    EXPECT_EQ((Sphere<T, 3>{{1, 2, 3}, 2}).bounds(), (B{{-1, 0, 1}, {3, 4, 5}}));
+}
+
+// ---- Distances
+
+Real distance_to(Real3 p, Real3 a, Real3 b) {
+    const Real3 ab = b - a;
+    const Real l = dot(ab, ab);
+    return size(p - a - ab * (l > 0 ? std::clamp(dot(p - a, ab) / l, Real(0), Real(1)) : Real(0)));
+}
+/// The least over the edges and the foot on the plane, where it lies inside.
+Real distance_to(Real3 p, Real3 a, Real3 b, Real3 c) {
+    const Real3 ab = b - a, ac = c - a, ap = p - a;
+    const Real xx = dot(ab, ab), xy = dot(ab, ac), yy = dot(ac, ac), x = dot(ap, ab), y = dot(ap, ac);
+    const Real area2 = xx * yy - xy * xy, v = (yy * x - xy * y) / area2, w = (xx * y - xy * x) / area2;
+    const Real edges = std::min({distance_to(p, a, b), distance_to(p, a, c), distance_to(p, b, c)});
+    return v >= 0 && w >= 0 && v + w <= 1 ? std::min(edges, size(ap - ab * v - ac * w)) : edges;
+}
+
+/// `q` was answered for a shape to which `distance` measures in long double.
+template <class T, int D, class Shape, class Distance>
+void expect_closest(const Vec<T, D>& p, const Shape& shape, Real slack, Distance distance) {
+    const Vec<T, D> q = closest_point(p, shape);
+    const Box<T, D> box = shape.bounds();
+    EXPECT_TRUE(box.contains(q));
+    EXPECT_LE(distance(real(q)), slack);
+    EXPECT_LE(std::fabs(size(real(p) - real(q)) - distance(real(p))), slack);
+    EXPECT_LE(distance2(p, box), distance2(p, q));
+    EXPECT_LE(distance2(p, merged(box, Box<T, D>().expand(p * T(0.5)))), distance2(p, box));
+}
+
+/// Triangles and segments of all shapes, down to needles and points, at a scale: an answer is good to a few
+/// roundings of the largest number that went in. In a sliver the foot may slip along it, but no farther off
+/// than its edges are.
+template <class T, int D>
+void expect_closest_points(int scale, bool slivers) {
+    for (std::uint64_t i = 0; i < 50000 && !testing::Test::HasFailure(); ++i) {
+        SCOPED_TRACE(i);
+        Random random(12, i);
+        const auto within = [&](double radius) { return in_ball<T, D>(random, std::ldexp(radius, scale)); };
+        const Vec<T, D> at = within(i % 4 == 0 ? 30 : 1);
+        Triangle<T, D> tri{at + within(1), at + within(1), at + within(1)};
+        const T u = T(random.uniform(-0.2, 1.2)), v = T(random.uniform(-0.2, 1.2));
+        if (slivers) {
+            tri.c = tri.a + (tri.b - tri.a) * v;
+            if (i % 3 == 0) tri.c = tri.c + within(std::exp2(random.uniform(-50, 0)));
+            if (i % 10 == 1) tri.c = tri.b;
+            if (i % 30 == 1) tri.a = tri.b;
+        }
+        Vec<T, D> p = tri.a + (tri.b - tri.a) * u + (tri.c - tri.a) * v;
+        if (i % 2 == 0) p = p + within(i % 16 == 0 ? 100 : 1);
+        const Real3 a = real(tri.a), b = real(tri.b), c = real(tri.c);
+        const Real largest = max_component(max(max(abs(p), abs(tri.a)), max(abs(tri.b), abs(tri.c))));
+        const Real slack = 16 * unit_roundoff<T> * largest;
+        expect_closest(p, Segment<T, D>{tri.a, tri.b}, slack, [&](Real3 x) { return distance_to(x, a, b); });
+        const Real longest = std::max({size(b - a), size(c - a), size(c - b)});
+        const Real thickness = longest > 0 ? size(cross(b - a, c - a)) / longest : 0;
+        const Real slip =
+            thickness < longest / 16 ? thickness : 0x1p16 * unit_roundoff<double> * size(real(p) - a);
+        expect_closest(p, tri, slack + slip, [&](Real3 x) { return distance_to(x, a, b, c); });
+    }
+}
+TYPED_TEST(Geometry, ClosestPointsOfTrianglesAndSegments) {
+    for (const int scale : {-20, 0, 20}) {
+        expect_closest_points<TypeParam, 2>(scale, false);
+        expect_closest_points<TypeParam, 3>(scale, false);
+    }
+}
+TYPED_TEST(Geometry, ClosestPointsOfSliversNeedlesAndPoints) {
+    expect_closest_points<TypeParam, 2>(0, true);
+    expect_closest_points<TypeParam, 3>(0, true);
+}
+TYPED_TEST(Geometry, ClosestPointsOfTheLargestAndLeastTriangles) {
+    constexpr int most = std::is_same_v<TypeParam, float> ? 52 : 472;
+    expect_closest_points<TypeParam, 3>(most, false);
+    expect_closest_points<TypeParam, 3>(-most, false);
+}
+
+TYPED_TEST(Geometry, ClosestPointsLieInTheBoxOfTheirTriangle) {
+    using T = TypeParam;
+    for (std::uint64_t i = 0; i < 100000; ++i) {
+        Random random(15, i);
+        const auto any = [&] { return T(random.uniform()); };
+        const Triangle<T, 3> tri{{any(), any(), 0}, {1, -1, 0}, {1, 2, 0}};
+        const Vec<T, 3> p(1 - static_cast<T>(random.bits() % 8) * unit_roundoff<T>, any(), any());
+        ASSERT_TRUE(tri.bounds().contains(closest_point(p, tri))) << i;
+    }
+}
+
+template <class T, int D>
+void expect_closest_on_spheres_and_boxes() {
+    for (std::uint64_t i = 0; i < 50000 && !testing::Test::HasFailure(); ++i) {
+        SCOPED_TRACE(i);
+        Random random(13, i);
+        const Sphere<T, D> ball{in_ball<T, D>(random, 9),
+                                i % 9 == 0 ? T(0) : T(std::exp2(random.uniform(-9, 3)))};
+        const Vec<T, D> p = i % 7 == 0 ? ball.center : in_ball<T, D>(random, 20);
+        expect_closest(p, ball, 200 * unit_roundoff<T>,
+                       [&](Real3 x) { return std::fabs(size(x - real(ball.center)) - ball.radius); });
+        const auto box = box_of(in_ball<T, D>(random, 9), in_ball<T, D>(random, 9));
+        const Real3 q = real(clamped(p, box));
+        Real d2 = 0;
+        for (int k = 0; k < D; ++k) {
+            const Real x = p[k], d = std::max({box.low[k] - x, x - box.high[k], Real(0)});
+            d2 += d * d;
+        }
+        EXPECT_LE(std::fabs(distance2(p, box) - d2), 8 * unit_roundoff<T> * d2);
+        EXPECT_LE(std::fabs(dot(real(p) - q, real(p) - q) - d2), 4 * unit_roundoff<T> * d2);
+        EXPECT_EQ(distance2(p, box) == 0, box.contains(p));
+        EXPECT_EQ(distance2(p, clamped(p, box)), distance2(p, box));
+    }
+}
+TYPED_TEST(Geometry, ClosestPointsOfSpheresAndBoxes) {
+    expect_closest_on_spheres_and_boxes<TypeParam, 2>();
+    expect_closest_on_spheres_and_boxes<TypeParam, 3>();
+}
+
+// ---- Overlap
+
+/// A polygon's corner, homogeneous and in lowest terms: exact.
+struct Corner {
+    Int x[3], w;
+};
+Corner between(const Corner& p, Int weight_p, const Corner& q, Int weight_q) {
+    Corner r{{}, p.w * weight_p + q.w * weight_q};
+    const auto divisor = [](Int a, Int b) {
+        while (b != 0) a %= b, std::swap(a, b);
+        return a < 0 ? -a : a;
+    };
+    Int common = r.w;
+    for (int k = 0; k < 3; ++k) {
+        r.x[k] = p.x[k] * weight_p + q.x[k] * weight_q;
+        common = divisor(common, r.x[k]);
+    }
+    for (Int& x : r.x) x /= common;
+    r.w /= common;
+    return r;
+}
+/// What the box leaves of the polygon, one plane after the other (Sutherland and Hodgman 1974): empty or not.
+template <class T, int D>
+bool clipped_is_left(std::initializer_list<Vec<T, D>> corners, const Box<T, D>& box, int exponent) {
+    const auto whole = [&](T x) { return static_cast<Int>(std::ldexp(x, -exponent)); };
+    std::vector<Corner> polygon, rest;
+    for (const auto& c : corners)
+        polygon.push_back({{whole(c[0]), whole(c[1]), D == 3 ? whole(c[D - 1]) : 0}, 1});
+    for (int k = 0; k < D; ++k)
+        for (const bool high : {false, true}) {
+            const auto inside = [&](const Corner& c) {
+                return high ? whole(box.high[k]) * c.w - c.x[k] : c.x[k] - whole(box.low[k]) * c.w;
+            };
+            rest.clear();
+            for (std::size_t i = 0; i < polygon.size(); ++i) {
+                const Corner &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+                const Int fp = inside(p), fq = inside(q);
+                if (fp >= 0) rest.push_back(p);
+                if (fp > 0 && fq < 0) rest.push_back(between(p, -fq, q, fp));
+                if (fp < 0 && fq > 0) rest.push_back(between(p, fq, q, -fp));
+            }
+            polygon.swap(rest);
+        }
+    return !polygon.empty();
+}
+
+template <class T>
+void expect_exact_overlaps(int reach, int exponent) {
+    int yes = 0, no = 0;  // where the boxes alone do not decide
+    for (std::uint64_t i = 0; i < 50000; ++i) {
+        Random random(14, i);
+        const auto any = [&]<int D>(std::integral_constant<int, D>) {
+            return integers<T, D>(random, reach, exponent);
+        };
+        constexpr std::integral_constant<int, 3> space;
+        constexpr std::integral_constant<int, 2> plane;
+        const Box<T, 3> box = box_of(any(space), any(space));
+        Triangle<T, 3> tri{any(space), any(space), any(space)};
+        if (i % 16 == 0) tri.c = tri.a;
+        if (i % 32 == 0) tri.b = tri.a;
+        const bool left = clipped_is_left({tri.a, tri.b, tri.c}, box, exponent);
+        ASSERT_EQ(overlap(tri, box), left) << i;
+        if (overlap(tri.bounds(), box)) ++(left ? yes : no);
+
+        const Box<T, 2> square = box_of(any(plane), any(plane));
+        const Segment<T, 2> segment{any(plane), i % 16 == 0 ? square.low : any(plane)};
+        ASSERT_EQ(overlap(segment, square), clipped_is_left({segment.a, segment.b}, square, exponent)) << i;
+
+        const Sphere<T, 3> ball{any(space), std::abs(any(space)[0])};
+        const auto whole = [&](T x) { return static_cast<Int>(std::ldexp(x, -exponent)); };
+        Int d2 = 0;
+        for (int k = 0; k < 3; ++k) {
+            const Int x = whole(ball.center[k]);
+            const Int d = std::max({whole(box.low[k]) - x, x - whole(box.high[k]), Int(0)});
+            d2 += d * d;
+        }
+        ASSERT_EQ(overlap(ball, box), d2 <= whole(ball.radius) * whole(ball.radius)) << i;
+    }
+    EXPECT_GT(yes, 1000);
+    EXPECT_GT(no, 1000);
+}
+TYPED_TEST(Geometry, OverlapIsExactOnIntegersAndCountsTouching) {
+    for (const int reach : {1, 2, 4, 4000}) expect_exact_overlaps<TypeParam>(reach, 0);
+}
+TYPED_TEST(Geometry, OverlapOfTheLargestAndLeastShapes) {
+    constexpr int most = std::is_same_v<TypeParam, float> ? 57 : 477;
+    for (const int exponent : {most, -most}) expect_exact_overlaps<TypeParam>(4, exponent);
+}
+
+}  // namespace

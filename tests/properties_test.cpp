@@ -1,0 +1,249 @@
+/// What holds of every scene and every question, tried on generated ones, which shrink when they fail.
+#include <numeric>
+
+#include "contract.h"
+#include "generated.h"
+
+using namespace hedgerow;
+using namespace hedgerow::generated;
+using namespace hedgerow::matrix;
+using contract::with_each_structure;
+namespace gen = rc::gen;
+
+namespace {
+
+// ---- Structures
+
+/// Brute force first.
+template <class P>
+auto every_index(const P& set) {
+    std::vector<std::string> specs = {"brute-force"};
+    for (const auto& s : structure_list()) specs.emplace_back(s.name);
+    for (const char* more : {"bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts",
+                             "bvh:max_leaf_size=1", "kdtree:leaf_size=1", "grid:resolution=3"})
+        specs.emplace_back(more);
+    Indexes<typename P::Scalar, P::dimension> indexes;
+    for (const auto& spec : specs) {
+        indexes.push_back(build_any(spec, set, serial_executor()));
+        if (const auto wrong = indexes.back()->validate(); !wrong.empty()) RC_FAIL(spec + ": " + wrong);
+    }
+    return indexes;
+}
+
+template <class T, int D>
+struct Answers {
+    Hit<T> closest;
+    bool any = false;
+    std::vector<Hit<T>> all;
+    Near<T, D> near;
+    std::vector<Near<T, D>> nearest;
+    std::vector<PrimitiveId> overlapping;
+
+    Answers(const AnyIndex<T, D>& index, const Ray<T, D>& ray) {
+        index.closest_hits({&ray, 1}, {&closest, 1});
+        index.any_hits({&ray, 1}, {&any, 1});
+        index.all_hits(ray, all);
+    }
+    Answers(const AnyIndex<T, D>& index, const Vec<T, D>& point, std::size_t k, const Box<T, D>& box) {
+        index.closest_points({&point, 1}, {&near, 1});
+        index.nearest(point, k, nearest);
+        index.overlapping(box, overlapping);
+    }
+    friend bool operator==(const Answers&, const Answers&) = default;
+};
+
+template <class P>
+class OfEverySet : public testing::Test {};
+using Sets =
+    testing::Types<TriangleMesh<float>, TriangleMesh<double>, SphereSet<float, 3>, SphereSet<double, 3>,
+                   SegmentSet<float>, SegmentSet<double>, PointCloud<float, 3>, PointCloud<double, 2>>;
+TYPED_TEST_SUITE(OfEverySet, Sets);
+
+TYPED_TEST(OfEverySet, StructuresAnswerWithTheBitsOfBruteForce) {
+    using T = typename TypeParam::Scalar;
+    constexpr int D = TypeParam::dimension;
+    expect_always([] {
+        const AnyCase<TypeParam> one;
+        const auto indexes = every_index(one.set);
+        const auto expect = [&](const auto&... question) {
+            const Answers<T, D> want(*indexes[0], question...);
+            for (const auto& index : indexes)
+                if (!(Answers<T, D>(*index, question...) == want)) RC_FAIL(std::string(index->structure()));
+            RC_ASSERT(bool(want.closest) == want.any && want.any == !want.all.empty());
+            if (want.any) RC_ASSERT(want.closest == want.all[0]);
+            if (!want.nearest.empty()) RC_ASSERT(want.near == want.nearest[0]);
+        };
+        for (int i = 0; i < 8; ++i) expect(one.ray());
+        for (int i = 0; i < 4; ++i) expect(one.point(), *gen::inRange<std::size_t>(0, 50).as("k"), one.box());
+    });
+}
+
+/// Orders `list` by its key, then by the primitives' places before they were shuffled.
+template <class List, class Key>
+List as_before(List list, const std::vector<std::uint32_t>& before, Key key) {
+    for (auto& x : list) x.element = x.primitive = before[x.element];
+    std::sort(list.begin(), list.end(), [&](const auto& a, const auto& b) {
+        return key(a) != key(b) ? key(a) < key(b) : a.element < b.element;
+    });
+    return list;
+}
+
+TYPED_TEST(OfEverySet, TheOrderOfPrimitivesChangesOnlyTheirIds) {
+    using T = typename TypeParam::Scalar;
+    constexpr int D = TypeParam::dimension;
+    expect_always([] {
+        AnyCase<TypeParam> one;
+        auto shuffled = one.set;
+        const std::size_t n = shuffled.size();
+        const auto keys = *gen::container<std::vector<int>>(n, gen::inRange(0, 1000)).as("order");
+        std::vector<std::uint32_t> before(n);
+        std::iota(before.begin(), before.end(), 0u);
+        std::stable_sort(before.begin(), before.end(), [&](auto a, auto b) { return keys[a] < keys[b]; });
+        for (std::size_t i = 0; i < n; ++i) items(shuffled)[i] = items(one.set)[before[i]];
+        const auto oracle = build_any("brute-force", one.set);
+        const auto ray = one.ray();
+        const auto point = one.point();
+        const auto box = one.box();
+        const Answers<T, D> hits(*oracle, ray), regions(*oracle, point, n, box);
+        for (const auto& index : every_index(shuffled)) {
+            const Answers<T, D> got(*index, ray);
+            RC_ASSERT(as_before(got.all, before, [](const auto& h) { return h.t; }) == hits.all);
+            RC_ASSERT(got.closest.t == hits.closest.t);
+            Answers<T, D> around(*index, point, n, box);
+            const auto distance = [](const auto& f) { return f.distance2; };
+            RC_ASSERT(as_before(around.nearest, before, distance) == regions.nearest);
+            RC_ASSERT(around.near.distance2 == regions.near.distance2);
+            for (auto& id : around.overlapping) id = before[id];
+            std::sort(around.overlapping.begin(), around.overlapping.end());
+            RC_ASSERT(around.overlapping == regions.overlapping);
+        }
+    });
+}
+
+TYPED_TEST(OfEverySet, APowerOfTwoInTheDirectionDividesT) {
+    using T = typename TypeParam::Scalar;
+    expect_always([] {
+        const T least = std::numeric_limits<T>::min(), most = std::numeric_limits<T>::max();
+        const AnyCase<TypeParam> one;
+        auto ray = one.ray(), longer = ray;
+        const int k = *integers(20).as("exponent");
+        for (T& x : longer.direction.data) {
+            x = std::ldexp(x, k);
+            RC_PRE(std::abs(x) >= least || x == 0);  // subnormal components count as 0
+        }
+        for (T& x : ray.direction.data) RC_PRE(std::abs(x) >= least || x == 0);
+        for (T* t : {&longer.t_min, &longer.t_max}) *t = std::ldexp(*t, -k);
+        for (const auto& index : every_index(one.set)) {
+            std::vector<Hit<T>> hits, scaled;
+            index->all_hits(ray, hits);
+            index->all_hits(longer, scaled);
+            const auto tame = [=](const Hit<T>& h) {
+                return h.t == 0 || (std::abs(h.t) > least * (1 << 21) && std::abs(h.t) < most / (1 << 21));
+            };
+            if (!std::ranges::all_of(hits, tame)) continue;
+            for (auto& h : hits) h.t = std::ldexp(h.t, -k);
+            RC_ASSERT(hits == scaled);
+        }
+    });
+}
+
+// ---- Rays
+
+template <class P>
+class OfEveryRay : public testing::Test {};
+using SetsThatRaysHit = testing::Types<TriangleMesh<float>, SphereSet<double, 3>, SegmentSet<float>>;
+TYPED_TEST_SUITE(OfEveryRay, SetsThatRaysHit);
+
+TYPED_TEST(OfEveryRay, IntervalsCountsAndFiltersFollowFromTheListOfHits) {
+    using T = typename TypeParam::Scalar;
+    expect_always([] {
+        const AnyCase<TypeParam> one;
+        const auto ray = one.ray();
+        with_each_structure(one.set, [&](const auto& index) {
+            std::vector<Hit<T>> all;
+            const auto count = all_hits(index, ray, all);
+            RC_ASSERT(count == all.size());
+            RC_ASSERT(hit_count(index, ray) == all.size());
+            const auto expect = [&](const Ray<T, TypeParam::dimension>& part) {
+                std::vector<Hit<T>> got, kept;
+                all_hits(index, part, got);
+                const auto in = [&](const auto& h) { return part.t_min <= h.t && h.t <= part.t_max; };
+                std::ranges::copy_if(all, std::back_inserter(kept), in);
+                RC_ASSERT(got == kept);
+                RC_ASSERT(closest_hit(index, part).value_or(Hit<T>()) == (kept.empty() ? Hit<T>() : kept[0]));
+                RC_ASSERT(any_hit(index, part) == !kept.empty());
+            };
+            expect(ray);
+            for (const auto& hit : all) {
+                auto part = ray;
+                part.t_max = hit.t;
+                expect(part);
+                part.t_max = std::nextafter(hit.t, T(-1));
+                expect(part);
+                if (std::is_same_v<TypeParam, SphereSet<T, 3>>) continue;  // which may be left, too
+                part.t_max = ray.t_max;
+                part.t_min = std::nextafter(hit.t, std::numeric_limits<T>::infinity());
+                expect(part);
+            }
+            for (std::size_t i = 0; i < all.size(); ++i) {  // refuse the first i + 1
+                const auto beyond = [&](const Hit<T>& h) {
+                    return h.t > all[i].t || (h.t == all[i].t && h.element > all[i].element);
+                };
+                const auto next = i + 1 < all.size() ? all[i + 1] : Hit<T>();
+                RC_ASSERT(closest_hit(index, ray, beyond).value_or(Hit<T>()) == next);
+                RC_ASSERT(hit_count(index, ray, beyond) == all.size() - i - 1);
+            }
+            if (!all.empty()) {
+                const auto second = closest_hit(index, ray, Except{all[0].element}).value_or(Hit<T>());
+                RC_ASSERT(second == (all.size() > 1 ? all[1] : Hit<T>()));
+            }
+        });
+    });
+}
+
+// ---- Boxes
+
+template <class B>
+class OfEveryBox : public testing::Test {};
+using Boxes = testing::Types<Box2f, Box2d, Box3f, Box3d>;
+TYPED_TEST_SUITE(OfEveryBox, Boxes);
+
+TYPED_TEST(OfEveryBox, UnionsAndIntersectionsNest) {
+    using T = typename TypeParam::Scalar;
+    constexpr int D = TypeParam::dimension;
+    expect_always<20>([] {
+        const bool wild = *gen::arbitrary<bool>();
+        const auto a = *boxes<T, D>(wild), b = *boxes<T, D>(wild);
+        const auto both = merged(a, b), shared = intersection(a, b);
+        RC_ASSERT(both.contains(a) && both.contains(b) && both == merged(b, a));
+        RC_ASSERT(both.half_area() >= a.half_area());
+        RC_ASSERT(overlap(a, b) == !shared.empty());
+        if (!shared.empty()) RC_ASSERT(a.contains(shared) && b.contains(shared));
+        const auto p = *vectors<T, D>(wild);
+        RC_ASSERT(shared.contains(p) == (a.contains(p) && b.contains(p)));
+        RC_ASSERT(distance2(p, both) <= distance2(p, a));
+        RC_ASSERT(a.contains(clamped(p, a)));
+    });
+}
+
+TYPED_TEST(OfEveryBox, NestedBoxesHaveNestedIntervals) {
+    using T = typename TypeParam::Scalar;
+    constexpr int D = TypeParam::dimension;
+    expect_always<20>([] {
+        const bool wild = *gen::arbitrary<bool>();
+        const auto inner = *boxes<T, D>(wild), outer = merged(inner, *boxes<T, D>(wild));
+        const auto ray = *gen::exec([=] { return any_ray<T, D>({inner.low, outer.high}, wild); });
+        const auto expect = [](const Interval<T>& in, const Interval<T>& out) {
+            RC_ASSERT(out.entry <= in.entry && in.exit <= out.exit);
+        };
+        if (const auto in = meet(ray, inner)) {
+            const auto out = meet(ray, outer);
+            RC_ASSERT(out.has_value());
+            expect(*in, *out);
+        }
+        const RayProbe<T, D> probe(ray, outer);
+        if (probe.usable()) expect(probe.inside(inner, ray.t_max), probe.inside(outer, ray.t_max));
+    });
+}
+
+}  // namespace

@@ -1,0 +1,47 @@
+# The fenced blocks of a Markdown document. Text is taken apart with FIND and SUBSTRING alone: lists would stumble
+# over its semicolons and brackets.
+
+# markdown_blocks(FILE LANGUAGES PREFIX): sets PREFIX_COUNT, and PREFIX_<i>_TEXT and PREFIX_<i>_LINE (of the first line
+# of its text) for each block in one of the languages.
+function(markdown_blocks file languages prefix)
+  file(READ ${file} rest)
+  set(rest "\n${rest}")
+  if(rest MATCHES "\n[ \t]+```")
+    message(FATAL_ERROR "${file} has an indented fence, which this test does not look into: move it to the margin")
+  endif()
+  set(line 0)
+  set(count 0)
+  while(TRUE)
+    string(FIND "${rest}" "\n```" opened)
+    if(opened EQUAL -1)
+      break()
+    endif()
+    string(SUBSTRING "${rest}" 0 ${opened} before)
+    math(EXPR opened "${opened} + 4")
+    string(SUBSTRING "${rest}" ${opened} -1 rest)
+    string(FIND "${rest}" "\n" ended)
+    string(SUBSTRING "${rest}" 0 ${ended} language)
+    string(SUBSTRING "${rest}" ${ended} -1 rest)
+    string(FIND "${rest}" "\n```" closed)
+    if(closed EQUAL -1)
+      message(FATAL_ERROR "${file} has a block that is never closed")
+    endif()
+    string(SUBSTRING "${rest}" 0 ${closed} text)
+    math(EXPR closed "${closed} + 4")
+    string(SUBSTRING "${rest}" ${closed} -1 rest)
+
+    string(REGEX REPLACE "[^\n]" "" newlines "${before}")
+    string(LENGTH "${newlines}" lines)
+    math(EXPR line "${line} + ${lines} + 1")  # of the opening fence
+    if(language IN_LIST languages)
+      math(EXPR first "${line} + 1")
+      set(${prefix}_${count}_TEXT "${text}\n" PARENT_SCOPE)
+      set(${prefix}_${count}_LINE ${first} PARENT_SCOPE)
+      math(EXPR count "${count} + 1")
+    endif()
+    string(REGEX REPLACE "[^\n]" "" newlines "${text}")
+    string(LENGTH "${newlines}" lines)
+    math(EXPR line "${line} + ${lines} + 1")  # of the closing fence
+  endwhile()
+  set(${prefix}_COUNT ${count} PARENT_SCOPE)
+endfunction()
