@@ -85,10 +85,12 @@ Ray<T, D> any_ray(const std::vector<Vec<T, D>>& corners, bool wild) {
             ray.origin = corner() - ray.direction;
             break;
         case 4: {
-            const T x = *gen::element(T(0), T(-0.0), std::numeric_limits<T>::denorm_min());
+            using limits = std::numeric_limits<T>;
+            const T x = *gen::element(T(0), T(-0.0), limits::denorm_min(), limits::min(), -limits::min());
             const int axis = *gen::inRange(0, D);
             for (int k = 0; k < D; ++k)
                 if (k != axis) ray.direction[k] = x;
+            if (*gen::arbitrary<bool>()) ray.origin = corner() - ray.direction * T(0.5);
         }
     }
     if (*gen::inRange(0, 4) == 3) ray.direction = ray.direction * std::exp2(T(*integers(30)));

@@ -37,8 +37,8 @@ struct BuildTree {
 };
 
 /// How leaf or split is decided: testing a primitive costs `intersection_cost`, opening an inner node
-/// `traversal_cost`. The literature has 1 to 1; here a node costs as much as two triangles or more, as measured
-/// (docs/design/001-reference-bvh.md).
+/// `traversal_cost`. The literature has 1 to 1; here a node costs as much as two triangles or more, as
+/// measured (docs/design/001-reference-bvh.md).
 struct SahOptions {
     double traversal_cost = 2;
     double intersection_cost = 1;
