@@ -79,6 +79,14 @@ TEST_F(Cli, BadInputIsThreeAndNamed) {
     expect_bad("info " + file("cut.ply"), "cut.ply");
     std::ofstream(file("range.obj")) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n";
     expect_bad("info " + file("range.obj"), "range.obj");
+    std::ofstream(file("nothing.ply")) << "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
+                                          "property float y\nproperty float z\nend_header\n";
+    expect_bad("render " + file("nothing.ply") + to, "nothing.ply");
+    for (const char* bad : {"nan", "inf", "1e30"}) {
+        std::ofstream(file("bad.obj")) << "v 0 0 0\nv 1 0 0\nv 0 " << bad << " 0\nf 1 2 3\n";
+        expect_bad("render " + file("bad.obj") + to, "bad.obj");
+    }
+    expect_bad("render gen:cube -o " + folder.string(), "another output");
     expect_bad("render gen:cube --structure kdtre" + to, "did you mean 'kdtree'");
     expect_bad("render gen:cube --structure bvh:bilder=sweep" + to, "did you mean 'builder'");
     expect_bad("render gen:cube --structure bvh:builder=swep" + to, "did you mean 'sweep'");
@@ -86,6 +94,16 @@ TEST_F(Cli, BadInputIsThreeAndNamed) {
     expect_bad("render gen:cube --size 0x0" + to, "--size");
     expect_bad("render gen:cube -o " + file("no/such/folder/x.png"), "no folder");
     expect_bad("render gen:points2d" + to, "can be rendered");
+}
+
+TEST_F(Cli, AMeshWithoutAreaIsNeverHit) {
+    std::ofstream(file("flat.obj")) << "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 1 1 1\n";
+    EXPECT_NE(run("info --json " + file("flat.obj")).output.find("\"zero_area_triangles\": 2"),
+              std::string::npos);
+    const auto r = run("render --quiet --size 32x24 " + file("flat.obj") + " -o " + file("flat.png"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const auto image = hedgerow::load_png(file("flat.png"));
+    for (int x = 0; x < 32; ++x) EXPECT_EQ(image.at(x, 12), image.at(0, 0));
 }
 
 TEST_F(Cli, EveryStructureMakesTheSamePicture) {

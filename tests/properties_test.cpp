@@ -78,6 +78,24 @@ TYPED_TEST(OfEverySet, StructuresAnswerWithTheBitsOfBruteForce) {
     });
 }
 
+/// What was found once, shrunk: rays that graze the scene's own faces and lean outward by less than the error
+/// of the primitives' tests.
+TEST(OfEverySet, RaysThatGrazeTheFacesOfTheSceneAreAnsweredToTheirEnd) {
+    const auto expect_hit = [](const auto& set, const auto& ray) {
+        for (const auto& index : every_index(set)) {
+            Hit<typename std::remove_cvref_t<decltype(set)>::Scalar> hit;
+            index->closest_hits({&ray, 1}, {&hit, 1});
+            EXPECT_TRUE(hit) << index->structure();
+        }
+    };
+    const SegmentSet<float> cross{{{{-1, -3}, {-1, 4}}, {{3, 0}, {-4, 0}}}};
+    expect_hit(cross, Ray2f{{0, 4}, {-0x1p26f, 0x1p-124f}});
+    const SegmentSet<double> corner{{{{0, 2}, {0, -0x1.cp53}}, {{0, 0}, {0x1p55, 0}}}};
+    expect_hit(corner, Ray2d{{0x1p52, 1}, {-0x1p52, 1}});
+    const TriangleMesh<float> fan{{{0, 0, 0}, {0, 0, 2}, {1, 3, 0}, {0, 1, 0}}, {{0, 0, 1}, {3, 2, 0}}, {}};
+    expect_hit(fan, Ray3f{{1, 3, 4}, {0x1p-126f, 0x1p-126f, -0x1p24f}});
+}
+
 /// Orders `list` by its key, then by the primitives' places before they were shuffled.
 template <class List, class Key>
 List as_before(List list, const std::vector<std::uint32_t>& before, Key key) {
