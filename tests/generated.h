@@ -158,13 +158,13 @@ P any_set(bool wild) {
     return set;
 }
 
-/// Checks a property on generated cases, the same in every run: 400, or with HEDGEROW_LONG=1 more; or, where
+/// Checks a property on generated cases, the same in every run: 300, or with HEDGEROW_LONG=1 more; or, where
 /// a case is little work, so many times as many.
 template <int times = 1, class Property>
 void expect_always(Property property) {
     rc::detail::TestParams params;
     params.seed = 11;
-    params.maxSuccess = static_cast<int>(matrix::in_long_runs(20000, 400)) * times;
+    params.maxSuccess = static_cast<int>(matrix::in_long_runs(20000, 300)) * times;
     rc::detail::TestListenerAdapter silent;
     const auto cases =
         gen::resize(rc::kNominalSize, rc::detail::toProperty(property));  // all of full variety

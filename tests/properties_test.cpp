@@ -80,7 +80,7 @@ TYPED_TEST(OfEverySet, StructuresAnswerWithTheBitsOfBruteForce) {
 
 /// What was found once, shrunk: rays that graze the scene's own faces and lean outward by less than the error
 /// of the primitives' tests.
-TEST(OfEverySet, RaysThatGrazeTheFacesOfTheSceneAreAnsweredToTheirEnd) {
+TEST(Structures, RaysThatGrazeTheFacesOfTheSceneAreAnsweredToTheirEnd) {
     const auto expect_hit = [](const auto& set, const auto& ray) {
         for (const auto& index : every_index(set)) {
             Hit<typename std::remove_cvref_t<decltype(set)>::Scalar> hit;

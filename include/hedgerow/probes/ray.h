@@ -156,15 +156,16 @@ public:
             int step = -1;
             double next = std::numeric_limits<double>::infinity();
             for (int a = 0; a < D; ++a) {
-                if (d[a] == 0) continue;
-                const std::int32_t side = cell[static_cast<std::size_t>(a)] + (d[a] > 0 ? 1 : 0);
+                const auto i = static_cast<std::size_t>(a);
+                // Only in.exit leads out of the lattice: between its last plane and that, it is still grazed.
+                if (d[a] == 0 || cell[i] == (d[a] > 0 ? lattice.resolution[i] - 1 : 0)) continue;
+                const std::int32_t side = cell[i] + (d[a] > 0 ? 1 : 0);
                 const double t = (lattice.plane(side, a) - o[a]) / d[a];
                 if (t < next) next = t, step = a;
             }
             if (step < 0) return;
             const auto i = static_cast<std::size_t>(step);
             cell[i] += d[step] > 0 ? 1 : -1;
-            if (cell[i] < 0 || cell[i] >= lattice.resolution[i]) return;
             entry = std::max(entry, next);
         }
     }
