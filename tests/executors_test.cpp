@@ -210,6 +210,7 @@ TYPED_TEST(Executors, ManyThreadsMayAskAtOnce) {
         const auto expected = answers(index, questions);
         std::vector<decltype(answers(index, questions))> said(4);
         std::vector<std::thread> threads;
+        threads.reserve(said.size());
         for (auto& s : said) threads.emplace_back([&] { s = answers(index, questions); });
         for (auto& t : threads) t.join();
         for (const auto& s : said) EXPECT_EQ(s, expected);

@@ -15,7 +15,7 @@ class FunctionRef<R(Args...)> {
 public:
     template <class F>
     requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
-        FunctionRef(F&& f)  // NOLINT(google-explicit-constructor): a parameter type
+        FunctionRef(F&& f)  // NOLINT(bugprone-forwarding-reference-overload): constrained
         : object_(const_cast<void*>(static_cast<const void*>(&f))), call_([](void* o, Args... args) -> R {
               return (*static_cast<std::remove_reference_t<F>*>(o))(std::forward<Args>(args)...);
           }) {}

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -16,7 +17,7 @@ inline Image::Pixel srgb(const Vec3f& linear) {
     for (int k = 0; k < 3; ++k) {
         const float x = std::clamp(linear[k], 0.f, 1.f);
         const float s = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-        p[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(s * 255 + 0.5f);
+        p[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(s * 255));
     }
     return p;
 }
@@ -31,7 +32,7 @@ inline Image::Pixel heat(float x) {
     Image::Pixel p;
     for (int k = 0; k < 3; ++k)
         p[static_cast<std::size_t>(k)] =
-            static_cast<std::uint8_t>(stops[i][k] * (1 - f) + stops[i + 1][k] * f + 0.5f);
+            static_cast<std::uint8_t>(std::lround(stops[i][k] * (1 - f) + stops[i + 1][k] * f));
     return p;
 }
 
