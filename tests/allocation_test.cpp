@@ -63,7 +63,8 @@ std::size_t allocated_by(F f) {
 }
 
 TYPED_TEST(Allocation, IsCounted) {
-    EXPECT_EQ(allocated_by([] { std::vector<TypeParam> v(3); }), 1u);
+    // Called by name: what an expression allocates, a compiler may leave out.
+    EXPECT_EQ(allocated_by([] { operator delete(operator new(3)); }), 1u);
 }
 
 TYPED_TEST(Allocation, QueriesDoNone) {
