@@ -38,10 +38,13 @@ void scale(Vec<double, D>& half, std::array<Vec<double, D>, N>& points) {
 }
 }  // namespace detail
 
-/// Separating axes: the box's, the plane's, the nine products of edges (Akenine-Möller 2001), in double.
+/// Separating axes: the box's, the plane's, the nine products of edges (Akenine-Möller 2001), in double. Only
+/// the box's part within the triangle's own box matters; with that the error is some roundings of the
+/// triangle's coordinates, however large the box.
 template <class T>
-bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
-    if (!overlap(tri.bounds(), box)) return false;
+bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& whole) {
+    const Box<T, 3> box = intersection(whole, tri.bounds());
+    if (box.empty()) return false;
     const Vec3d center = Box3d{Vec3d(box.low), Vec3d(box.high)}.center();
     Vec3d half = Vec3d(box.high) - center;
     std::array<Vec3d, 3> p = {Vec3d(tri.a) - center, Vec3d(tri.b) - center, Vec3d(tri.c) - center};
@@ -59,8 +62,9 @@ bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
 }
 
 template <class T>
-bool overlap(const Segment<T, 2>& s, const Box<T, 2>& box) {
-    if (!overlap(s.bounds(), box)) return false;
+bool overlap(const Segment<T, 2>& s, const Box<T, 2>& whole) {
+    const Box<T, 2> box = intersection(whole, s.bounds());
+    if (box.empty()) return false;
     const Vec2d center = Box2d{Vec2d(box.low), Vec2d(box.high)}.center();
     Vec2d half = Vec2d(box.high) - center;
     std::array<Vec2d, 2> p = {Vec2d(s.a) - center, Vec2d(s.b) - center};

@@ -42,6 +42,11 @@ concept OverlapsBoxes = PrimitiveSet<P> &&
     { p.overlaps(i, box) } -> std::same_as<bool>;
 };
 
+/// A set that promises more of its hits: they lie within the probe's slack of the primitive itself, not only
+/// of its box. It may be left out of cells that it does not overlap (structures/cells.h).
+template <class P>
+concept HitsLieOnPrimitives = OverlapsBoxes<P> && P::hits_lie_on_primitives;
+
 /// What a ray query is offered.
 template <std::floating_point T>
 struct RayCandidate {

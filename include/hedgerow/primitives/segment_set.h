@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <hedgerow/geometry/clip.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/strided.h>
@@ -28,6 +29,10 @@ public:
         return hedgerow::closest_point(p, segments_[i]);
     }
     bool overlaps(std::size_t i, const Box<T, 2>& box) const { return overlap(segments_[i], box); }
+    static constexpr bool hits_lie_on_primitives = true;
+    Box<T, 2> clipped_bounds(std::size_t i, const Box<T, 2>& box) const {
+        return hedgerow::clipped_bounds(segments_[i], box);
+    }
     std::optional<Meeting<T>> meet(std::size_t i, const Ray<T, 2>& ray) const {
         const auto m = meet_line(ray.origin, ray.direction, segments_[i]);
         if (!m || !(ray.t_min <= m->t && m->t <= ray.t_max)) return std::nullopt;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hedgerow/error.h>
+#include <hedgerow/geometry/clip.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/concepts.h>
@@ -53,6 +54,11 @@ public:
         return hedgerow::closest_point(p, triangle(i));
     }
     bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }
+
+    static constexpr bool hits_lie_on_primitives = true;
+    Box<T, 3> clipped_bounds(std::size_t i, const Box<T, 3>& box) const {
+        return hedgerow::clipped_bounds(triangle(i), box);
+    }
 
     /// Throws InputError for the first triangle that names a vertex that is not there. O(n).
     void validate() const {

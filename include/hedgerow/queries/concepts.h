@@ -32,14 +32,16 @@ concept SubtreeQuery = Query<Q> && requires(Q& q, NodeId node) {
     { q.accept(node) } -> std::same_as<Verdict>;
 };
 
-/// How much a query looked at. `nodes`: inner nodes opened (cells of a grid); `leaves`; `primitives` tested.
+/// How much a query looked at. `nodes`: inner nodes opened (cells of a grid); `leaves`; `primitives` tested,
+/// and how many a mailbox `skipped`, since they had been tested before.
 struct Visits {
-    std::uint64_t nodes = 0, leaves = 0, primitives = 0;
+    std::uint64_t nodes = 0, leaves = 0, primitives = 0, skipped = 0;
 
     void node() { ++nodes; }
     void leaf(std::uint64_t count) { ++leaves, primitives += count; }
+    void skip() { --primitives, ++skipped; }
     Visits& operator+=(const Visits& o) {
-        nodes += o.nodes, leaves += o.leaves, primitives += o.primitives;
+        nodes += o.nodes, leaves += o.leaves, primitives += o.primitives, skipped += o.skipped;
         return *this;
     }
     friend bool operator==(const Visits&, const Visits&) = default;
@@ -48,6 +50,7 @@ struct Visits {
 struct NoVisits {
     void node() const {}
     void leaf(std::uint64_t) const {}
+    void skip() const {}
 };
 
 }  // namespace hedgerow

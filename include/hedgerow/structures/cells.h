@@ -1,0 +1,50 @@
+/// Which cells a primitive stands in: what grids, kd-trees, octrees and BSP trees share.
+#pragma once
+
+#include <hedgerow/structures/references.h>
+
+namespace hedgerow {
+
+/// How far a cell is enlarged on every side before it is asked whether a primitive meets it.
+///
+/// A probe visits each cell that an answer may lie in: a hit within the ray's slack, a closest point, a
+/// place in the region asked about. An answer lies on its primitive but for the roundings of the test that
+/// gave it (distances and overlaps: fewer than 16 of the largest coordinate, all done in double and rounded
+/// once for float; a hit's are in the probe's slack), and clipping adds fewer than 16 more. So a primitive
+/// that comes within the margin of a cell is entered there, and one that does not has no answer in it.
+template <std::floating_point T, int D>
+T cell_margin(const Box<T, D>& scene) {
+    if (scene.empty()) return T(0);
+    const T largest = std::max(max_component(abs(scene.low)), max_component(abs(scene.high)));
+    return product(64 * unit_roundoff<T>, largest) + 64 * std::numeric_limits<T>::denorm_min();
+}
+
+template <std::floating_point T, int D>
+Box<T, D> enlarged(const Box<T, D>& box, T margin) {
+    const auto by = Vec<T, D>::all(margin);
+    return {box.low - by, box.high + by};
+}
+
+/// Whether a primitive whose box meets a cell (enlarged already) is to stand in it. Only a set whose hits lie
+/// on the primitives themselves can be told apart more finely than by boxes.
+template <PrimitiveSet P>
+bool stands_in(const P& set, PrimitiveId id, const Box<typename P::Scalar, P::dimension>& cell) {
+    if constexpr (HitsLieOnPrimitives<P>)
+        return set.overlaps(id, cell);
+    else
+        return true;
+}
+
+/// Bounds of the part of a primitive that is to stand in a cell (enlarged already), empty if there is none:
+/// clipped exactly where the set can do that, otherwise what the boxes share.
+template <PrimitiveSet P>
+Box<typename P::Scalar, P::dimension> part_in(const P& set, PrimitiveId id,
+                                              const Box<typename P::Scalar, P::dimension>& box,
+                                              const Box<typename P::Scalar, P::dimension>& cell) {
+    if constexpr (HitsLieOnPrimitives<P> && requires { set.clipped_bounds(id, cell); })
+        return set.clipped_bounds(id, cell);
+    else
+        return intersection(box, cell);
+}
+
+}  // namespace hedgerow

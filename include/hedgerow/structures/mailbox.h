@@ -1,0 +1,44 @@
+/// Mailboxing: a primitive that stands in several cells is tested once a query.
+#pragma once
+
+#include <algorithm>
+
+#include <hedgerow/queries/concepts.h>
+
+namespace hedgerow {
+
+/// Primitives, and a mailbox for one query: the last primitive seen of each of 64 classes (Amanatides and Woo
+/// 1987, hashed and in the ray instead of in the primitives, so that queries share nothing). What was seen is
+/// passed over; `count.skip` is told of it. A hit found in any cell is kept, so nothing is lost.
+template <class Primitives, class Count>
+class Mailboxed {
+public:
+    Mailboxed(const Primitives& primitives, Count& count) : primitives_(primitives), count_(count) {
+        std::fill_n(last_, slots, none);
+    }
+
+    template <class Probe, class Query>
+    Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            PrimitiveId& last = last_[leaf.ids[i] % slots];
+            if (last == leaf.ids[i]) {
+                count_.skip();
+                continue;
+            }
+            last = leaf.ids[i];
+            if (hedgerow::test_leaf(primitives_, probe, Leaf{leaf.ids, i, 1}, query) == Flow::stop)
+                return Flow::stop;
+        }
+        return Flow::go_on;
+    }
+
+private:
+    static constexpr std::size_t slots = 64;
+    static constexpr PrimitiveId none = 0xFFFFFFFFu;
+
+    const Primitives& primitives_;
+    Count& count_;
+    PrimitiveId last_[slots];
+};
+
+}  // namespace hedgerow
