@@ -17,14 +17,17 @@ inline constexpr const char* structures[] = {"bvh",
                                              "bvh:builder=midpoint",
                                              "bvh:builder=equal-counts",
                                              "kdtree",
+                                             "kdtree:builder=binned",
                                              "grid",
                                              "bvh:ordered=off,culling=off",
                                              "bvh:max_leaf_size=1",
-                                             "kdtree:leaf_size=1",
+                                             "kdtree:builder=median",
+                                             "kdtree:builder=midpoint,leaf_size=1",
+                                             "kdtree:mailbox=off,intersection_cost=100",
                                              "grid:resolution=3",
                                              "grid:resolution=100",
                                              "brute-force:box=on"};
-inline constexpr std::size_t fast_structures = 6;
+inline constexpr std::size_t fast_structures = 7;
 
 /// HEDGEROW_LONG=1 in the environment asks for the long suites.
 inline std::size_t in_long_runs(std::size_t many, std::size_t few) {

@@ -84,13 +84,14 @@ private:
     }
 
     struct Nothing {};
-    static constexpr bool packs = S::exclusive && requires(const P& p) {
-        p.pack(std::span<const PrimitiveId>(), serial_executor());
+    static constexpr auto packed_order = S::exclusive ? PackedOrder::of_leaves : PackedOrder::of_ids;
+    static constexpr bool packs = requires(const P& p) {
+        p.template pack<packed_order>(std::span<const PrimitiveId>(), serial_executor());
     };
 
     static auto pack(const P& primitives, const S& structure, Executor& executor) {
         if constexpr (packs) {
-            return primitives.pack(structure.items(), executor);
+            return primitives.template pack<packed_order>(structure.items(), executor);
         } else {
             static_cast<void>(executor);
             return Nothing{};

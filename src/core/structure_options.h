@@ -95,8 +95,18 @@ void read_options(OptionReader& in, typename BruteForce<T, D>::Options& o,
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename KdTree<T, D>::Options& o, std::type_identity<KdTree<T, D>>) {
-    in.number<std::uint32_t>("leaf_size", o.leaf_size, 1, 1u << 20);
+    in.choice<KdBuilder>("builder", o.builder,
+                         {{"sah", KdBuilder::sah},
+                          {"binned", KdBuilder::binned},
+                          {"median", KdBuilder::median},
+                          {"midpoint", KdBuilder::midpoint}});
+    in.number<std::uint32_t>("leaf_size", o.leaf_size, 0, 1u << 20);
     in.number("max_depth", o.max_depth, 0, KdTree<T, D>::max_depth);
+    in.number("bins", o.bins, 2, KdBinnedPlanes<T, D>::most_bins);
+    in.number("traversal_cost", o.costs.traversal_cost, 0.0, 1e6);
+    in.number("intersection_cost", o.costs.intersection_cost, 1e-6, 1e6);
+    in.number("empty_bonus", o.costs.empty_bonus, 0.0, 0.99);
+    in.flag("mailbox", o.mailbox);
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename Grid<T, D>::Options& o, std::type_identity<Grid<T, D>>) {

@@ -1,4 +1,4 @@
-/// Triangles copied in the order of a structure's leaves, three corners to a register.
+/// Triangles copied so that a test reads one place, three corners to a register.
 #pragma once
 
 #include <bit>
@@ -11,9 +11,12 @@
 
 namespace hedgerow {
 
+/// Where packed primitives stand: in the order of the leaves, for structures that hold each once, or by id.
+enum class PackedOrder { of_leaves, of_ids };
+
 /// Of each axis the three corners' coordinates, then the id: 40 bytes a triangle (float), 80 (double). A row
 /// is loaded as four lanes; what lies in the fourth is ignored.
-template <std::floating_point T>
+template <std::floating_point T, PackedOrder order>
 class PackedTriangles {
 public:
     using Scalar = T;
@@ -36,8 +39,8 @@ public:
     Flow test_leaf(const RayProbe<T, 3>& probe, const Leaf& leaf, Query& query) const {
         using L = Lanes<T>;
         const WatertightRay<T>& ray = probe.watertight();
-        const Packed* p = triangles_.data() + leaf.first;
-        for (const Packed* const end = p + leaf.count; p != end; ++p) {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            const Packed* const p = &triangles_[order == PackedOrder::of_leaves ? i : leaf.ids[i]];
             const L z = L::load(p->row + 3 * ray.kz) - L::all(ray.origin[ray.kz]);
             const L x = (L::load(p->row + 3 * ray.kx) - L::all(ray.origin[ray.kx])) - L::all(ray.shear_x) * z;
             const L y = (L::load(p->row + 3 * ray.ky) - L::all(ray.origin[ray.ky])) - L::all(ray.shear_y) * z;

@@ -85,11 +85,16 @@ public:
         return Flow::go_on;
     }
 
-    /// The triangles in the order of a structure's leaves: what makes a leaf one read.
-    PackedTriangles<T> pack(std::span<const PrimitiveId> order, Executor& executor) const {
-        PackedTriangles<T> packed(order.size());
-        executor.for_each_piece(order.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) packed.set(i, triangle(order[i]), order[i]);
+    /// The triangles in the order of a structure's items, if it holds each once, or by id: what makes a test
+    /// one read.
+    template <PackedOrder order>
+    PackedTriangles<T, order> pack(std::span<const PrimitiveId> items, Executor& executor) const {
+        PackedTriangles<T, order> packed(size());
+        executor.for_each_piece(size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto id = order == PackedOrder::of_leaves ? items[i] : static_cast<PrimitiveId>(i);
+                packed.set(i, triangle(id), id);
+            }
         });
         return packed;
     }

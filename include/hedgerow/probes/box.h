@@ -28,11 +28,9 @@ public:
         return enter_each(*this, pack, limit, at);
     }
     State root(const Box<T, D>& box) const { return {overlap(box_, box)}; }
-    T bound(const State& s) const { return s.here ? T(0) : std::numeric_limits<T>::infinity(); }
-    Cut<State> cut(const State& s, const AxisPlane<T>& plane) const {
-        return {false,
-                {s.here && box_.low[plane.axis] <= plane.position},
-                {s.here && box_.high[plane.axis] >= plane.position}};
+    bool within(const State& s, T) const { return s.here; }
+    Cut<State> cut(const State& s, const AxisPlane<T>& plane, T) const {
+        return {false, s, s, box_.low[plane.axis] <= plane.position, box_.high[plane.axis] >= plane.position};
     }
 
     template <class Limit, class Visit>

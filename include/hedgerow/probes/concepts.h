@@ -12,24 +12,26 @@ namespace hedgerow {
 /// Whether a walk goes on after it was offered something.
 enum class Flow : bool { stop, go_on };
 
-/// What a walk by planes carries into the two sides of a cut.
+/// What a walk by planes carries into the two sides of a cut, and whether anything of the probe within the
+/// limit is there.
 template <class State>
 struct Cut {
     bool near_is_high;
     State near, far;
+    bool to_near, to_far;
 };
 
 /// `at` is where the probe enters a volume in the units of the query's limit: t of a ray, distance² of a
-/// point. A volume is entered when it may hold an answer within the limit. `bound` of a state is the same for
-/// a cell, and infinity when nothing of the probe is left there.
+/// point. A volume is entered when it may hold an answer within the limit. `within` asks the same of a cell:
+/// whether something of the probe is left there, and begins within the limit. What is cut was within it.
 template <class P>
 concept Probe = requires(const P& p, const Box<typename P::Scalar, P::dimension>& box,
                          typename P::Scalar limit, typename P::Scalar& at, const typename P::State& state,
                          const AxisPlane<typename P::Scalar>& plane) {
     { p.enter(box, limit, at) } -> std::same_as<bool>;
     { p.root(box) } -> std::same_as<typename P::State>;
-    { p.bound(state) } -> std::same_as<typename P::Scalar>;
-    { p.cut(state, plane) } -> std::same_as<Cut<typename P::State>>;
+    { p.within(state, limit) } -> std::same_as<bool>;
+    { p.cut(state, plane, limit) } -> std::same_as<Cut<typename P::State>>;
 };
 
 /// Enters each volume of a pack one by one: for probes with no faster way. Bit i of the result: at[i] counts.

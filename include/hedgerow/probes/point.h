@@ -36,13 +36,13 @@ public:
         const auto offset = offset_outside(point_, box);
         return {offset, length2(offset)};
     }
-    T bound(const State& s) const { return s.distance2; }
-    Cut<State> cut(const State& s, const AxisPlane<T>& plane) const {
+    bool within(const State& s, T limit) const { return s.distance2 <= limit; }
+    Cut<State> cut(const State& s, const AxisPlane<T>& plane, T limit) const {
         const T x = point_[plane.axis];
         State far = s;
         far.offset[plane.axis] = std::abs(x - plane.position);
         far.distance2 = length2(far.offset);
-        return {x >= plane.position, s, far};
+        return {x >= plane.position, s, far, true, far.distance2 <= limit};
     }
 
     /// Visits shells of cells around the point's own, until a shell's every cell is beyond the limit. The

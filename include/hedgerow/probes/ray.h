@@ -98,15 +98,21 @@ public:
     }
 
     State root(const Box<T, D>& box) const { return inside(box, ray_.t_max); }
-    T bound(const State& s) const { return s.entry <= s.exit ? s.entry : std::numeric_limits<T>::infinity(); }
+    bool within(const State& s, T limit) const {
+        const T exit = s.exit < limit ? s.exit : limit;
+        return s.entry <= exit;
+    }
     /// The plane is as thick as the error: both sides of it are met a little earlier and left a little later.
-    Cut<State> cut(const State& s, const AxisPlane<T>& plane) const {
+    Cut<State> cut(const State& s, const AxisPlane<T>& plane, T limit) const {
         const int a = plane.axis;
         const T leave = (plane.position - far_origin_[a]) * inverse_[a];
         const T arrive = (plane.position - near_origin_[a]) * inverse_[a];
+        const T last = s.exit < limit ? s.exit : limit;
         return {near_row_[a] != 0,
                 {s.entry, leave < s.exit ? leave : s.exit},
-                {arrive > s.entry ? arrive : s.entry, s.exit}};
+                {arrive > s.entry ? arrive : s.entry, s.exit},
+                !(leave < s.entry),
+                !(arrive > last)};
     }
 
     /// Visits the cells along the ray in order (Amanatides and Woo 1987), each crossing computed afresh from

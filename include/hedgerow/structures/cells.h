@@ -39,12 +39,11 @@ bool stands_in(const P& set, PrimitiveId id, const Box<typename P::Scalar, P::di
 /// clipped exactly where the set can do that, otherwise what the boxes share.
 template <PrimitiveSet P>
 Box<typename P::Scalar, P::dimension> part_in(const P& set, PrimitiveId id,
-                                              const Box<typename P::Scalar, P::dimension>& box,
                                               const Box<typename P::Scalar, P::dimension>& cell) {
     if constexpr (HitsLieOnPrimitives<P> && requires { set.clipped_bounds(id, cell); })
         return set.clipped_bounds(id, cell);
     else
-        return intersection(box, cell);
+        return intersection(set.bounds(id), cell);
 }
 
 }  // namespace hedgerow

@@ -8,7 +8,7 @@ namespace hedgerow {
 /// The probe knows the way from cell to cell; each visited cell's primitives are tested. A hit found in any
 /// cell is kept, and the walk ends when the next cell begins beyond the limit.
 template <class Grid, class Primitives, Query Q, class Count>
-void walk_lattice(const Grid& grid, const Primitives& primitives, Q& query, Count& count) {
+void walk_lattice(const Grid& grid, Primitives& primitives, Q& query, Count& count) {
     if (grid.empty()) return;
     query.probe().sweep(
         grid.lattice(), [&] { return query.limit(); },

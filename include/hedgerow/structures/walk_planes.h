@@ -16,14 +16,10 @@ concept PlaneTree = requires(const S& s, NodeId n) {
     { s.high_child(n) } -> std::same_as<NodeId>;
 };
 
-/// The bound of a state in which nothing of the probe is left.
-template <class Q>
-inline constexpr auto nothing = std::numeric_limits<typename Q::Probe::Scalar>::infinity();
-
 /// Follows the near side of each cut and keeps the far side on a stack, with what is left of the probe there;
 /// it is passed over if by then the limit lies before it. Allocates nothing: one entry a level.
 template <PlaneTree S, class Primitives, Query Q, class Count>
-void walk_planes(const S& tree, const Primitives& primitives, Q& query, Count& count) {
+void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) {
     if (tree.empty()) return;
     const auto& probe = query.probe();
     using State = typename Q::Probe::State;
@@ -31,11 +27,8 @@ void walk_planes(const S& tree, const Primitives& primitives, Q& query, Count& c
         NodeId node;
         State state;
     };
-    const auto within = [&](const State& s) {
-        return probe.bound(s) <= query.limit() && probe.bound(s) < nothing<Q>;
-    };
-    const auto opened = [&](NodeId n, const State& s) {
-        if (!within(s)) return false;
+    const auto within = [&](const State& s) { return probe.within(s, query.limit()); };
+    const auto opened = [&]([[maybe_unused]] NodeId n) {
         if constexpr (SubtreeQuery<Q>) return query.accept(n) == Verdict::open;
         return true;
     };
@@ -43,7 +36,7 @@ void walk_planes(const S& tree, const Primitives& primitives, Q& query, Count& c
     int top = 0;
     NodeId node = 0;
     State state = probe.root(tree.bounds());
-    if (!opened(node, state)) return;
+    if (!within(state) || !opened(node)) return;
     while (true) {
         if (tree.is_leaf(node)) {
             const Leaf leaf = tree.leaf(node);
@@ -51,12 +44,17 @@ void walk_planes(const S& tree, const Primitives& primitives, Q& query, Count& c
             if (test_leaf(primitives, probe, leaf, query) == Flow::stop) return;
         } else {
             count.node();
-            const auto cut = probe.cut(state, tree.plane(node));
+            const auto cut = probe.cut(state, tree.plane(node), query.limit());
             const NodeId near = cut.near_is_high ? tree.high_child(node) : tree.low_child(node);
             const NodeId far = cut.near_is_high ? tree.low_child(node) : tree.high_child(node);
-            if (opened(far, cut.far)) stack[top++] = {far, cut.far};
-            if (opened(near, cut.near)) {
+            const bool far_too = cut.to_far && opened(far);
+            if (cut.to_near && opened(near)) {
+                if (far_too) stack[top++] = {far, cut.far};
                 node = near, state = cut.near;
+                continue;
+            }
+            if (far_too) {
+                node = far, state = cut.far;
                 continue;
             }
         }

@@ -1,0 +1,70 @@
+/// The surface area heuristic for cells that a plane divides.
+#pragma once
+
+#include <hedgerow/structures/kdtree/builders/grow.h>
+
+namespace hedgerow {
+
+/// How the SAH decides (MacDonald and Booth 1990): opening an inner node costs `traversal_cost`, testing a
+/// primitive `intersection_cost`. Pharr, Jakob and Humphreys have 1 to 5.
+struct KdCosts {
+    double traversal_cost = 1;
+    double intersection_cost = 5;
+    /// A plane that cuts off empty space costs that part less.
+    double empty_bonus = 0.2;
+};
+
+/// The least costly plane seen so far, and where it is.
+template <std::floating_point T>
+struct KdBest {
+    double cost = std::numeric_limits<double>::infinity();
+    AxisPlane<T> plane;
+};
+
+/// What a plane across one axis of a cell costs. Areas of the halves are linear in its position.
+template <std::floating_point T, int D>
+class KdAxisCosts {
+public:
+    KdAxisCosts(const KdCosts& costs, const Box<T, D>& cell, int axis)
+        : costs_(costs),
+          axis_(axis),
+          low_(static_cast<double>(cell.low[axis])),
+          high_(static_cast<double>(cell.high[axis])) {
+        const Vec<double, D> e = Vec<double, D>(cell.high) - Vec<double, D>(cell.low);
+        if constexpr (D == 2) {
+            caps_ = e[1 - axis], around_ = 1;
+        } else {
+            const double a = e[(axis + 1) % 3], b = e[(axis + 2) % 3];
+            caps_ = product(a, b), around_ = a + b;
+        }
+        whole_ = area(high_ - low_);
+    }
+
+    /// Offers a plane with that many primitives on its sides.
+    void offer(T position, std::uint32_t on_low, std::uint32_t on_high, KdBest<T>& best) const {
+        const double x = static_cast<double>(position);
+        if (!(low_ < x && x < high_)) return;
+        const double tests =
+            product(area(x - low_), double(on_low)) + product(area(high_ - x), double(on_high));
+        const double bonus = on_low == 0 || on_high == 0 ? 1 - costs_.empty_bonus : 1;
+        const double cost = costs_.traversal_cost + product(costs_.intersection_cost * bonus, tests / whole_);
+        if (cost < best.cost) best = {cost, {axis_, position}};
+    }
+
+private:
+    double area(double width) const { return caps_ + product(around_, width); }
+
+    const KdCosts& costs_;
+    int axis_;
+    double low_, high_, caps_, around_, whole_;
+};
+
+/// The plane, if opening the cell is cheaper than testing all that stands in it.
+template <std::floating_point T, int D>
+std::optional<AxisPlane<T>> if_it_pays(const KdBest<T>& best, const KdCell<T, D>& cell,
+                                       const KdCosts& costs) {
+    if (best.cost < costs.intersection_cost * cell.size()) return best.plane;
+    return std::nullopt;
+}
+
+}  // namespace hedgerow
