@@ -1,4 +1,4 @@
-/// Equal cells over a box, numbered with the first axis fastest.
+/// Equal cells over a box, numbered by bricks.
 #pragma once
 
 #include <array>
@@ -19,17 +19,29 @@ struct Lattice {
     /// Primitives are entered in every cell that their box, enlarged by this part of a cell, touches.
     static constexpr double inflation = 0x1p-7;
 
-    static Cell cell() { return {}; }
+    /// Cells are numbered by bricks of 4³ (in the plane 8²): a brick's 64 cells fit the bits of a word.
+    static constexpr int brick_bits = D == 3 ? 2 : 3;
+    /// Along an axis, so that numbers have 30 bits.
+    static constexpr std::int32_t most_cells = D == 3 ? 1024 : 32768;
+
     std::int32_t coordinate(double x, int axis) const {
         const double c = std::floor((x - low[axis]) / size[axis]);
         const std::int32_t last = resolution[static_cast<std::size_t>(axis)] - 1;
         return c <= 0 ? 0 : (c >= last ? last : static_cast<std::int32_t>(c));
     }
     double plane(std::int32_t i, int axis) const { return low[axis] + product(double(i), size[axis]); }
-    std::size_t number(const Cell& c) const {
-        std::size_t n = 0;
-        for (std::size_t a = D; a-- > 0;)
-            n = n * static_cast<std::size_t>(resolution[a]) + static_cast<std::size_t>(c[a]);
+    std::uint32_t number(const Cell& c) const {
+        std::uint32_t brick = 0, inside = 0;
+        for (std::size_t a = D; a-- > 0;) {
+            const auto x = static_cast<std::uint32_t>(c[a]);
+            brick = brick * bricks(a) + (x >> brick_bits);
+            inside = inside << brick_bits | (x & ((1u << brick_bits) - 1));
+        }
+        return brick << 6 | inside;
+    }
+    std::uint32_t brick_count() const {
+        std::uint32_t n = 1;
+        for (std::size_t a = 0; a < D; ++a) n *= bricks(a);
         return n;
     }
     std::size_t cell_count() const {
@@ -44,6 +56,11 @@ struct Lattice {
             b.high[a] = plane(c[static_cast<std::size_t>(a)] + 1, a);
         }
         return b;
+    }
+
+private:
+    std::uint32_t bricks(std::size_t a) const {
+        return (static_cast<std::uint32_t>(resolution[a]) + (1u << brick_bits) - 1) >> brick_bits;
     }
 };
 

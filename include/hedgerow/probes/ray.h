@@ -116,9 +116,9 @@ public:
     }
 
     /// Visits the cells along the ray in order (Amanatides and Woo 1987), each crossing computed afresh from
-    /// the cell's integer coordinates. `limit()` is asked before each step and `visit(cell)` may stop the
-    /// walk. When the error exceeds half of the inflation of the primitives, the neighbours as far as it
-    /// reaches are visited too (and again from the next cell: such rays pay for their distance).
+    /// the cell's integer coordinates, not summed up. `limit()` is asked before each step and `visit(cell)`
+    /// may stop the walk. When the error exceeds half of the inflation of the primitives, the neighbours as
+    /// far as it reaches are visited too (and again from the next cell: such rays pay for their distance).
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
         if (!usable_) return;
@@ -156,23 +156,25 @@ public:
             slowest = std::max(slowest, std::abs(d[a]));
         }
         back = 4 * wide / slowest + 0x1p-40 * std::abs(in.entry);
+        // Where the ray leaves the cell along an axis. Only in.exit leads out of the lattice: between its
+        // last plane and that, it is still grazed.
+        const auto leaves = [&](int a) {
+            const auto i = static_cast<std::size_t>(a);
+            if (d[a] == 0 || cell[i] == (d[a] > 0 ? lattice.resolution[i] - 1 : 0))
+                return std::numeric_limits<double>::infinity();
+            return (lattice.plane(cell[i] + (d[a] > 0 ? 1 : 0), a) - o[a]) / d[a];
+        };
+        Vec<double, D> next;
+        for (int a = 0; a < D; ++a) next[a] = leaves(a);
         double entry = in.entry;
         while (entry - back <= static_cast<double>(limit()) && entry <= in.exit) {
             if (!visit_around(lattice, cell, reach, visit)) return;
-            int step = -1;
-            double next = std::numeric_limits<double>::infinity();
-            for (int a = 0; a < D; ++a) {
-                const auto i = static_cast<std::size_t>(a);
-                // Only in.exit leads out of the lattice: between its last plane and that, it is still grazed.
-                if (d[a] == 0 || cell[i] == (d[a] > 0 ? lattice.resolution[i] - 1 : 0)) continue;
-                const std::int32_t side = cell[i] + (d[a] > 0 ? 1 : 0);
-                const double t = (lattice.plane(side, a) - o[a]) / d[a];
-                if (t < next) next = t, step = a;
-            }
-            if (step < 0) return;
-            const auto i = static_cast<std::size_t>(step);
-            cell[i] += d[step] > 0 ? 1 : -1;
-            entry = std::max(entry, next);
+            int step = next[1] < next[0];
+            if constexpr (D == 3) step = next[2] < next[step] ? 2 : step;
+            if (!(next[step] < std::numeric_limits<double>::infinity())) return;
+            cell[static_cast<std::size_t>(step)] += d[step] > 0 ? 1 : -1;
+            entry = std::max(entry, next[step]);
+            next[step] = leaves(step);
         }
     }
 

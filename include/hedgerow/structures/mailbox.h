@@ -46,4 +46,15 @@ Flow test_leaf(Mailboxed<Primitives, Count>& mailed, const Probe& probe, const L
     return mailed.test_leaf(probe, leaf, query);
 }
 
+/// Calls f with the primitives, or with a mailbox around them.
+template <class Primitives, class Count, class F>
+void with_mailbox(bool mailbox, const Primitives& primitives, Count& count, F f) {
+    if (mailbox) {
+        Mailboxed mailed(primitives, count);
+        f(mailed);
+    } else {
+        f(primitives);
+    }
+}
+
 }  // namespace hedgerow

@@ -5,20 +5,19 @@
 
 namespace hedgerow {
 
-/// The probe knows the way from cell to cell; each visited cell's primitives are tested. A hit found in any
-/// cell is kept, and the walk ends when the next cell begins beyond the limit.
-template <class Grid, class Primitives, Query Q, class Count>
-void walk_lattice(const Grid& grid, Primitives& primitives, Q& query, Count& count) {
-    if (grid.empty()) return;
+/// The probe knows the way from cell to cell; `visit(cell)` looks into each. What is found in any cell is
+/// kept, and the walk ends when the next cell begins beyond the limit, or when a visit stops it. A cell may
+/// itself be a lattice to be walked.
+template <class Lattice, Query Q, class Count, class Visit>
+Flow walk_lattice(const Lattice& lattice, const Q& query, Count& count, Visit visit) {
+    Flow flow = Flow::go_on;
     query.probe().sweep(
-        grid.lattice(), [&] { return query.limit(); },
+        lattice, [&] { return query.limit(); },
         [&](const auto& cell) {
             count.node();
-            const Leaf leaf = grid.leaf(cell);
-            if (leaf.count == 0) return Flow::go_on;
-            count.leaf(leaf.count);
-            return test_leaf(primitives, query.probe(), leaf, query);
+            return flow = visit(cell);
         });
+    return flow;
 }
 
 }  // namespace hedgerow

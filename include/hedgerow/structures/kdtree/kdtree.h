@@ -87,12 +87,8 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (query.limit() < 0) return;
-        if (mailbox_) {
-            Mailboxed mailed(primitives, count);
-            walk_planes(*this, mailed, query, count);
-        } else {
-            walk_planes(*this, primitives, query, count);
-        }
+        with_mailbox(mailbox_, primitives, count,
+                     [&](auto& tested) { walk_planes(*this, tested, query, count); });
     }
 
     /// What is wrong with the structure; empty if nothing is.

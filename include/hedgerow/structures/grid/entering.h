@@ -1,0 +1,95 @@
+/// Which cells of a lattice primitives are entered in.
+#pragma once
+
+#include <hedgerow/structures/cells.h>
+#include <hedgerow/structures/grid/cell_rows.h>
+
+namespace hedgerow {
+
+/// By its box alone, or only where the primitive itself meets the cell. What that saves is seen on large
+/// triangles that stand askew.
+enum class GridInsert { exact, box };
+
+/// A primitive is entered in every cell that it comes within `pad` of, 2^-7 of a cell (Lattice::inflation) if
+/// nothing else is said: a ray that errs by less than that need not look beside its way.
+template <PrimitiveSet P>
+class CellEntering {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+    using Cell = typename Lattice<D>::Cell;
+
+    CellEntering(const P& set, const Lattice<D>& lattice, GridInsert insert, T margin,
+                 const Vec<double, D>& pad)
+        : set_(set), lattice_(lattice), exact_(insert == GridInsert::exact), margin_(margin), pad_(pad) {}
+    CellEntering(const P& set, const Lattice<D>& lattice, GridInsert insert, T margin)
+        : CellEntering(set, lattice, insert, margin, lattice.size * Lattice<D>::inflation) {}
+
+    /// Calls f(cell) for each cell of the lattice, whose nearest stand for what lies outside. A row of cells
+    /// that a box reaches is reached by what spans the box: only where it spans several along two axes does
+    /// the primitive itself have to be asked.
+    template <class F>
+    void for_each(PrimitiveId id, const Box<T, D>& box, F f) const {
+        Cell first, last;
+        int spanned = 0;
+        for (int a = 0; a < D; ++a) {
+            const auto i = static_cast<std::size_t>(a);
+            first[i] = lattice_.coordinate(static_cast<double>(box.low[a]) - pad_[a], a);
+            last[i] = lattice_.coordinate(static_cast<double>(box.high[a]) + pad_[a], a);
+            spanned += first[i] != last[i];
+        }
+        const bool ask = HitsLieOnPrimitives<P> && exact_ && spanned > 1;
+        for_each_cell(first, last, [&](const Cell& cell) {
+            if (!ask || stands_in(set_, id, enlarged_cell(cell))) f(cell);
+            return true;
+        });
+    }
+
+private:
+    Box<T, D> enlarged_cell(const Cell& cell) const {
+        const auto b = lattice_.bounds(cell);
+        return enlarged(Box<T, D>{Vec<T, D>(b.low - pad_), Vec<T, D>(b.high + pad_)}, margin_);
+    }
+
+    const P& set_;
+    const Lattice<D>& lattice_;
+    bool exact_;
+    T margin_;
+    Vec<double, D> pad_;
+};
+
+/// Where all primitives are entered, in pieces that follow each other by id. Throws InputError when building
+/// from them would take more than `budget` bytes.
+template <PrimitiveSet P, std::floating_point T, int D>
+std::vector<std::vector<CellEntry>> entries_of(const CellEntering<P>& entering, const Lattice<D>& lattice,
+                                               const std::vector<Reference<T, D>>& references, double budget,
+                                               Executor& executor) {
+    constexpr std::size_t grain = 4096;
+    std::vector<std::vector<CellEntry>> pieces((references.size() + grain - 1) / grain);
+    std::atomic<std::uint64_t> entered{0};
+    const auto refuse_too_many = [&](std::uint64_t entries) {
+        const double bytes = 24.0 * static_cast<double>(entries);  // listed, sorted, and kept
+        if (bytes > budget || entries > 0xFFFFFFFFu)
+            throw InputError("the grid would take more than " + std::to_string(bytes * 1e-6) +
+                             " MB to build, and its budget is " + std::to_string(budget * 1e-6) +
+                             ": lower its density or resolution, or raise the budget");
+    };
+    executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p) {
+            auto& piece = pieces[p];
+            piece.reserve(2 * grain);
+            const std::size_t last = std::min(references.size(), (p + 1) * grain);
+            for (std::size_t i = p * grain; i < last; ++i) {
+                const std::size_t before = piece.size();
+                entering.for_each(references[i].id(), references[i].box(), [&](const auto& cell) {
+                    piece.push_back({lattice.number(cell), references[i].id()});
+                    if (((piece.size() - before) & 0xFFFFu) == 0) refuse_too_many(entered + piece.size());
+                });
+            }
+            refuse_too_many(entered += piece.size());
+        }
+    });
+    return pieces;
+}
+
+}  // namespace hedgerow
