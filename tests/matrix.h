@@ -19,15 +19,18 @@ inline constexpr const char* structures[] = {"bvh",
                                              "kdtree",
                                              "kdtree:builder=binned",
                                              "grid",
+                                             "two-level-grid",
                                              "bvh:ordered=off,culling=off",
                                              "bvh:max_leaf_size=1",
                                              "kdtree:builder=median",
                                              "kdtree:builder=midpoint,leaf_size=1",
                                              "kdtree:mailbox=off,intersection_cost=100",
                                              "grid:resolution=3",
-                                             "grid:resolution=100",
+                                             "grid:resolution=100,insert=box",
+                                             "grid:heuristic=roots,mailbox=off",
+                                             "two-level-grid:resolution=2,inner_density=10",
                                              "brute-force:box=on"};
-inline constexpr std::size_t fast_structures = 7;
+inline constexpr std::size_t fast_structures = 8;
 
 /// HEDGEROW_LONG=1 in the environment asks for the long suites.
 inline std::size_t in_long_runs(std::size_t many, std::size_t few) {

@@ -87,6 +87,7 @@ template <class F>
 void for_each_structure(F f) {
     f.template operator()<BruteForce>("brute-force");
     f.template operator()<Grid>("grid");
+    f.template operator()<TwoLevelGrid>("two-level-grid");
     f.template operator()<KdTree>("kdtree");
     f.template operator()<Bvh>("bvh");
 }

@@ -108,10 +108,27 @@ void read_options(OptionReader& in, typename KdTree<T, D>::Options& o, std::type
     in.number("empty_bonus", o.costs.empty_bonus, 0.0, 0.99);
     in.flag("mailbox", o.mailbox);
 }
+inline void read_resolution(OptionReader& in, GridResolution& o, int least, int most) {
+    in.choice<GridHeuristic>("heuristic", o.heuristic,
+                             {{"density", GridHeuristic::density}, {"roots", GridHeuristic::roots}});
+    in.number("density", o.density, 1e-9, 1e6);
+    in.number("resolution", o.resolution, least, most);
+}
 template <class T, int D>
 void read_options(OptionReader& in, typename Grid<T, D>::Options& o, std::type_identity<Grid<T, D>>) {
-    in.number("density", o.density, 1e-9, 1e3);
-    in.number("resolution", o.resolution, 0, 1024);
+    read_resolution(in, o.cells, 0, Lattice<D>::most_cells);
+    in.choice<GridInsert>("insert", o.insert, {{"exact", GridInsert::exact}, {"box", GridInsert::box}});
+    in.number("budget", o.budget, 1e3, 1e15);
+    in.flag("mailbox", o.mailbox);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename TwoLevelGrid<T, D>::Options& o,
+                  std::type_identity<TwoLevelGrid<T, D>>) {
+    read_resolution(in, o.cells, 0, Lattice<D>::most_cells);
+    in.number("inner_density", o.inner_density, 1e-9, 1e6);
+    in.choice<GridInsert>("insert", o.insert, {{"exact", GridInsert::exact}, {"box", GridInsert::box}});
+    in.number("budget", o.budget, 1e3, 1e15);
+    in.flag("mailbox", o.mailbox);
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_identity<Bvh<T, D>>) {

@@ -39,6 +39,16 @@ struct Lattice {
         }
         return brick << 6 | inside;
     }
+    Cell cell(std::uint32_t number) const {
+        Cell c;
+        std::uint32_t brick = number >> 6, inside = number & 63;
+        for (std::size_t a = 0; a < D; ++a) {
+            const std::uint32_t x = inside & ((1u << brick_bits) - 1);
+            c[a] = static_cast<std::int32_t>(brick % bricks(a) << brick_bits | x);
+            brick /= bricks(a), inside >>= brick_bits;
+        }
+        return c;
+    }
     std::uint32_t brick_count() const {
         std::uint32_t n = 1;
         for (std::size_t a = 0; a < D; ++a) n *= bricks(a);

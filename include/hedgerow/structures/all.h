@@ -5,4 +5,5 @@
 #include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/fold.h>
 #include <hedgerow/structures/grid/grid.h>
+#include <hedgerow/structures/grid/two_level_grid.h>
 #include <hedgerow/structures/kdtree/kdtree.h>

@@ -64,6 +64,23 @@ public:
         return {items_.data(), starts_[row], starts_[row + 1] - starts_[row]};
     }
 
+    std::size_t brick_count() const { return bricks_.size(); }
+    /// Calls f(cell, leaf) for the rows of some bricks, in the order of rows.
+    template <class F>
+    void for_each_row(std::size_t first_brick, std::size_t last_brick, F f) const {
+        for (std::size_t b = first_brick; b < std::min(last_brick, bricks_.size()); ++b) {
+            std::uint32_t row = bricks_[b].first;
+            for (std::uint64_t left = bricks_[b].occupied; left != 0; left &= left - 1, ++row)
+                f(lattice_.cell(bricks_[b].number << 6 | static_cast<std::uint32_t>(std::countr_zero(left))),
+                  leaf(row));
+        }
+    }
+    /// Keeps only which cells are occupied: the rows are somewhere else.
+    void forget_items() {
+        items_ = {};
+        starts_ = {};
+    }
+
     /// Finds cells, and remembers the brick that it was in: on its way a probe seldom leaves it.
     class Cursor {
     public:

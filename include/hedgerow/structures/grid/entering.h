@@ -21,31 +21,46 @@ public:
 
     CellEntering(const P& set, const Lattice<D>& lattice, GridInsert insert, T margin,
                  const Vec<double, D>& pad)
-        : set_(set), lattice_(lattice), exact_(insert == GridInsert::exact), margin_(margin), pad_(pad) {}
+        : set_(set), lattice_(lattice), insert_(insert), margin_(margin), pad_(pad) {}
     CellEntering(const P& set, const Lattice<D>& lattice, GridInsert insert, T margin)
         : CellEntering(set, lattice, insert, margin, lattice.size * Lattice<D>::inflation) {}
 
-    /// Calls f(cell) for each cell of the lattice, whose nearest stand for what lies outside. A row of cells
+    /// The same for a lattice in one of the cells: with the same pad, since what comes that near to the cell
+    /// is to be found in it.
+    CellEntering within(const Lattice<D>& inner) const { return {set_, inner, insert_, margin_, pad_}; }
+
+    /// Calls f(cell) for each cell of the lattice, whose outermost stand for what lies beyond. A row of cells
     /// that a box reaches is reached by what spans the box: only where it spans several along two axes does
     /// the primitive itself have to be asked.
     template <class F>
     void for_each(PrimitiveId id, const Box<T, D>& box, F f) const {
-        Cell first, last;
+        const auto [first, last] = reached(box);
         int spanned = 0;
-        for (int a = 0; a < D; ++a) {
-            const auto i = static_cast<std::size_t>(a);
-            first[i] = lattice_.coordinate(static_cast<double>(box.low[a]) - pad_[a], a);
-            last[i] = lattice_.coordinate(static_cast<double>(box.high[a]) + pad_[a], a);
-            spanned += first[i] != last[i];
-        }
-        const bool ask = HitsLieOnPrimitives<P> && exact_ && spanned > 1;
+        for (std::size_t a = 0; a < D; ++a) spanned += first[a] != last[a];
+        const bool ask = HitsLieOnPrimitives<P> && insert_ == GridInsert::exact && spanned > 1;
         for_each_cell(first, last, [&](const Cell& cell) {
             if (!ask || stands_in(set_, id, enlarged_cell(cell))) f(cell);
             return true;
         });
     }
+    /// How many cells a box reaches.
+    std::uint64_t cells_reached(const Box<T, D>& box) const {
+        const auto [first, last] = reached(box);
+        std::uint64_t n = 1;
+        for (std::size_t a = 0; a < D; ++a) n *= static_cast<std::uint64_t>(last[a] - first[a] + 1);
+        return n;
+    }
 
 private:
+    std::pair<Cell, Cell> reached(const Box<T, D>& box) const {
+        std::pair<Cell, Cell> block;
+        for (int a = 0; a < D; ++a) {
+            const auto i = static_cast<std::size_t>(a);
+            block.first[i] = lattice_.coordinate(static_cast<double>(box.low[a]) - pad_[a], a);
+            block.second[i] = lattice_.coordinate(static_cast<double>(box.high[a]) + pad_[a], a);
+        }
+        return block;
+    }
     Box<T, D> enlarged_cell(const Cell& cell) const {
         const auto b = lattice_.bounds(cell);
         return enlarged(Box<T, D>{Vec<T, D>(b.low - pad_), Vec<T, D>(b.high + pad_)}, margin_);
@@ -53,10 +68,19 @@ private:
 
     const P& set_;
     const Lattice<D>& lattice_;
-    bool exact_;
+    GridInsert insert_;
     T margin_;
     Vec<double, D> pad_;
 };
+
+/// Throws InputError when so many entries would take more than `budget` bytes to build from.
+inline void refuse_beyond(double budget, std::uint64_t entries) {
+    const double bytes = 24.0 * static_cast<double>(entries);  // listed, sorted, and kept
+    if (bytes > budget || entries > 0xFFFFFFFFu)
+        throw InputError("the grid would take more than " + std::to_string(bytes * 1e-6) +
+                         " MB to build, and its budget is " + std::to_string(budget * 1e-6) +
+                         ": lower its density or resolution, or raise the budget");
+}
 
 /// Where all primitives are entered, in pieces that follow each other by id. Throws InputError when building
 /// from them would take more than `budget` bytes.
@@ -67,13 +91,6 @@ std::vector<std::vector<CellEntry>> entries_of(const CellEntering<P>& entering, 
     constexpr std::size_t grain = 4096;
     std::vector<std::vector<CellEntry>> pieces((references.size() + grain - 1) / grain);
     std::atomic<std::uint64_t> entered{0};
-    const auto refuse_too_many = [&](std::uint64_t entries) {
-        const double bytes = 24.0 * static_cast<double>(entries);  // listed, sorted, and kept
-        if (bytes > budget || entries > 0xFFFFFFFFu)
-            throw InputError("the grid would take more than " + std::to_string(bytes * 1e-6) +
-                             " MB to build, and its budget is " + std::to_string(budget * 1e-6) +
-                             ": lower its density or resolution, or raise the budget");
-    };
     executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             auto& piece = pieces[p];
@@ -83,10 +100,11 @@ std::vector<std::vector<CellEntry>> entries_of(const CellEntering<P>& entering, 
                 const std::size_t before = piece.size();
                 entering.for_each(references[i].id(), references[i].box(), [&](const auto& cell) {
                     piece.push_back({lattice.number(cell), references[i].id()});
-                    if (((piece.size() - before) & 0xFFFFu) == 0) refuse_too_many(entered + piece.size());
+                    if (((piece.size() - before) & 0xFFFFu) == 0)
+                        refuse_beyond(budget, entered + piece.size());
                 });
             }
-            refuse_too_many(entered += piece.size());
+            refuse_beyond(budget, entered += piece.size());
         }
     });
     return pieces;
