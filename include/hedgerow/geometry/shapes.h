@@ -20,6 +20,23 @@ struct AxisPlane {
     T position = T(0);
 };
 
+/// A plane across space with a thickness, in double whatever the scene's scalar: what comes within `margin`
+/// of it (as a height: times the normal's length) may count for either side.
+template <int D>
+struct CutPlane {
+    Vec<double, D> normal;
+    double offset = 0, margin = 0;
+
+    /// How far a point lies on the high side, times the normal's length.
+    double height(const Vec<double, D>& x) const { return dot(normal, x) - offset; }
+    /// The sum of the normal's magnitudes: how far heights move at most when every coordinate moves by 1.
+    double reach() const {
+        double sum = 0;
+        for (int k = 0; k < D; ++k) sum += std::abs(normal[k]);
+        return sum;
+    }
+};
+
 template <std::floating_point T, int D>
 struct Triangle {
     Vec<T, D> a, b, c;

@@ -33,6 +33,19 @@ public:
         return {false, s, s, box_.low[plane.axis] <= plane.position, box_.high[plane.axis] >= plane.position};
     }
 
+    /// By the box's extreme corners along the normal. An unbounded box is on both sides.
+    Cut<State> cut(const State& s, const CutPlane<D>& plane, T) const {
+        double low = -plane.offset, high = -plane.offset, error = std::abs(plane.offset);
+        for (int k = 0; k < D; ++k) {
+            const double a = product(plane.normal[k], static_cast<double>(box_.low[k]));
+            const double b = product(plane.normal[k], static_cast<double>(box_.high[k]));
+            low += std::min(a, b), high += std::max(a, b);
+            error += std::max(std::abs(a), std::abs(b));
+        }
+        const double tolerance = plane.margin + product(8 * unit_roundoff<double>, error);
+        return {false, s, s, !(low > tolerance), !(high < -tolerance)};
+    }
+
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit, Visit visit) const {
         if (box_.empty()) return;

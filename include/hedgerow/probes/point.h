@@ -41,8 +41,23 @@ public:
         const T x = point_[plane.axis];
         State far = s;
         far.offset[plane.axis] = std::abs(x - plane.position);
-        far.distance2 = length2(far.offset);
+        far.distance2 = std::max(s.distance2, length2(far.offset));
         return {x >= plane.position, s, far, true, far.distance2 <= limit};
+    }
+
+    /// The same for any plane, in double: what lies beyond it is at least as far away as the plane, less its
+    /// margin and what the height may err by. Rounded down to T.
+    Cut<State> cut(const State& s, const CutPlane<D>& plane, T limit) const {
+        const Vec<double, D> p(point_);
+        const double height = plane.height(p);
+        const double error = product(8 * unit_roundoff<double>,
+                                     product(plane.reach(), max_component(abs(p))) + std::abs(plane.offset));
+        const double clear = std::max(0.0, std::abs(height) - plane.margin - error) / length(plane.normal);
+        State far = s;
+        const T beyond =
+            static_cast<T>(product(clear, clear) * (1 - 0x1p-20)) - 4 * std::numeric_limits<T>::denorm_min();
+        far.distance2 = std::max(s.distance2, beyond);
+        return {height >= 0, s, far, true, far.distance2 <= limit};
     }
 
     /// Visits shells of cells around the point's own, until a shell's every cell is beyond the limit. The

@@ -107,12 +107,19 @@ public:
         const int a = plane.axis;
         const T leave = (plane.position - far_origin_[a]) * inverse_[a];
         const T arrive = (plane.position - near_origin_[a]) * inverse_[a];
-        const T last = s.exit < limit ? s.exit : limit;
-        return {near_row_[a] != 0,
-                {s.entry, leave < s.exit ? leave : s.exit},
-                {arrive > s.entry ? arrive : s.entry, s.exit},
-                !(leave < s.entry),
-                !(arrive > last)};
+        return sides(s, near_row_[a] != 0, leave, arrive, limit);
+    }
+
+    /// The same for any plane, in double. Where the ray runs within the error of parallel it stays on both
+    /// sides, or on one. Heights and speeds err by some roundings of double, which twice the slack covers.
+    Cut<State> cut(const State& s, const CutPlane<D>& plane, T limit) const {
+        const double thickness = product(plane.reach(), 2 * static_cast<double>(slack_)) + plane.margin;
+        const double approach = dot(plane.normal, Vec<double, D>(ray_.direction));
+        const double height = plane.height(Vec<double, D>(ray_.origin));
+        const double speed = std::abs(approach), away = approach < 0 ? height : -height;
+        const T leave = static_cast<T>((away + thickness) / speed);
+        const T arrive = static_cast<T>((away - thickness) / speed);
+        return sides(s, approach < 0, leave, arrive, limit);
     }
 
     /// Visits the cells along the ray in order (Amanatides and Woo 1987), each crossing computed afresh from
@@ -122,53 +129,31 @@ public:
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
         if (!usable_) return;
-        Vec<double, D> o(ray_.origin), d(ray_.direction);
-        const double pad = 0.5 * Lattice<D>::inflation;
-        const double wide = static_cast<double>(slack_);
-        Interval<double> in{static_cast<double>(ray_.t_min), static_cast<double>(ray_.t_max)};
-        double back = 0;  // how much earlier, in t, a hit of a cell may lie than the cell's computed entry
-        typename Lattice<D>::Cell reach{};
-        for (int a = 0; a < D; ++a) {
-            const double margin = product(pad, lattice.size[a]) + wide;
-            const auto i = static_cast<std::size_t>(a);
-            if (wide > product(pad, lattice.size[a])) {
-                const double cells = wide / lattice.size[a] + 1;
-                reach[i] =
-                    cells < lattice.resolution[i] ? static_cast<std::int32_t>(cells) : lattice.resolution[i];
-            }
-            const double low = lattice.low[a] - margin,
-                         high = lattice.plane(lattice.resolution[i], a) + margin;
-            if (d[a] == 0) {
-                if (o[a] < low || o[a] > high) return;
-                continue;
-            }
-            const double near = ((d[a] < 0 ? high : low) - o[a]) / d[a],
-                         far = ((d[a] < 0 ? low : high) - o[a]) / d[a];
-            in.entry = std::max(in.entry, near);
-            in.exit = std::min(in.exit, far);
-        }
+        const Vec<double, D> o(ray_.origin), d(ray_.direction),
+            inverse = map(d, [](double x) { return 1 / x; });
+        const Interval<double> in = inside(lattice, o, d, inverse);
         if (!(in.entry <= in.exit)) return;
         typename Lattice<D>::Cell cell{};
-        back = 0x1p-20 * std::abs(in.entry);
-        double slowest = 0;
-        for (int a = 0; a < D; ++a) {
+        for (int a = 0; a < D; ++a)
             cell[static_cast<std::size_t>(a)] = lattice.coordinate(o[a] + product(d[a], in.entry), a);
-            slowest = std::max(slowest, std::abs(d[a]));
-        }
-        back = 4 * wide / slowest + 0x1p-40 * std::abs(in.entry);
+        const auto reach = neighbours_within_slack(lattice);
+        const bool alone = reach == typename Lattice<D>::Cell{};
+        // How much earlier, in t, a hit of a cell may lie than the cell's computed entry.
+        const double back =
+            4 * static_cast<double>(slack_) / max_component(abs(d)) + 0x1p-40 * std::abs(in.entry);
         // Where the ray leaves the cell along an axis. Only in.exit leads out of the lattice: between its
         // last plane and that, it is still grazed.
         const auto leaves = [&](int a) {
             const auto i = static_cast<std::size_t>(a);
             if (d[a] == 0 || cell[i] == (d[a] > 0 ? lattice.resolution[i] - 1 : 0))
                 return std::numeric_limits<double>::infinity();
-            return (lattice.plane(cell[i] + (d[a] > 0 ? 1 : 0), a) - o[a]) / d[a];
+            return product(lattice.plane(cell[i] + (d[a] > 0 ? 1 : 0), a) - o[a], inverse[a]);
         };
         Vec<double, D> next;
         for (int a = 0; a < D; ++a) next[a] = leaves(a);
         double entry = in.entry;
         while (entry - back <= static_cast<double>(limit()) && entry <= in.exit) {
-            if (!visit_around(lattice, cell, reach, visit)) return;
+            if (alone ? visit(cell) == Flow::stop : !visit_around(lattice, cell, reach, visit)) return;
             int step = next[1] < next[0];
             if constexpr (D == 3) step = next[2] < next[step] ? 2 : step;
             if (!(next[step] < std::numeric_limits<double>::infinity())) return;
@@ -179,10 +164,48 @@ public:
     }
 
 private:
+    /// A NaN leaves the interval as it was, and both sides are visited.
+    static Cut<State> sides(const State& s, bool near_is_high, T leave, T arrive, T limit) {
+        const T last = s.exit < limit ? s.exit : limit;
+        return {near_is_high,
+                {s.entry, leave < s.exit ? leave : s.exit},
+                {arrive > s.entry ? arrive : s.entry, s.exit},
+                !(leave < s.entry),
+                !(arrive > last)};
+    }
+    /// The ray's part in a lattice, whose primitives may reach a little beyond it.
+    Interval<double> inside(const Lattice<D>& lattice, const Vec<double, D>& o, const Vec<double, D>& d,
+                            const Vec<double, D>& inverse) const {
+        Interval<double> in{static_cast<double>(ray_.t_min), static_cast<double>(ray_.t_max)};
+        for (int a = 0; a < D; ++a) {
+            const double margin =
+                product(0.5 * Lattice<D>::inflation, lattice.size[a]) + static_cast<double>(slack_);
+            const double low = lattice.low[a] - margin;
+            const double high = lattice.plane(lattice.resolution[static_cast<std::size_t>(a)], a) + margin;
+            if (d[a] == 0) {
+                if (o[a] < low || o[a] > high) in.exit = -1;
+                continue;
+            }
+            in.entry = std::max(in.entry, product((d[a] < 0 ? high : low) - o[a], inverse[a]));
+            in.exit = std::min(in.exit, product((d[a] < 0 ? low : high) - o[a], inverse[a]));
+        }
+        return in;
+    }
+    /// How many cells beside its own the error may hide hits in, along each axis: none, as a rule.
+    typename Lattice<D>::Cell neighbours_within_slack(const Lattice<D>& lattice) const {
+        typename Lattice<D>::Cell reach{};
+        const double wide = static_cast<double>(slack_);
+        for (int a = 0; a < D; ++a) {
+            if (wide <= product(0.5 * Lattice<D>::inflation, lattice.size[a])) continue;
+            const double cells = wide / lattice.size[a] + 1,
+                         most = lattice.resolution[static_cast<std::size_t>(a)];
+            reach[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::min(cells, most));
+        }
+        return reach;
+    }
     template <class Visit>
     static bool visit_around(const Lattice<D>& lattice, const typename Lattice<D>::Cell& cell,
                              const typename Lattice<D>::Cell& reach, Visit& visit) {
-        if (reach == typename Lattice<D>::Cell{}) return visit(cell) == Flow::go_on;
         auto first = cell, last = cell;
         for (std::size_t a = 0; a < first.size(); ++a) {
             first[a] = std::max(0, cell[a] - reach[a]);

@@ -22,7 +22,7 @@ public:
         KdBuilder builder = KdBuilder::sah;
         /// Cells of no more primitives are leaves. 0: 1 where costs decide, else 4.
         std::uint32_t leaf_size = 0;
-        /// 0: 8 + 1.3·log2(n) (Pharr, Jakob, Humphreys, Physically Based Rendering, 4.4).
+        /// 0: by the number of primitives (usual_depth).
         int max_depth = 0;
         /// Of the binned builder.
         int bins = 32;
@@ -43,13 +43,14 @@ public:
         if (root.inside.empty()) return tree;
         for (const auto& r : root.inside) root.box.expand(r.box());
         tree.bounds_ = root.box;
-        const int by_count = 8 + static_cast<int>(1.3 * static_cast<double>(std::bit_width(tree.count_)));
-        const int deepest = std::min(max_depth, options.max_depth > 0 ? options.max_depth : by_count);
+        const int deepest =
+            std::min(max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(tree.count_));
         const bool by_cost = options.builder == KdBuilder::sah || options.builder == KdBuilder::binned;
         const std::uint32_t leaf_size = options.leaf_size > 0 ? options.leaf_size : (by_cost ? 1 : 4);
         const auto grow = [&](const auto& planes) {
-            KdGrowth growth(set, planes, cell_margin(tree.bounds_), deepest, executor);
-            tree.tree_ = growth.grow(std::move(root));
+            const KdCutter cutter(set, planes, cell_margin(tree.bounds_));
+            CutTreeGrowth<KdNode<T>, std::remove_cv_t<decltype(cutter)>> growth(cutter, deepest, executor);
+            tree.tree_ = growth.grow(cutter.root(std::move(root), executor));
         };
         switch (options.builder) {
             case KdBuilder::sah:
@@ -62,16 +63,12 @@ public:
             case KdBuilder::midpoint:
                 grow(KdPlainPlanes<T, D>(options.builder == KdBuilder::median, leaf_size));
         }
-        tree.tree_.nodes.shrink_to_fit();
-        tree.tree_.items.shrink_to_fit();
         return tree;
     }
 
     const Box<T, D>& bounds() const { return bounds_; }
     std::span<const PrimitiveId> items() const { return tree_.items; }
-    std::size_t bytes() const {
-        return tree_.nodes.capacity() * sizeof(KdNode<T>) + tree_.items.capacity() * sizeof(PrimitiveId);
-    }
+    std::size_t bytes() const { return tree_.bytes(); }
     std::size_t node_count() const { return tree_.nodes.size(); }
     std::size_t leaf_count() const { return (tree_.nodes.size() + 1) / 2; }
     int depth() const { return tree_.depth; }
@@ -133,7 +130,7 @@ private:
     }
 
     Box<T, D> bounds_;
-    KdNodes<T> tree_;
+    CutTree<KdNode<T>> tree_;
     std::size_t count_ = 0;
     bool mailbox_ = true;
 };

@@ -1,7 +1,7 @@
 /// The surface area heuristic for cells that a plane divides.
 #pragma once
 
-#include <hedgerow/structures/kdtree/builders/grow.h>
+#include <hedgerow/structures/kdtree/builders/cutter.h>
 
 namespace hedgerow {
 

@@ -1,7 +1,7 @@
 /// The two plain ways to a plane: the median, with the axes in turn, and the middle.
 #pragma once
 
-#include <hedgerow/structures/kdtree/builders/grow.h>
+#include <hedgerow/structures/kdtree/builders/cutter.h>
 
 namespace hedgerow {
 

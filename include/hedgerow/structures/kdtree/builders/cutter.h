@@ -1,10 +1,10 @@
-/// kd-tree building: one recursion, whatever chooses the planes.
+/// kd-tree building: how a cell is cut, whatever chooses the planes.
 #pragma once
 
 #include <optional>
 
 #include <hedgerow/structures/cells.h>
-#include <hedgerow/structures/kdtree/kd_nodes.h>
+#include <hedgerow/structures/kdtree/kd_node.h>
 
 namespace hedgerow {
 
@@ -39,61 +39,35 @@ struct KdPlaces {
 /// `Planes` chooses: `choose(cell, lists, depth) -> std::optional<AxisPlane>` (none: a leaf). It may carry
 /// `Lists` of its own beside each cell: `begin(root)` makes them, and `divide(lists, places, low, high)`
 /// hands them on. Straddlers are clipped anew (perfect splits, Havran 2000; Wald and Havran 2006), and
-/// dropped where nothing of them is left. The tree is the same however many threads build it.
+/// dropped where nothing of them is left.
 template <PrimitiveSet P, class Planes>
-class KdGrowth {
+class KdCutter {
 public:
     using T = typename P::Scalar;
     static constexpr int D = P::dimension;
-    using Cell = KdCell<T, D>;
-    using Lists = typename Planes::Lists;
+    struct Cell : KdCell<T, D> {
+        typename Planes::Lists lists;
 
-    KdGrowth(const P& set, const Planes& planes, T margin, int deepest, Executor& executor)
-        : set_(set), planes_(planes), margin_(margin), deepest_(deepest), executor_(executor) {}
-
-    KdNodes<T> grow(Cell root) {
-        KdNodes<T> tree;
-        for (auto& r : root.inside) r = Reference<T, D>(enlarged(r.box(), margin_), r.id());
-        Lists lists = planes_.begin(root, executor_);
-        grow(std::move(root), std::move(lists), 1, tree);
-        return tree;
-    }
-
-private:
-    void grow(Cell cell, Lists lists, int depth, KdNodes<T>& tree) {
-        tree.depth = std::max(tree.depth, depth);
-        std::optional<AxisPlane<T>> plane;
-        if (depth < deepest_) plane = planes_.choose(cell, lists, depth);
-        if (!plane) return add_leaf(cell, tree);
-
-        const auto at = tree.nodes.size();
-        tree.nodes.push_back(KdNode<T>::inner(*plane));
-        Cell low, high;
-        Lists low_lists, high_lists;
-        divide(cell, lists, *plane, low, high, low_lists, high_lists);
-        const bool large = cell.inside.size() > 4096;
-        cell = {}, lists = {};
-        const auto grow_low = [&] { grow(std::move(low), std::move(low_lists), depth + 1, tree); };
-        if (large) {
-            KdNodes<T> high_tree;
-            executor_.both(grow_low,
-                           [&] { grow(std::move(high), std::move(high_lists), depth + 1, high_tree); });
-            tree.nodes[at].set_link(static_cast<std::uint32_t>(tree.nodes.size()));
-            tree.append(high_tree);
-        } else {
-            grow_low();
-            tree.nodes[at].set_link(static_cast<std::uint32_t>(tree.nodes.size()));
-            grow(std::move(high), std::move(high_lists), depth + 1, tree);
+        template <class F>
+        void for_each_id(F f) const {
+            for (const auto& r : this->inside) f(r.id());
         }
-    }
+    };
 
-    void add_leaf(const Cell& cell, KdNodes<T>& tree) {
-        tree.nodes.push_back(KdNode<T>::leaf(static_cast<std::uint32_t>(tree.items.size()), cell.size()));
-        for (const auto& r : cell.inside) tree.items.push_back(r.id());
-    }
+    KdCutter(const P& set, const Planes& planes, T margin) : set_(set), planes_(planes), margin_(margin) {}
 
-    void divide(const Cell& cell, const Lists& lists, const AxisPlane<T>& plane, Cell& low, Cell& high,
-                Lists& low_lists, Lists& high_lists) {
+    Cell root(KdCell<T, D> cell, Executor& executor) const {
+        for (auto& r : cell.inside) r = Reference<T, D>(enlarged(r.box(), margin_), r.id());
+        Cell root{std::move(cell), {}};
+        root.lists = planes_.begin(root, executor);
+        return root;
+    }
+    std::optional<AxisPlane<T>> choose(const Cell& cell, int depth) const {
+        return planes_.choose(cell, cell.lists, depth);
+    }
+    std::pair<Cell, Cell> cut(const Cell& cell, const AxisPlane<T>& plane) const {
+        std::pair<Cell, Cell> sides;
+        auto& [low, high] = sides;
         low.box = high.box = cell.box;
         low.box.high[plane.axis] = high.box.low[plane.axis] = plane.position;
         std::vector<KdPlaces> places(cell.inside.size());
@@ -104,9 +78,12 @@ private:
             if (to_low) places[i].low = add(low, r, places[i].cut);
             if (to_high) places[i].high = add(high, r, places[i].cut);
         }
-        planes_.divide(lists, places, low, high, low_lists, high_lists);
+        planes_.divide(cell.lists, places, low, high, low.lists, high.lists);
+        return sides;
     }
-    std::uint32_t add(Cell& to, const Reference<T, D>& r, bool cut) {
+
+private:
+    std::uint32_t add(Cell& to, const Reference<T, D>& r, bool cut) const {
         if (!cut) {
             to.inside.push_back(r);
         } else {
@@ -120,8 +97,6 @@ private:
     const P& set_;
     const Planes& planes_;
     T margin_;
-    int deepest_;
-    Executor& executor_;
 };
 
 }  // namespace hedgerow

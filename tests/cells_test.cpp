@@ -1,0 +1,160 @@
+/// What the structures that cut space share: clipped parts, mailboxes, and what each stands for in memory.
+/// That their answers are right, the matrix and the properties hold.
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/sets.h>
+
+#include "contract.h"
+#include "exact.h"
+
+using namespace hedgerow;
+
+namespace {
+
+template <class T>
+class Cells : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Cells, Scalars);
+
+/// Bounds of the points of a fine net over a triangle that lie in a box: never outside of the clipped part.
+template <class T>
+Box<T, 3> bounds_by_net(const Triangle<T, 3>& t, const Box<T, 3>& box, int n) {
+    Box<T, 3> bounds;
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; i + j <= n; ++j) {
+            const Vec3d a(t.a), ab = Vec3d(t.b) - a, ac = Vec3d(t.c) - a;
+            const Vec<T, 3> p(a + ab * (double(i) / n) + ac * (double(j) / n));
+            if (box.contains(p)) bounds.expand(p);
+        }
+    return bounds;
+}
+
+TYPED_TEST(Cells, ClippedBoundsHoldThePartAndNoMore) {
+    using T = TypeParam;
+    constexpr int net = 64;
+    int parts = 0;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+        Random random(1, i);
+        const auto corner = [&] { return exact::in_ball<T, 3>(random, 1); };
+        const Triangle<T, 3> t{corner(), corner(), corner()};
+        const auto box = exact::box_of(corner(), corner());
+        const auto clipped = clipped_bounds(t, box), seen = bounds_by_net(t, box, net);
+        if (seen.empty()) continue;
+        ++parts;
+        const auto around = enlarged(clipped, T(4) * unit_roundoff<T>);
+        ASSERT_TRUE(around.contains(seen)) << i;
+        // A net point lies within two of its steps of any place of the part's border.
+        const T step = T(4) * max_component(t.bounds().extent()) / net;
+        if (length(cross(t.b - t.a, t.c - t.a)) > T(0.2) && max_component(clipped.extent()) > 4 * step) {
+            ASSERT_TRUE(enlarged(seen, 3 * step).contains(clipped)) << i;
+        }
+    }
+    EXPECT_GT(parts, 100);
+}
+
+TYPED_TEST(Cells, ClippedBoundsOfWhatIsInsideAreItsOwn) {
+    using T = TypeParam;
+    const Triangle<T, 3> t{{0, 0, 0}, {1, 0, 2}, {0, 3, 1}};
+    const Box<T, 3> around{{-1, -1, -1}, {4, 4, 4}}, beside{{5, 5, 5}, {6, 6, 6}};
+    // A corner of the box's that the triangle passes by, though the boxes overlap.
+    const Box<T, 3> corner{{T(0.9), T(2.5), 0}, {1, 3, 2}};
+    EXPECT_EQ(clipped_bounds(t, around), t.bounds());
+    EXPECT_TRUE(clipped_bounds(t, beside).empty());
+    EXPECT_TRUE(overlap(t.bounds(), corner));
+    EXPECT_TRUE(clipped_bounds(t, corner).empty());
+    const Segment<T, 2> s{{0, 0}, {4, 2}};
+    EXPECT_EQ(clipped_bounds(s, Box<T, 2>{{1, 0}, {2, 9}}), (Box<T, 2>{{1, T(0.5)}, {2, 1}}));
+    EXPECT_TRUE(clipped_bounds(s, Box<T, 2>{{3, 0}, {4, 1}}).empty());
+}
+
+/// Visits of all rays, with a structure's options.
+template <template <class, int> class S, class T>
+Visits visits_of(const TriangleMesh<T>& mesh, const typename S<T, 3>::Options& options) {
+    const auto index = build<S>(mesh, options);
+    const contract::Questions<T, 3> questions(index, 400);
+    Visits all;
+    for (const auto& ray : questions.rays) closest_hit(index, ray, KeepAll{}, all);
+    return all;
+}
+
+TYPED_TEST(Cells, AMailboxSparesTestsAndNothingElse) {
+    const auto mesh = teapot_in_stadium<TypeParam>(3000);
+    const auto compare = [&](Visits with, Visits without) {
+        EXPECT_EQ(with.nodes, without.nodes);
+        EXPECT_EQ(with.leaves, without.leaves);
+        EXPECT_GT(with.skipped, 0u);
+        EXPECT_EQ(without.skipped, 0u);
+        EXPECT_EQ(with.primitives + with.skipped, without.primitives);
+    };
+    compare(visits_of<KdTree>(mesh, {.mailbox = true}), visits_of<KdTree>(mesh, {.mailbox = false}));
+    compare(visits_of<Grid>(mesh, {.mailbox = true}), visits_of<Grid>(mesh, {.mailbox = false}));
+    compare(visits_of<TwoLevelGrid>(mesh, {.mailbox = true}),
+            visits_of<TwoLevelGrid>(mesh, {.mailbox = false}));
+}
+
+TYPED_TEST(Cells, ExactEnteringLeavesOutOnlyWhatIsNotThere) {
+    const auto mesh = soup<TypeParam>(2000);
+    const GridResolution fine{.resolution = 40};
+    const auto exact = build<Grid>(mesh, {.cells = fine, .insert = GridInsert::exact});
+    const auto box = build<Grid>(mesh, {.cells = fine, .insert = GridInsert::box});
+    EXPECT_LT(exact.structure().items().size(), box.structure().items().size() * 8 / 10);
+    EXPECT_EQ(exact.validate(), "");
+    EXPECT_EQ(box.validate(), "");
+}
+
+TYPED_TEST(Cells, AGridsMemoryGrowsWithTheOccupiedCells) {
+    const auto mesh = teapot<TypeParam>(2000);
+    const auto at = [&](int resolution) {
+        return build<Grid>(mesh, {.cells = {.resolution = resolution}}).structure();
+    };
+    const auto coarse = at(64), fine = at(512);
+    // 512 times as many cells; a surface occupies some 64 times as many.
+    EXPECT_LT(fine.leaf_count(), 100 * coarse.leaf_count());
+    for (const auto& grid : {coarse, fine})
+        EXPECT_LT(grid.bytes(), 4 * grid.items().size() + 56 * grid.leaf_count() + 256);
+    EXPECT_LT(fine.bytes(), fine.node_count() / 2);
+}
+
+TYPED_TEST(Cells, AGridBeyondItsBudgetIsRefused) {
+    const auto mesh = soup<TypeParam>(1000);
+    for (const double budget : {1e4, 1e6}) {
+        EXPECT_THROW(build<Grid>(mesh, {.cells = {.resolution = 500}, .budget = budget}), InputError);
+        EXPECT_THROW(build<TwoLevelGrid>(mesh, {.cells = {.resolution = 500}, .budget = budget}), InputError);
+    }
+    EXPECT_NO_THROW(build<Grid>(mesh, {.cells = {.density = 1}, .budget = 1e6}));
+}
+
+TYPED_TEST(Cells, ManyEqualPrimitivesMakeNoDeepTree) {
+    TriangleMesh<TypeParam> mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+    mesh.triangles.assign(1000, {0, 1, 2});
+    for (const auto builder : {KdBuilder::sah, KdBuilder::binned, KdBuilder::median, KdBuilder::midpoint}) {
+        const auto index = build<KdTree>(mesh, {.builder = builder});
+        EXPECT_LT(index.structure().items().size(), 200 * mesh.size());
+        EXPECT_EQ(index.validate(), "");
+    }
+    EXPECT_EQ(build<TwoLevelGrid>(mesh).validate(), "");
+}
+
+/// The cost that the SAH predicts falls with what the builder looks at.
+TYPED_TEST(Cells, PlanesByCostVisitFewerThanPlainOnes) {
+    const auto mesh = teapot_in_stadium<TypeParam>(3000);
+    const auto work = [&](KdBuilder builder) {
+        const Visits v = visits_of<KdTree>(mesh, {.builder = builder});
+        return double(v.nodes) + 2.0 * double(v.primitives);
+    };
+    const double sah = work(KdBuilder::sah);
+    EXPECT_LT(sah, 1.1 * work(KdBuilder::binned));
+    EXPECT_LT(sah, 0.8 * work(KdBuilder::median));
+    EXPECT_LT(sah, 0.8 * work(KdBuilder::midpoint));
+}
+
+/// As many cells as primitives, and those of the teapot all in a few of them.
+TYPED_TEST(Cells, TwoLevelsRecoverFromATeapotInAStadium) {
+    const auto mesh = teapot_in_stadium<TypeParam>(20000);
+    const Visits one = visits_of<Grid>(mesh, {.cells = {.density = 1}}),
+                 two = visits_of<TwoLevelGrid>(mesh, {});
+    EXPECT_LT(2 * two.primitives, one.primitives);
+    EXPECT_LT(two.nodes, 2 * one.nodes);
+}
+
+}  // namespace
