@@ -1,6 +1,7 @@
 /// Line segments in the plane.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <hedgerow/geometry/clip.h>
@@ -30,6 +31,7 @@ public:
     }
     bool overlaps(std::size_t i, const Box<T, 2>& box) const { return overlap(segments_[i], box); }
     static constexpr bool hits_lie_on_primitives = true;
+    std::array<Vec<T, 2>, 2> corners(std::size_t i) const { return {segments_[i].a, segments_[i].b}; }
     Box<T, 2> clipped_bounds(std::size_t i, const Box<T, 2>& box) const {
         return hedgerow::clipped_bounds(segments_[i], box);
     }

@@ -56,6 +56,10 @@ public:
     bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }
 
     static constexpr bool hits_lie_on_primitives = true;
+    std::array<Vec<T, 3>, 3> corners(std::size_t i) const {
+        const auto t = triangle(i);
+        return {t.a, t.b, t.c};
+    }
     Box<T, 3> clipped_bounds(std::size_t i, const Box<T, 3>& box) const {
         return hedgerow::clipped_bounds(triangle(i), box);
     }

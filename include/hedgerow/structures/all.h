@@ -2,6 +2,7 @@
 #pragma once
 
 #include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/bsp/bsp_tree.h>
 #include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/fold.h>
 #include <hedgerow/structures/grid/grid.h>

@@ -11,7 +11,7 @@ concept PlaneTree = requires(const S& s, NodeId n) {
     { s.empty() } -> std::same_as<bool>;
     { s.is_leaf(n) } -> std::same_as<bool>;
     { s.leaf(n) } -> std::same_as<Leaf>;
-    {s.plane(n)};
+    {s.plane(n)};  // `cut` is the probe's cut by it
     { s.low_child(n) } -> std::same_as<NodeId>;
     { s.high_child(n) } -> std::same_as<NodeId>;
 };
@@ -44,7 +44,7 @@ void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) 
             if (test_leaf(primitives, probe, leaf, query) == Flow::stop) return;
         } else {
             count.node();
-            const auto cut = probe.cut(state, tree.plane(node), query.limit());
+            const auto cut = tree.cut(probe, state, node, query.limit());
             const NodeId near = cut.near_is_high ? tree.high_child(node) : tree.low_child(node);
             const NodeId far = cut.near_is_high ? tree.low_child(node) : tree.high_child(node);
             const bool far_too = cut.to_far && opened(far);

@@ -78,6 +78,10 @@ public:
     bool is_leaf(NodeId n) const { return tree_.nodes[n].is_leaf(); }
     Leaf leaf(NodeId n) const { return {tree_.items.data(), tree_.nodes[n].first(), tree_.nodes[n].link()}; }
     AxisPlane<T> plane(NodeId n) const { return tree_.nodes[n].plane(); }
+    template <class Probe>
+    auto cut(const Probe& probe, const typename Probe::State& state, NodeId n, T limit) const {
+        return probe.cut(state, plane(n), limit);
+    }
     static NodeId low_child(NodeId n) { return n + 1; }
     NodeId high_child(NodeId n) const { return tree_.nodes[n].link(); }
 

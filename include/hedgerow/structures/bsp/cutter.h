@@ -1,0 +1,230 @@
+/// How BSP trees choose planes and cut cells.
+#pragma once
+
+#include <hedgerow/structures/bsp/bsp_node.h>
+#include <hedgerow/structures/bsp/polytope.h>
+#include <hedgerow/structures/cells.h>
+
+namespace hedgerow {
+
+/// How the SAH decides. A node across an axis costs `traversal_cost`, one with any other plane `plane_cost`.
+struct BspCosts {
+    double traversal_cost = 1;
+    double plane_cost = 1.5;
+    double intersection_cost = 2;
+    /// A plane that cuts off empty space costs that part less.
+    double empty_bonus = 0.2;
+};
+
+/// What a primitive has in a cell: the corners of a convex part of it, or of its box.
+template <int D>
+struct BspPart {
+    PrimitiveId id;
+    bool exact;
+    std::vector<Vec<double, D>> corners;
+
+    /// Least and greatest height over a plane.
+    std::pair<double, double> heights(const CutPlane<D>& plane) const {
+        double low = plane.height(corners[0]), high = low;
+        for (std::size_t i = 1; i < corners.size(); ++i) {
+            const double h = plane.height(corners[i]);
+            low = std::min(low, h), high = std::max(high, h);
+        }
+        return {low, high};
+    }
+    /// What lies on one side (sign 1: low, −1: high). A box stays whole.
+    BspPart side(const CutPlane<D>& plane, double sign) const {
+        if (!exact) return *this;
+        BspPart kept{id, true, {}};
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const auto &p = corners[i], &q = corners[(i + 1) % corners.size()];
+            const double a = sign * plane.height(p), b = sign * plane.height(q);
+            if (a <= 0) kept.corners.push_back(p);
+            if ((a < 0 && b > 0) || (a > 0 && b < 0)) kept.corners.push_back(p + (q - p) * (a / (a - b)));
+        }
+        return kept;
+    }
+};
+
+/// Candidates are planes across the axes (at equal steps, and in small cells at the bounds of every part) and
+/// planes that the geometry itself suggests: of a triangle, and through its edges upright on it (Ize, Wald,
+/// Parker, RT 2008). Their cost is the SAH with the surfaces of the two convex parts of the cell. In large
+/// cells only `samples` of the primitives suggest.
+///
+/// What comes within a fourth of a plane's margin counts as on it; a primitive wholly on it stands on the low
+/// side only, since a probe takes a plane to be as thick as its margin.
+template <PrimitiveSet P>
+class BspCutter {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+    using Plane = BspPlane<T, D>;
+    struct Cell {
+        Polytope<D> shape;
+        Box<double, D> box;
+        std::vector<BspPart<D>> inside;
+
+        std::uint32_t size() const { return static_cast<std::uint32_t>(inside.size()); }
+        template <class F>
+        void for_each_id(F f) const {
+            for (const auto& part : inside) f(part.id);
+        }
+    };
+
+    BspCutter(const P& set, const BspCosts& costs, std::uint32_t leaf_size, std::uint32_t samples,
+              double margin)
+        : set_(set), costs_(costs), leaf_size_(leaf_size), samples_(samples), margin_(margin) {}
+
+    Cell root(const std::vector<Reference<T, D>>& references) const {
+        Cell cell;
+        for (const auto& r : references) {
+            const auto b = r.box();
+            cell.box.expand(Box<double, D>{Vec<double, D>(b.low), Vec<double, D>(b.high)});
+            cell.inside.push_back(whole(r.id(), b));
+        }
+        cell.shape = Polytope<D>(cell.box);
+        return cell;
+    }
+
+    std::optional<Plane> choose(const Cell& cell, int) const {
+        if (cell.size() <= leaf_size_) return std::nullopt;
+        Best best{{}, costs_.intersection_cost * cell.size()};
+        const double whole = cell.shape.surface();
+        if (!(whole > 0)) return std::nullopt;
+        const auto offer = [&](const Plane& plane) { weigh(cell, whole, plane, best); };
+        const bool small = cell.size() <= samples_;
+        if (!small) offer_steps(cell, offer);
+        const std::uint32_t stride = small ? 1 : cell.size() / samples_;
+        for (std::uint32_t i = 0; i < cell.size(); i += stride) offer_around(cell, cell.inside[i], offer);
+        return best.plane;
+    }
+
+    std::pair<Cell, Cell> cut(const Cell& cell, const Plane& chosen) const {
+        const CutPlane<D> plane = chosen.in_double(margin_);
+        std::pair<Cell, Cell> sides;
+        auto& [low, high] = sides;
+        std::tie(low.shape, high.shape) = cell.shape.cut(plane);
+        low.box = high.box = cell.box;
+        if (chosen.axis >= 0) low.box.high[chosen.axis] = high.box.low[chosen.axis] = plane.offset;
+        for (const auto& part : cell.inside) {
+            const auto [to_low, to_high] = sides_of(part, plane);
+            if (to_low && to_high) {
+                low.inside.push_back(part.side(plane, 1));
+                high.inside.push_back(part.side(plane, -1));
+            } else {
+                (to_low ? low : high).inside.push_back(part);
+            }
+        }
+        return sides;
+    }
+
+private:
+    struct Best {
+        std::optional<Plane> plane;
+        double cost;
+    };
+
+    /// The whole primitive: its corners where the set names them, else its box's.
+    BspPart<D> whole(PrimitiveId id, const Box<T, D>& box) const {
+        BspPart<D> part{id, false, {}};
+        if constexpr (HitsLieOnPrimitives<P> && requires { set_.corners(id); }) {
+            part.exact = true;
+            for (const auto& c : set_.corners(id)) part.corners.emplace_back(c);
+        } else {
+            for (int i = 0; i < 1 << D; ++i) {
+                Vec<double, D> p;
+                for (int k = 0; k < D; ++k) p[k] = static_cast<double>(i >> k & 1 ? box.high[k] : box.low[k]);
+                part.corners.push_back(p);
+            }
+        }
+        return part;
+    }
+
+    static std::pair<bool, bool> sides_of(const BspPart<D>& part, const CutPlane<D>& plane) {
+        const auto [low, high] = part.heights(plane);
+        const double on = plane.margin / 4;
+        const bool to_high = high > on;
+        return {low < -on || !to_high, to_high};
+    }
+
+    void weigh(const Cell& cell, double whole, const Plane& candidate, Best& best) const {
+        const CutPlane<D> plane = candidate.in_double(margin_);
+        std::uint32_t on_low = 0, on_high = 0;
+        for (const auto& part : cell.inside) {
+            const auto [to_low, to_high] = sides_of(part, plane);
+            on_low += to_low, on_high += to_high;
+        }
+        if (on_low == cell.size() && on_high == cell.size()) return;
+        // The areas of the parts are dear, and not needed where even the counts alone cost too much.
+        const double node = candidate.axis >= 0 ? costs_.traversal_cost : costs_.plane_cost;
+        const double bonus = on_low == 0 || on_high == 0 ? 1 - costs_.empty_bonus : 1;
+        if (node >= best.cost) return;
+        const auto [low, high] = cell.shape.cut(plane);
+        const double low_share = low.surface() / whole, high_share = high.surface() / whole;
+        if (!(low_share > 0 && high_share > 0)) return;  // it passes by the cell
+        const double cost =
+            node + product(costs_.intersection_cost * bonus, low_share * on_low + high_share * on_high);
+        if (cost < best.cost) best = {candidate, cost};
+    }
+
+    template <class Offer>
+    static void offer_steps(const Cell& cell, Offer offer) {
+        constexpr int steps = 16;
+        for (int axis = 0; axis < D; ++axis)
+            for (int i = 1; i < steps; ++i) {
+                const double f = double(i) / steps;
+                offer(Plane::across(axis,
+                                    static_cast<T>(cell.box.low[axis] * (1 - f) + cell.box.high[axis] * f)));
+            }
+    }
+    /// The planes that a part suggests.
+    template <class Offer>
+    void offer_around(const Cell& cell, const BspPart<D>& part, Offer offer) const {
+        for (int axis = 0; axis < D; ++axis) {
+            double low = part.corners[0][axis], high = low;
+            for (const auto& c : part.corners) low = std::min(low, c[axis]), high = std::max(high, c[axis]);
+            // A little outside, so that the part is on one side.
+            const double beside = margin_;
+            if (low - beside > cell.box.low[axis]) offer(Plane::across(axis, static_cast<T>(low - beside)));
+            if (high + beside < cell.box.high[axis])
+                offer(Plane::across(axis, static_cast<T>(high + beside)));
+        }
+        if constexpr (requires { set_.corners(part.id); })
+            for_each_plane_through(set_.corners(part.id), offer);
+    }
+
+    /// A triangle's plane, and those through its edges upright on it.
+    template <class Offer>
+    static void for_each_plane_through(const std::array<Vec<T, 3>, 3>& corners, Offer offer) {
+        const std::array<Vec3d, 3> p = {Vec3d(corners[0]), Vec3d(corners[1]), Vec3d(corners[2])};
+        const Vec3d normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
+        if (!(length2(normal) > 0.5)) return;
+        offer_plane(normal, p[0], offer);
+        for (std::size_t i = 0; i < 3; ++i)
+            offer_plane(normalized(cross(normal, p[(i + 1) % 3] - p[i])), p[i], offer);
+    }
+    /// A segment's line, and those through its ends upright on it.
+    template <class Offer>
+    static void for_each_plane_through(const std::array<Vec<T, 2>, 2>& corners, Offer offer) {
+        const Vec2d a(corners[0]), b(corners[1]), along = normalized(b - a);
+        if (!(length2(along) > 0.5)) return;
+        offer_plane(Vec2d(-along[1], along[0]), a, offer);
+        offer_plane(along, a, offer);
+        offer_plane(along, b, offer);
+    }
+    template <class Offer>
+    static void offer_plane(const Vec<double, D>& normal, const Vec<double, D>& through, Offer offer) {
+        for (int axis = 0; axis < D; ++axis)
+            if (std::abs(normal[axis]) > 1 - 1e-9)
+                return offer(Plane::across(axis, static_cast<T>(through[axis])));
+        const Vec<T, D> stored(normal);
+        offer(Plane{stored, static_cast<T>(dot(Vec<double, D>(stored), through)), -1});
+    }
+
+    const P& set_;
+    BspCosts costs_;
+    std::uint32_t leaf_size_, samples_;
+    double margin_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,116 @@
+/// Convex cells between planes.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <hedgerow/geometry/shapes.h>
+
+namespace hedgerow {
+
+/// A bounded convex polytope by its faces, each the corners of a convex polygon in space, or in the plane the
+/// two ends of an edge. In double; what a cut leaves thinner than rounding may be lost, so that measures are
+/// estimates and nothing more is asked of them.
+template <int D>
+class Polytope {
+public:
+    using Point = Vec<double, D>;
+    using Face = std::vector<Point>;
+
+    Polytope() = default;
+    explicit Polytope(const Box<double, D>& box) {
+        for (int axis = 0; axis < D; ++axis)
+            for (const double side : {box.low[axis], box.high[axis]})
+                faces_.push_back(face_of(box, axis, side));
+    }
+
+    /// The surface's area, or in the plane the perimeter.
+    double surface() const {
+        double sum = 0;
+        for (const Face& f : faces_) sum += measure(f);
+        return sum;
+    }
+
+    /// The two parts on the sides of a plane: low, high. Either may have no faces.
+    std::pair<Polytope, Polytope> cut(const CutPlane<D>& plane) const {
+        std::pair<Polytope, Polytope> sides;
+        Face cap;
+        for (const Face& f : faces_) {
+            Face low, high;
+            clip(f, plane, low, high, cap);
+            if (low.size() >= D) sides.first.faces_.push_back(std::move(low));
+            if (high.size() >= D) sides.second.faces_.push_back(std::move(high));
+        }
+        close(cap, plane.normal);
+        for (Polytope* side : {&sides.first, &sides.second})
+            if (!side->faces_.empty() && cap.size() >= D) side->faces_.push_back(cap);
+        return sides;
+    }
+
+private:
+    static Face face_of(const Box<double, D>& box, int axis, double side) {
+        Face face;
+        constexpr int around[4] = {0, 1, 3, 2};
+        for (int i = 0; i < (D == 2 ? 2 : 4); ++i) {
+            Point p;
+            p[axis] = side;
+            for (int k = 1; k < D; ++k) {
+                const int other = (axis + k) % D;
+                p[other] = around[i] >> (k - 1) & 1 ? box.high[other] : box.low[other];
+            }
+            face.push_back(p);
+        }
+        return face;
+    }
+    static double measure(const Face& f) {
+        if constexpr (D == 2) {
+            return length(f[1] - f[0]);
+        } else {
+            Point sum;
+            for (std::size_t i = 2; i < f.size(); ++i) sum = sum + cross(f[i - 1] - f[0], f[i] - f[0]);
+            return length(sum) / 2;
+        }
+    }
+    /// Corners on the plane go to both parts, and to the cap.
+    static void clip(const Face& f, const CutPlane<D>& plane, Face& low, Face& high, Face& cap) {
+        const std::size_t n = f.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            const double a = plane.height(f[i]);
+            if (a <= 0) low.push_back(f[i]);
+            if (a >= 0) high.push_back(f[i]);
+            if (a == 0) cap.push_back(f[i]);
+            if (D == 2 && i + 1 == n) break;  // an edge has no way back
+            const Point& q = f[(i + 1) % n];
+            const double b = plane.height(q);
+            if (!((a < 0 && b > 0) || (a > 0 && b < 0))) continue;
+            const Point crossing = f[i] + (q - f[i]) * (a / (a - b));
+            for (Face* part : {&low, &high, &cap}) part->push_back(crossing);
+        }
+    }
+    /// The cap's corners, each met from two faces, in the order in which they go round.
+    static void close(Face& cap, const Point& normal) {
+        if (cap.size() < D) return;
+        if constexpr (D == 2) {
+            const Point along(-normal[1], normal[0]);
+            const auto [first, last] = std::minmax_element(
+                cap.begin(), cap.end(),
+                [&](const Point& p, const Point& q) { return dot(p, along) < dot(q, along); });
+            cap = {*first, *last};
+        } else {
+            Point center;
+            for (const Point& p : cap) center = center + p / double(cap.size());
+            const int axis = max_axis(normal), x = (axis + 1) % 3, y = (axis + 2) % 3;
+            // By half planes and cross products: no angle has to be computed.
+            const auto upper = [&](const Point& d) { return d[y] > 0 || (d[y] == 0 && d[x] > 0); };
+            std::sort(cap.begin(), cap.end(), [&](const Point& p, const Point& q) {
+                const Point a = p - center, b = q - center;
+                if (upper(a) != upper(b)) return upper(a);
+                return product(a[x], b[y]) - product(a[y], b[x]) > 0;
+            });
+        }
+    }
+
+    std::vector<Face> faces_;
+};
+
+}  // namespace hedgerow
