@@ -66,13 +66,17 @@ TYPED_TEST(Cells, ClippedBoundsOfWhatIsInsideAreItsOwn) {
     EXPECT_TRUE(clipped_bounds(s, Box<T, 2>{{3, 0}, {4, 1}}).empty());
 }
 
-/// Visits of all rays, with a structure's options.
+/// Visits of rays between places in the scene, with a structure's options.
 template <template <class, int> class S, class T>
 Visits visits_of(const TriangleMesh<T>& mesh, const typename S<T, 3>::Options& options) {
     const auto index = build<S>(mesh, options);
-    const contract::Questions<T, 3> questions(index, 400);
     Visits all;
-    for (const auto& ray : questions.rays) closest_hit(index, ray, KeepAll{}, all);
+    for (std::uint64_t i = 0; i < 400; ++i) {
+        Random random(4, i);
+        const auto from = matrix::point_in(index.bounds(), 0.0, random);
+        const auto to = matrix::point_in(index.bounds(), 0.0, random);
+        closest_hit(index, Ray<T, 3>{from, to - from}, KeepAll{}, all);
+    }
     return all;
 }
 
