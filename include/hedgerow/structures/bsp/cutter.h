@@ -52,7 +52,8 @@ struct BspPart {
 /// cells only `samples` of the primitives suggest.
 ///
 /// What comes within a fourth of a plane's margin counts as on it; a primitive wholly on it stands on the low
-/// side only, since a probe takes a plane to be as thick as its margin.
+/// side only, since a probe takes a plane to be as thick as its margin. A plane across an axis has no
+/// thickness for a probe: there what comes within the margin stands on both sides.
 template <PrimitiveSet P>
 class BspCutter {
 public:
@@ -107,7 +108,7 @@ public:
         low.box = high.box = cell.box;
         if (chosen.axis >= 0) low.box.high[chosen.axis] = high.box.low[chosen.axis] = plane.offset;
         for (const auto& part : cell.inside) {
-            const auto [to_low, to_high] = sides_of(part, plane);
+            const auto [to_low, to_high] = sides_of(part, plane, chosen.axis >= 0);
             if (to_low && to_high) {
                 low.inside.push_back(part.side(plane, 1));
                 high.inside.push_back(part.side(plane, -1));
@@ -140,9 +141,10 @@ private:
         return part;
     }
 
-    static std::pair<bool, bool> sides_of(const BspPart<D>& part, const CutPlane<D>& plane) {
+    static std::pair<bool, bool> sides_of(const BspPart<D>& part, const CutPlane<D>& plane,
+                                          bool across_axis) {
         const auto [low, high] = part.heights(plane);
-        const double on = plane.margin / 4;
+        const double on = across_axis ? -plane.margin : plane.margin / 4;
         const bool to_high = high > on;
         return {low < -on || !to_high, to_high};
     }
@@ -151,7 +153,7 @@ private:
         const CutPlane<D> plane = candidate.in_double(margin_);
         std::uint32_t on_low = 0, on_high = 0;
         for (const auto& part : cell.inside) {
-            const auto [to_low, to_high] = sides_of(part, plane);
+            const auto [to_low, to_high] = sides_of(part, plane, candidate.axis >= 0);
             on_low += to_low, on_high += to_high;
         }
         if (on_low == cell.size() && on_high == cell.size()) return;
@@ -184,7 +186,7 @@ private:
             double low = part.corners[0][axis], high = low;
             for (const auto& c : part.corners) low = std::min(low, c[axis]), high = std::max(high, c[axis]);
             // A little outside, so that the part is on one side.
-            const double beside = margin_;
+            const double beside = 1.5 * margin_;
             if (low - beside > cell.box.low[axis]) offer(Plane::across(axis, static_cast<T>(low - beside)));
             if (high + beside < cell.box.high[axis])
                 offer(Plane::across(axis, static_cast<T>(high + beside)));
