@@ -28,7 +28,7 @@ public:
         return enter_each(*this, pack, limit, at);
     }
     State root(const Box<T, D>& box) const { return {overlap(box_, box)}; }
-    T bound(const State& s) const { return s.here ? T(0) : std::numeric_limits<T>::infinity(); }
+    bool within(const State& s, T) const { return s.here; }
     Cut<State> cut(const State& s, const AxisPlane<T>& plane) const {
         return {false,
                 {s.here && box_.low[plane.axis] <= plane.position},

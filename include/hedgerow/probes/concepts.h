@@ -20,15 +20,15 @@ struct Cut {
 };
 
 /// `at` is where the probe enters a volume in the units of the query's limit: t of a ray, distance² of a
-/// point. A volume is entered when it may hold an answer within the limit. `bound` of a state is the same for
-/// a cell, and infinity when nothing of the probe is left there.
+/// point. A volume is entered when it may hold an answer within the limit. `within` asks the same of a cell:
+/// whether something of the probe is left there, and begins within the limit.
 template <class P>
 concept Probe = requires(const P& p, const Box<typename P::Scalar, P::dimension>& box,
                          typename P::Scalar limit, typename P::Scalar& at, const typename P::State& state,
                          const AxisPlane<typename P::Scalar>& plane) {
     { p.enter(box, limit, at) } -> std::same_as<bool>;
     { p.root(box) } -> std::same_as<typename P::State>;
-    { p.bound(state) } -> std::same_as<typename P::Scalar>;
+    { p.within(state, limit) } -> std::same_as<bool>;
     { p.cut(state, plane) } -> std::same_as<Cut<typename P::State>>;
 };
 

@@ -36,7 +36,7 @@ public:
         const auto offset = offset_outside(point_, box);
         return {offset, length2(offset)};
     }
-    T bound(const State& s) const { return s.distance2; }
+    bool within(const State& s, T limit) const { return s.distance2 <= limit; }
     Cut<State> cut(const State& s, const AxisPlane<T>& plane) const {
         const T x = point_[plane.axis];
         State far = s;

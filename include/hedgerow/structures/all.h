@@ -6,3 +6,4 @@
 #include <hedgerow/structures/fold.h>
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/kdtree/kdtree.h>
+#include <hedgerow/structures/orthtree/orthtree.h>

@@ -41,4 +41,9 @@ private:
     PrimitiveId last_[slots];
 };
 
+template <class Primitives, class Count, class Probe, class Query>
+Flow test_leaf(Mailboxed<Primitives, Count>& mailed, const Probe& probe, const Leaf& leaf, Query& query) {
+    return mailed.test_leaf(probe, leaf, query);
+}
+
 }  // namespace hedgerow

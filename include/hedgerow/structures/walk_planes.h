@@ -16,14 +16,10 @@ concept PlaneTree = requires(const S& s, NodeId n) {
     { s.high_child(n) } -> std::same_as<NodeId>;
 };
 
-/// The bound of a state in which nothing of the probe is left.
-template <class Q>
-inline constexpr auto nothing = std::numeric_limits<typename Q::Probe::Scalar>::infinity();
-
 /// Follows the near side of each cut and keeps the far side on a stack, with what is left of the probe there;
 /// it is passed over if by then the limit lies before it. Allocates nothing: one entry a level.
 template <PlaneTree S, class Primitives, Query Q, class Count>
-void walk_planes(const S& tree, const Primitives& primitives, Q& query, Count& count) {
+void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) {
     if (tree.empty()) return;
     const auto& probe = query.probe();
     using State = typename Q::Probe::State;
@@ -31,9 +27,7 @@ void walk_planes(const S& tree, const Primitives& primitives, Q& query, Count& c
         NodeId node;
         State state;
     };
-    const auto within = [&](const State& s) {
-        return probe.bound(s) <= query.limit() && probe.bound(s) < nothing<Q>;
-    };
+    const auto within = [&](const State& s) { return probe.within(s, query.limit()); };
     const auto opened = [&](NodeId n, const State& s) {
         if (!within(s)) return false;
         if constexpr (SubtreeQuery<Q>) return query.accept(n) == Verdict::open;
