@@ -53,6 +53,7 @@ public:
     const S& structure() const { return structure_; }
     const P& primitives() const { return primitives_; }
     const BoxType& bounds() const { return structure_.bounds(); }
+    /// Of the set, held or not.
     std::size_t size() const { return primitives_.size(); }
     /// Beyond the primitives themselves.
     std::size_t bytes() const {

@@ -52,6 +52,8 @@ public:
 
     std::uint32_t allocate_group() {
         if (free_group_ == none) {
+            if (groups_.size() >= most_groups)
+                throw InputError("an octree or quadtree has at most 2^32 nodes: give it larger leaves");
             groups_.emplace_back();
             return static_cast<std::uint32_t>(groups_.size() - 1);
         }
@@ -128,6 +130,8 @@ public:
 private:
     static constexpr std::uint32_t none = 0xFFFFFFFFu;
     static constexpr std::uint32_t exact = 16;
+    /// So that every child has a NodeId.
+    static constexpr std::size_t most_groups = none / width;
 
     /// Each length a block may have, numbered: four between powers of two.
     static constexpr std::size_t length_class(std::uint32_t capacity) {
