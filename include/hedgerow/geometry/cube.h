@@ -12,9 +12,7 @@ struct Cube {
     Vec<T, D> middle;
     T half = T(0);
 
-    constexpr Box<T, D> box() const {
-        return {middle - Vec<T, D>::all(half), middle + Vec<T, D>::all(half)};
-    }
+    constexpr Box<T, D> box() const { return {middle - Vec<T, D>::all(half), middle + Vec<T, D>::all(half)}; }
     constexpr Cube orthant(unsigned i) const {
         const T quarter = half * T(0.5);
         Cube c{middle, quarter};

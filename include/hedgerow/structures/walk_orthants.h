@@ -93,8 +93,7 @@ private:
             const auto i = static_cast<unsigned>(std::countr_zero(among));
             if constexpr (SubtreeQuery<Q>)
                 if (query_.accept(S::child_id(node.self, i)) != Verdict::open) return;
-            std::construct_at(&stack_[top_++].entry,
-                              Entry{node.children[i], state, {middle, node.quarter}});
+            std::construct_at(&stack_[top_++].entry, Entry{node.children[i], state, {middle, node.quarter}});
         } else {
             const auto sides = probe_.cut(state, AxisPlane<T>{axis, node.cell.middle[axis]});
             const unsigned high = among & high_side<D>[axis], low = among & ~high_side<D>[axis];

@@ -68,9 +68,9 @@ struct OrthtreeLimits {
 /// - that does not exceed its room (in words of four bytes): each cell shares what its group of children does
 ///   not take among them, by their primitives, so that the whole stays within the room of the root;
 /// - the copies of primitives in the orthants are fewer than 2^(D−1) times the primitives. An orthant has
-///   1/2^(D−1) of its cell's surface, so that is: when a random line through the cell is expected to be tested
-///   against fewer primitives than before (the SAH of equal cells). Where they all lie along a plane (in the
-///   plane, a line) it would not, however deep one went;
+///   1/2^(D−1) of its cell's surface, so that is: when a random line through the cell is expected to be
+///   tested against fewer primitives than before (the SAH of equal cells). Where they all lie along a plane
+///   (in the plane, a line) it would not, however deep one went;
 /// - they do not all have the same box, and the orthants' middles are numbers of T.
 template <PrimitiveSet P>
 class OrthantGrowth {

@@ -22,10 +22,10 @@ namespace hedgerow {
 /// part primitives (equal boxes; many through one place) leaves are longer, and a change of one costs
 /// O(its items).
 ///
-/// Memory: 8 bytes a node (a group of 2^D children is 64 bytes, 32 in the plane), 4 an item, 1 bit a primitive.
-/// Groups and items stay within 128 bytes a primitive (32 words of room in growth.h) in every build: the
-/// worst case. On meshes it is about 40. Insertions of what is large beside the cells may go beyond it, since
-/// it must stand in each.
+/// Memory: 8 bytes a node (a group of 2^D children is 64 bytes, 32 in the plane), 4 an item, 1 bit a
+/// primitive. Groups and items stay within 128 bytes a primitive (32 words of room in growth.h) in every
+/// build: the worst case. On meshes it is about 40. Insertions of what is large beside the cells may go
+/// beyond it, since it must stand in each.
 template <std::floating_point T, int D>
 class Orthtree {
 public:
@@ -109,8 +109,8 @@ public:
         NoVisits none;
         return insert(set, id, none);
     }
-    /// Lets go of primitive `id`, which must be as it was when it was inserted: false, and nothing is changed,
-    /// if it is not held.
+    /// Lets go of primitive `id`, which must be as it was when it was inserted: false, and nothing is
+    /// changed, if it is not held.
     template <PrimitiveSet P, class Count>
     bool erase(const P& set, PrimitiveId id, Count& count) {
         if (!holds(id)) return false;
@@ -187,8 +187,8 @@ private:
         if (ids.empty()) return;
         cell_ = root_cube(bounds_);
         limits_ = {options_.leaf_size, std::ldexp(cell_.half, -options_.max_depth)};
-        root_ = OrthantGrowth<P>(set, limits_, executor)
-                    .grow(ids, cell_, words_per_primitive * count_, store_);
+        root_ =
+            OrthantGrowth<P>(set, limits_, executor).grow(ids, cell_, words_per_primitive * count_, store_);
         store_.shrink_to_fit();
     }
 
@@ -275,9 +275,8 @@ private:
     void join(Place place, Count& count) {
         const OrthantNode n = at(place);
         const std::span children(store_.group(n.first).child);
-        if (std::any_of(children.begin(), children.end(), [&](OrthantNode c) {
-                return c.inner() || c.count > options_.leaf_size;
-            }))
+        if (std::any_of(children.begin(), children.end(),
+                        [&](OrthantNode c) { return c.inner() || c.count > options_.leaf_size; }))
             return;
         std::vector<PrimitiveId> ids;
         for (const OrthantNode c : children) gather(c, ids);

@@ -12,10 +12,10 @@
 
 namespace hedgerow {
 
-/// Groups are of one size; a freed one is used again. A leaf's items are a block of one list. How long a block
-/// is follows from how many items it holds (`capacity_for`), so that nothing has to remember it: just as
-/// many, up to 16; beyond, a fourth more at most. Freed blocks wait for items of the same length; when they
-/// make up half of the list, it is written anew, so that all of it costs O(1) an item, amortized.
+/// Groups are of one size; a freed one is used again. A leaf's items are a block of one list. How long a
+/// block is follows from how many items it holds (`capacity_for`), so that nothing has to remember it: just
+/// as many, up to 16; beyond, a fourth more at most. Freed blocks wait for items of the same length; when
+/// they make up half of the list, it is written anew, so that all of it costs O(1) an item, amortized.
 template <int D>
 class OrthantStore {
 public:
