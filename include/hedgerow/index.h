@@ -64,8 +64,8 @@ public:
     }
     std::string validate() const { return structure_.validate(primitives_); }
 
-    /// Takes up primitive `id` of the caller's set as it is now: its arrays may have grown, and moved. What is
-    /// held already must be as it was; what is not held may be anything and is asked nothing. False, and
+    /// Takes up primitive `id` of the caller's set as it is now: its arrays may have grown, and moved. What
+    /// is held already must be as it was; what is not held may be anything and is asked nothing. False, and
     /// nothing is changed, if `id` is held already. Throws InputError, and changes nothing, if there is no
     /// such primitive or it is bad. Not to be called while others ask.
     ///
@@ -78,8 +78,8 @@ public:
     bool insert(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
         return change(set, [&](const P& now) { return structure_.insert(now, id); });
     }
-    /// Lets go of primitive `id`, which must still be as it was inserted. False, and nothing is changed, if it
-    /// is not held.
+    /// Lets go of primitive `id`, which must still be as it was inserted. False, and nothing is changed, if
+    /// it is not held.
     template <class Set>
     bool erase(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
         return change(set, [&](const P& now) { return structure_.erase(now, id); });

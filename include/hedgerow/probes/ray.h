@@ -59,9 +59,9 @@ public:
     /// False when nothing can be hit: no usable direction, NaN, an empty interval or an empty scene.
     bool usable() const { return usable_; }
     T slack() const { return slack_; }
-    /// Whether a meeting at t lies within e of a primitive's own box, e being taken over that box alone: so it
-    /// depends on no other primitive. It is never more than the slack: 1u of M makes up for the steps, which
-    /// the slack may leave out and this not.
+    /// Whether a meeting at t lies within e of a primitive's own box, e being taken over that box alone: so
+    /// it depends on no other primitive. It is never more than the slack: 1u of M makes up for the steps,
+    /// which the slack may leave out and this not.
     bool meets_within_error(const Box<T, D>& own, T t) const {
         const T error = error_over(own, 15 * unit_roundoff<T>);
         const auto outward = [&](int i) { return std::copysign(error, ray_.direction[i]); };

@@ -73,8 +73,8 @@ public:
     template <PrimitiveSet P>
     std::string validate(const P& set) const {
         if (!items_.empty() && items_.back() >= set.size()) return "items do not match the primitives";
-        const bool ascend = std::adjacent_find(items_.begin(), items_.end(), std::greater_equal<>()) ==
-                            items_.end();
+        const bool ascend =
+            std::adjacent_find(items_.begin(), items_.end(), std::greater_equal<>()) == items_.end();
         return ascend ? "" : "items do not ascend";
     }
 

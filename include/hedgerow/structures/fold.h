@@ -31,8 +31,8 @@ V fold_from(const S& tree, OrthantNode node, NodeId id, std::vector<V>& values, 
     V value{};
     for (unsigned left = node.occupied(); left != 0; left &= left - 1) {
         const auto i = static_cast<unsigned>(std::countr_zero(left));
-        value = combine(value, fold_from(tree, tree.children(node)[i], S::child_id(node, i), values, of_leaf,
-                                         combine));
+        value = combine(
+            value, fold_from(tree, tree.children(node)[i], S::child_id(node, i), values, of_leaf, combine));
     }
     return values[id] = value;
 }

@@ -83,8 +83,7 @@ bool sound(const P& set, std::size_t i, const BoxType& box) {
 }
 template <std::floating_point T>
 [[noreturn]] void refuse(std::size_t i) {
-    throw InputError("primitive " + std::to_string(i) +
-                     " has a coordinate that is NaN, infinite or beyond " +
+    throw InputError("primitive " + std::to_string(i) + " has a coordinate that is NaN, infinite or beyond " +
                      std::to_string(double(largest_coordinate<T>)) + ": mend it, or drop it when loading");
 }
 }  // namespace detail
