@@ -279,6 +279,12 @@ TYPED_TEST(OfEveryScalar, MemoryStaysWithinTheBound) {
         SCOPED_TRACE(name);
         for (const std::uint32_t leaf_size : {1u, 8u})
             expect_within_memory(set, build<Orthtree>(set, {leaf_size}).structure());
+        using P = std::remove_cvref_t<decltype(set)>;
+        auto tree = TreeOf<P>::build(P().view(), {.leaf_size = 2}, serial_executor());
+        for (PrimitiveId id = 0; id < set.size(); ++id) {
+            tree.insert(set.view(), id);
+            ASSERT_LE(tree.bytes(), 4 * (128 * (id + 1u) + 1024)) << id;
+        }
     });
 }
 

@@ -16,16 +16,19 @@ namespace hedgerow {
 /// `insert` and `erase` cost O(depth) a cell that the primitive meets, and what it takes to divide or join
 /// the leaves that it enters or leaves; nothing depends on how many primitives there are but the depth, and
 /// now and then (amortized) a list that is written anew. A leaf of more than leaf_size is divided, and leaves
-/// that together hold no more are joined again, so that a tree that shrinks to little is small. What lies out
-/// of the root's cell makes the tree grow upward: a root twice as wide, with the old one as an orthant; where
-/// that would be too deep or not exact, the tree is built anew over what it holds. Where dividing does not
-/// part primitives (equal boxes; many through one place) leaves are longer, and a change of one costs
+/// that together hold no more are joined again, so that walks through a tree that shrank are short. What lies
+/// out of the root's cell makes the tree grow upward: a root twice as wide, with the old one as an orthant;
+/// where that would be too deep or not exact, the tree is built anew over what it holds. Where dividing does
+/// not part primitives (equal boxes; many through one place) leaves are longer, and a change of one costs
 /// O(its items).
 ///
 /// Memory: 8 bytes a node (a group of 2^D children is 64 bytes, 32 in the plane), 4 an item, 1 bit a
 /// primitive. Groups and items stay within 128 bytes a primitive (32 words of room in growth.h) in every
-/// build: the worst case. On meshes it is about 40. Insertions of what is large beside the cells may go
-/// beyond it, since it must stand in each.
+/// build: the worst case. On meshes it is about 40, on points 7. Insertions keep to it when they divide a
+/// leaf, but what is large beside the cells may go beyond it, since it must stand in each. Arrays that grow
+/// have up to twice the room that they use, and up to half of the items' list may wait to be used again, so
+/// after changes it is up to four times as much a primitive, of the most that were ever held at once: room
+/// for nodes is kept.
 template <std::floating_point T, int D>
 class Orthtree {
 public:
