@@ -92,9 +92,9 @@ int main(int count, char** arguments) {
             "| structure                    | rays     | nodes    | leaves   | prims    | ns a ray  |\n");
         std::printf(
             "|------------------------------|----------|----------|----------|----------|-----------|\n");
-        for (const char* spec :
-             {"bvh", "bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts",
-              "bvh:ordered=off", "bvh:culling=off", "bvh:ordered=off,culling=off", "kdtree", "grid"})
+        for (const char* spec : {"bvh", "bvh:builder=sweep", "bvh:builder=midpoint",
+                                 "bvh:builder=equal-counts", "bvh:ordered=off", "bvh:culling=off",
+                                 "bvh:ordered=off,culling=off", "kdtree", "grid", "octree"})
             for (const auto& set : sets) variant(spec, mesh, set);
         prediction(mesh, sets[0]);
     }

@@ -90,6 +90,8 @@ TEST_F(Cli, BadInputIsThreeAndNamed) {
     expect_bad("render gen:cube --structure kdtre" + to, "did you mean 'kdtree'");
     expect_bad("render gen:cube --structure bvh:bilder=sweep" + to, "did you mean 'builder'");
     expect_bad("render gen:cube --structure bvh:builder=swep" + to, "did you mean 'sweep'");
+    expect_bad("render gen:cube --structure quadtree" + to, "in space use 'octree'");
+    expect_bad("render gen:cube --structure octree:max_depth=33" + to, "from 0 to 32");
     expect_bad("render gen:cub" + to, "did you mean 'cube'");
     expect_bad("render gen:cube --size 0x0" + to, "--size");
     expect_bad("render gen:cube -o " + file("no/such/folder/x.png"), "no folder");
@@ -109,7 +111,8 @@ TEST_F(Cli, AMeshWithoutAreaIsNeverHit) {
 TEST_F(Cli, EveryStructureMakesTheSamePicture) {
     for (const char* shading : {"normals", "depth", "diffuse"}) {
         std::string first;
-        for (const char* structure : {"bvh", "kdtree", "grid", "brute-force", "bvh:builder=midpoint"}) {
+        for (const char* structure :
+             {"bvh", "kdtree", "grid", "octree", "brute-force", "bvh:builder=midpoint"}) {
             const auto r =
                 run("render gen:teapot:500 --quiet --size 48x32 --shading " + std::string(shading) +
                     " --structure " + structure + " -o " + file("same.png"));

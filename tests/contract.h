@@ -67,6 +67,7 @@ void with_each_structure(const P& set, F f) {
     f(build<Bvh>(set));
     f(build<KdTree>(set));
     f(build<Grid>(set));
+    f(build<Orthtree>(set));
     f(build<BruteForce>(set));
 }
 

@@ -287,6 +287,7 @@ TYPED_TEST(Contract, TheCallersFloatingPointModeChangesNothing) {
             expect_no_effect<Bvh>("bvh", mesh, questions, mode);
             expect_no_effect<KdTree>("kdtree", mesh, questions, mode);
             expect_no_effect<Grid>("grid", mesh, questions, mode);
+            expect_no_effect<Orthtree>("octree", mesh, questions, mode);
             expect_no_effect<BruteForce>("brute-force", mesh, questions, mode);
         }
     }

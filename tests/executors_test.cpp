@@ -145,6 +145,7 @@ TYPED_TEST(Executors, EveryExecutorBuildsTheSame) {
     }
     expect_same_structure<KdTree>(mesh);
     expect_same_structure<Grid>(mesh);
+    expect_same_structure<Orthtree>(mesh);
 }
 
 struct Refusal : std::runtime_error {

@@ -129,32 +129,36 @@ auto corners_of(const P& set) {
     return corners;
 }
 
-/// Up to 40 primitives; triangles over 10 vertices.
+/// One primitive; a triangle over 10 vertices.
+template <class P>
+auto any_item(bool wild) {
+    using T = typename P::Scalar;
+    constexpr int D = P::dimension;
+    const auto vector = gen::resize(rc::kNominalSize, vectors<T, D>(wild));
+    if constexpr (std::is_same_v<P, TriangleMesh<T>>)
+        return gen::container<TriangleIndices>(gen::resize(rc::kNominalSize, gen::inRange(0u, 10u)));
+    else if constexpr (std::is_same_v<P, SphereSet<T, 3>>)
+        return gen::map(gen::pair(vector, vector), [](const auto& p) {
+            return Sphere<T, 3>{p.first, std::abs(p.second[0])};
+        });
+    else if constexpr (std::is_same_v<P, SegmentSet<T>>)
+        return gen::map(gen::pair(vector, vector), [](const auto& p) {
+            return Segment<T, 2>{p.first, p.second};
+        });
+    else
+        return vector;
+}
+/// Up to 40 primitives.
 template <class P>
 P any_set(bool wild) {
     using T = typename P::Scalar;
-    constexpr int D = P::dimension;
-    const auto up_to_40 = [](auto one) {
-        using Item = std::remove_cvref_t<decltype(*one)>;
-        return *gen::resize(40, gen::container<std::vector<Item>>(one)).as("primitives");
-    };
-    const auto vector = gen::resize(rc::kNominalSize, vectors<T, D>(wild));
     P set;
     if constexpr (std::is_same_v<P, TriangleMesh<T>>) {
+        const auto vector = gen::resize(rc::kNominalSize, vectors<T, 3>(wild));
         set.vertices = *gen::container<std::vector<Vec<T, 3>>>(10, vector).as("vertices");
-        const auto corner = gen::resize(rc::kNominalSize, gen::inRange(0u, 10u));
-        set.triangles = up_to_40(gen::container<TriangleIndices>(corner));
-    } else if constexpr (std::is_same_v<P, SphereSet<T, 3>>) {
-        set.spheres = up_to_40(gen::map(gen::pair(vector, vector), [](const auto& p) {
-            return Sphere<T, 3>{p.first, std::abs(p.second[0])};
-        }));
-    } else if constexpr (std::is_same_v<P, SegmentSet<T>>) {
-        set.segments = up_to_40(gen::map(gen::pair(vector, vector), [](const auto& p) {
-            return Segment<T, 2>{p.first, p.second};
-        }));
-    } else {
-        set.points = up_to_40(vector);
     }
+    using Items = std::remove_cvref_t<decltype(items(set))>;
+    items(set) = *gen::resize(40, gen::container<Items>(any_item<P>(wild))).as("primitives");
     return set;
 }
 

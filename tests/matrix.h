@@ -11,7 +11,8 @@
 
 namespace hedgerow::matrix {
 
-/// Every structure and builder; the last ones show or stress something and are slow on large scenes.
+/// Every structure and builder, by the names that they have in space; the last ones show or stress something
+/// and are slow on large scenes.
 inline constexpr const char* structures[] = {"bvh",
                                              "bvh:builder=sweep",
                                              "bvh:builder=midpoint",
@@ -20,6 +21,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "kdtree:builder=binned",
                                              "grid",
                                              "two-level-grid",
+                                             "octree",
                                              "bvh:ordered=off,culling=off",
                                              "bvh:max_leaf_size=1",
                                              "kdtree:builder=median",
@@ -29,8 +31,17 @@ inline constexpr const char* structures[] = {"bvh",
                                              "grid:resolution=100,insert=box",
                                              "grid:heuristic=roots,mailbox=off",
                                              "two-level-grid:resolution=2,inner_density=10",
+                                             "octree:leaf_size=1",
+                                             "octree:max_depth=3,mailbox=off",
                                              "brute-force:box=on"};
-inline constexpr std::size_t fast_structures = 8;
+inline constexpr std::size_t fast_structures = 9;
+
+/// What is called that in space, among sets of P.
+template <class P>
+std::string named_for(std::string spec) {
+    if (P::dimension == 2 && spec.starts_with("octree")) spec.replace(0, 6, "quadtree");
+    return spec;
+}
 
 /// HEDGEROW_LONG=1 in the environment asks for the long suites.
 inline std::size_t in_long_runs(std::size_t many, std::size_t few) {

@@ -16,7 +16,7 @@ void expect_equal(const char* name, const P& set, const Points<typename P::Scala
     Indexes<typename P::Scalar, P::dimension> indexes;
     indexes.push_back(build_any("brute-force", set));
     for (const char* spec : structures) {
-        indexes.push_back(build_any(spec, set));
+        indexes.push_back(build_any(named_for<P>(spec), set));
         EXPECT_EQ(indexes.back()->validate(), "") << spec;
     }
     if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));

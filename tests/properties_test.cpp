@@ -18,10 +18,12 @@ namespace {
 template <class P>
 auto every_index(const P& set) {
     std::vector<std::string> specs = {"brute-force"};
-    for (const auto& s : structure_list()) specs.emplace_back(s.name);
-    for (const char* more : {"bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts",
-                             "bvh:max_leaf_size=1", "kdtree:leaf_size=1", "grid:resolution=3"})
-        specs.emplace_back(more);
+    for (const auto& s : structure_list())
+        if (s.dimension == 0 || s.dimension == P::dimension) specs.emplace_back(s.name);
+    for (const char* more :
+         {"bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts", "bvh:max_leaf_size=1",
+          "kdtree:leaf_size=1", "grid:resolution=3", "octree:leaf_size=1", "octree:leaf_size=2,mailbox=off"})
+        specs.push_back(named_for<P>(more));
     Indexes<typename P::Scalar, P::dimension> indexes;
     for (const auto& spec : specs) {
         indexes.push_back(build_any(spec, set, serial_executor()));

@@ -108,6 +108,7 @@ TEST(Walkers, RangeCountingAcceptsWholeSubtrees) {
     const auto cloud = points<double>(5000);
     expect_counts(build<Bvh>(cloud), cloud);
     expect_counts(build<KdTree>(cloud), cloud);
+    expect_counts(build<Orthtree>(cloud), cloud);
 }
 
 template <class I>
@@ -135,6 +136,7 @@ TEST(Walkers, BarnesHutNearsTheDirectSumAsTheAngleShrinks) {
     };
     check(build<Bvh>(cloud));
     check(build<KdTree>(cloud));
+    check(build<Orthtree>(cloud));
 }
 
 /// A user's own primitives: discs that face z.
@@ -165,6 +167,7 @@ TEST(Walkers, AUsersOwnTypeIsAnswered) {
     const auto oracle = build<BruteForce>(discs);
     const auto tree = build<Bvh>(discs);
     const auto grid = build<Grid>(discs);
+    const auto octree = build<Orthtree>(discs);
     for (std::uint64_t i = 0; i < 2000; ++i) {
         Random random(4, i);
         const Vec3f from(random.direction<3>()),
@@ -172,6 +175,7 @@ TEST(Walkers, AUsersOwnTypeIsAnswered) {
         const Ray3f ray{to + from * 2.f, -from};
         EXPECT_EQ(closest_hit(oracle, ray), closest_hit(tree, ray));
         EXPECT_EQ(closest_hit(oracle, ray), closest_hit(grid, ray));
+        EXPECT_EQ(closest_hit(oracle, ray), closest_hit(octree, ray));
     }
 }
 

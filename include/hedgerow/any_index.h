@@ -57,6 +57,8 @@ struct OptionInfo {
 struct StructureInfo {
     std::string_view name, description;
     std::vector<OptionInfo> options;
+    /// Of the only sets that it holds; 0: of any.
+    int dimension = 0;
 };
 /// Every structure that `build_any` knows.
 const std::vector<StructureInfo>& structure_list();

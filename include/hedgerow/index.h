@@ -20,8 +20,16 @@
 
 namespace hedgerow {
 
+/// A structure that can take up and let go of single primitives.
+template <class S, class P>
+concept ChangesOneByOne = requires(S& s, const P& set, PrimitiveId id) {
+    { s.insert(set, id) } -> std::same_as<bool>;
+    { s.erase(set, id) } -> std::same_as<bool>;
+};
+
 /// A structure S over the primitives that the view P looks at. Const use is thread-safe, and queries allocate
-/// nothing (those that return lists fill the caller's vector). Movable; not to be changed once built.
+/// nothing (those that return lists fill the caller's vector). Movable. What it looks at is not to be changed
+/// once it is built, but through `insert` and `erase` where the structure has them.
 template <class S, PrimitiveSet P>
 class Index {
 public:
@@ -45,6 +53,7 @@ public:
     const S& structure() const { return structure_; }
     const P& primitives() const { return primitives_; }
     const BoxType& bounds() const { return structure_.bounds(); }
+    /// Of the set, held or not.
     std::size_t size() const { return primitives_.size(); }
     /// Beyond the primitives themselves.
     std::size_t bytes() const {
@@ -54,6 +63,27 @@ public:
             return structure_.bytes();
     }
     std::string validate() const { return structure_.validate(primitives_); }
+
+    /// Takes up primitive `id` of the caller's set as it is now: its arrays may have grown, and moved. What
+    /// is held already must be as it was; what is not held may be anything and is asked nothing. False, and
+    /// nothing is changed, if `id` is held already. Throws InputError, and changes nothing, if there is no
+    /// such primitive or it is bad. Not to be called while others ask.
+    ///
+    ///   cloud.points.push_back(p);
+    ///   index.insert(cloud, id_of_p);           // a new primitive
+    ///   index.erase(cloud, 3);                  // one that moves: out, changed, in again
+    ///   cloud.points[3] = q;
+    ///   index.insert(cloud, 3);
+    template <class Set>
+    bool insert(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
+        return change(set, [&](const P& now) { return structure_.insert(now, id); });
+    }
+    /// Lets go of primitive `id`, which must still be as it was inserted. False, and nothing is changed, if
+    /// it is not held.
+    template <class Set>
+    bool erase(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
+        return change(set, [&](const P& now) { return structure_.erase(now, id); });
+    }
 
     /// Any query of yours. `count` is a Visits, or NoVisits.
     template <Query Q, class Count>
@@ -81,6 +111,16 @@ private:
     template <Query Q, class Count>
     [[gnu::noinline]] void walk(Q& query, Count& count) const {
         structure_.walk(leaves(), query, count);
+    }
+
+    template <class Set, class F>
+    bool change(const Set& set, F f) {
+        static_assert(std::same_as<ViewOf<Set>, P>, "the kind of primitives that the index was built over");
+        primitives_ = view_of(set);
+        const bool changed = in_ieee_mode([&] { return f(primitives_); });
+        if constexpr (packs)
+            if (changed) leaves_ = pack(primitives_, structure_, serial_executor());
+        return changed;
     }
 
     struct Nothing {};

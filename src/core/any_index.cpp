@@ -4,6 +4,10 @@
 namespace hedgerow {
 
 const std::vector<StructureInfo>& structure_list() {
+    static const std::vector<OptionInfo> of_orthtrees = {
+        {"leaf_size", "COUNT", "8", "cells of no more primitives are leaves"},
+        {"max_depth", "0..32", "20", "how often the first cell may be halved"},
+        {"mailbox", "on|off", "on", "test a primitive once a query, in however many cells it stands"}};
     static const std::vector<StructureInfo> list = {
         {"brute-force",
          "no structure: every primitive is tested",
@@ -38,6 +42,8 @@ const std::vector<StructureInfo>& structure_list() {
           {"intersection_cost", "NUMBER", "5", "of a primitive, for the SAH"},
           {"empty_bonus", "0..0.99", "0.2", "how much less a plane costs that cuts off empty space"},
           {"mailbox", "on|off", "on", "test a primitive once a query, in how many cells it may stand"}}},
+         {"octree", "cells cut into eight equal ones, in space", of_orthtrees, 3},
+         {"quadtree", "cells cut into four equal ones, in the plane", of_orthtrees, 2},
         {"bvh",
          "binary bounding volume hierarchy (the default)",
          {{"builder", "binned|sweep|equal-counts|midpoint", "binned", "how nodes are split"},

@@ -39,7 +39,12 @@ public:
     std::size_t bytes() const override { return index_.bytes(); }
     std::size_t node_count() const override { return index_.structure().node_count(); }
     std::size_t leaf_count() const override { return index_.structure().leaf_count(); }
-    std::size_t item_count() const override { return index_.structure().items().size(); }
+    std::size_t item_count() const override {
+        if constexpr (requires { index_.structure().item_count(); })
+            return index_.structure().item_count();
+        else
+            return index_.structure().items().size();
+    }
     int depth() const override { return index_.structure().depth(); }
     std::string validate() const override { return index_.validate(); }
 
@@ -82,13 +87,19 @@ private:
     Index<S, P> index_;
 };
 
+/// What an Orthtree is called where its cells have 2^D children.
+constexpr std::string_view orthtree_name(int dimension) {
+    return dimension == 3 ? "octree" : "quadtree";
+}
+
 /// The one list of structures: its names are what the tool, the tests and the bindings know.
-template <class F>
+template <int D, class F>
 void for_each_structure(F f) {
     f.template operator()<BruteForce>("brute-force");
     f.template operator()<Grid>("grid");
     f.template operator()<TwoLevelGrid>("two-level-grid");
     f.template operator()<KdTree>("kdtree");
+    f.template operator()<Orthtree>(orthtree_name(D));
     f.template operator()<Bvh>("bvh");
 }
 
@@ -106,7 +117,7 @@ std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(std::strin
                             colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1));
     std::unique_ptr<AnyIndex<T, D>> built;
     std::vector<std::string_view> known;
-    detail::for_each_structure([&]<template <class, int> class S>(std::string_view name) {
+    detail::for_each_structure<D>([&]<template <class, int> class S>(std::string_view name) {
         known.push_back(name);
         if (name != wanted) return;
         typename S<T, D>::Options options;
@@ -116,6 +127,10 @@ std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(std::strin
         built = std::make_unique<detail::Holder<S<T, D>, std::remove_const_t<decltype(view)>>>(
             std::string(spec), view, options, executor);
     });
+    if (wanted == detail::orthtree_name(5 - D))
+        throw InputError("structure '" + std::string(wanted) + "' holds what lies in " +
+                         (D == 2 ? "space" : "the plane") + ": in " + (D == 2 ? "the plane" : "space") +
+                         " use '" + std::string(detail::orthtree_name(D)) + "'");
     if (!built)
         throw InputError("no structure is called '" + std::string(wanted) + "'" + suggestion(wanted, known) +
                          "; there are " + detail::choices(known));

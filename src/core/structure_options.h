@@ -131,6 +131,12 @@ void read_options(OptionReader& in, typename TwoLevelGrid<T, D>::Options& o,
     in.flag("mailbox", o.mailbox);
 }
 template <class T, int D>
+void read_options(OptionReader& in, typename Orthtree<T, D>::Options& o, std::type_identity<Orthtree<T, D>>) {
+    in.number<std::uint32_t>("leaf_size", o.leaf_size, 1, 1u << 20);
+    in.number("max_depth", o.max_depth, 0, Orthtree<T, D>::deepest_option);
+    in.flag("mailbox", o.mailbox);
+}
+template <class T, int D>
 void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_identity<Bvh<T, D>>) {
     in.choice<BvhBuilder>("builder", o.builder,
                           {{"binned", BvhBuilder::binned},

@@ -124,6 +124,7 @@ void structures() {
     answers("bvh", build<Bvh>(mesh), mesh, numbers);
     answers("kdtree", build<KdTree>(mesh), mesh, numbers);
     answers("grid", build<Grid>(mesh), mesh, numbers);
+    answers("octree", build<Orthtree>(mesh), mesh, numbers);
 }
 
 }  // namespace

@@ -79,8 +79,7 @@ Flow test_one(const P& set, const RayProbe<typename P::Scalar, P::dimension>& pr
         const auto m = set.meet(id, probe.ray());
         if (!m) return Flow::go_on;
         // A structure only knows the box: a meeting outside of it would depend on the structure.
-        const auto in = probe.inside(set.bounds(id), std::numeric_limits<typename P::Scalar>::infinity());
-        if (!(in.entry <= m->t && m->t <= in.exit)) return Flow::go_on;
+        if (!probe.meets_within_error(set.bounds(id), m->t)) return Flow::go_on;
         return query.offer({m->t, m->u, m->v, id});
     } else {
         return Flow::go_on;  // rays pass between points

@@ -66,16 +66,13 @@ public:
 
     /// Throws InputError for the first triangle that names a vertex that is not there. O(n).
     void validate() const {
-        for (std::size_t i = 0; i < size(); ++i)
-            for (const std::uint32_t corner : triangles_[i])
-                if (corner >= vertices_.size())
-                    throw InputError("triangle " + std::to_string(i) + " names vertex " +
-                                     std::to_string(corner) + ", but there are " +
-                                     std::to_string(vertices_.size()) + ": mend its indices");
-        if (!faces_.empty() && faces_.size() != size())
-            throw InputError("a mesh of " + std::to_string(size()) + " triangles has " +
-                             std::to_string(faces_.size()) +
-                             " face ids: give each triangle one, or none any");
+        for (std::size_t i = 0; i < size(); ++i) validate_corners(i);
+        validate_faces();
+    }
+    /// The same for one triangle. O(1).
+    void validate(std::size_t i) const {
+        validate_corners(i);
+        validate_faces();
     }
 
     /// Rays have the watertight test, whose error the probe knows.
@@ -104,6 +101,20 @@ public:
     }
 
 private:
+    void validate_corners(std::size_t i) const {
+        for (const std::uint32_t corner : triangles_[i])
+            if (corner >= vertices_.size())
+                throw InputError("triangle " + std::to_string(i) + " names vertex " + std::to_string(corner) +
+                                 ", but there are " + std::to_string(vertices_.size()) +
+                                 ": mend its indices");
+    }
+    void validate_faces() const {
+        if (!faces_.empty() && faces_.size() != size())
+            throw InputError("a mesh of " + std::to_string(size()) + " triangles has " +
+                             std::to_string(faces_.size()) +
+                             " face ids: give each triangle one, or none any");
+    }
+
     Strided<Vec<T, 3>> vertices_;
     Strided<TriangleIndices> triangles_;
     Strided<std::uint32_t> faces_;

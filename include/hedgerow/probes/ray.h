@@ -40,11 +40,7 @@ public:
         usable_ = sound == 15u && longest > 0 && ray_.t_min <= ray_.t_max && !scene.empty();
         if (!usable_) return;
 
-        const T reach = greatest(max(abs(L::of(scene.low) - o), abs(L::of(scene.high) - o)));
-        slack_ = product(16 * unit_roundoff<T>, reach) + product(4 * unit_roundoff<T>, greatest(abs(o)));
-        constexpr T steps = 16 * limits::denorm_min(), negligible = unit_roundoff<T> / (2 * steps);
-        if (1 + longest > reach * negligible) [[unlikely]]
-            slack_ += product(steps, 1 + longest);
+        slack_ = error_over(scene, 16 * unit_roundoff<T>);
         const L outward = copysign(L::all(slack_), d);
         (o + outward).store(near_origin_);
         (o - outward).store(far_origin_);
@@ -63,6 +59,17 @@ public:
     /// False when nothing can be hit: no usable direction, NaN, an empty interval or an empty scene.
     bool usable() const { return usable_; }
     T slack() const { return slack_; }
+    /// Whether a meeting at t lies within e of a primitive's own box, e being taken over that box alone: so
+    /// it depends on no other primitive. It is never more than the slack: 1u of M makes up for the steps,
+    /// which the slack may leave out and this not.
+    bool meets_within_error(const Box<T, D>& own, T t) const {
+        const T error = error_over(own, 15 * unit_roundoff<T>);
+        const auto outward = [&](int i) { return std::copysign(error, ray_.direction[i]); };
+        const Interval<T> in = slabs(
+            own, std::numeric_limits<T>::infinity(), [&](int i) { return ray_.origin[i] + outward(i); },
+            [&](int i) { return ray_.origin[i] - outward(i); });
+        return in.entry <= t && t <= in.exit;
+    }
 
     /// A NaN (0·∞) can only come of a plane at exactly o ± e, where nothing within e of it is at stake; the
     /// comparisons below then leave the interval as it was.
@@ -73,15 +80,8 @@ public:
     }
     /// The conservative interval of the ray in a box, up to a limit.
     Interval<T> inside(const Box<T, D>& box, T limit) const {
-        Interval<T> in{ray_.t_min, limit};
-        for (int i = 0; i < D; ++i) {
-            const bool down = near_row_[i] != 0;
-            const T near = ((down ? box.high[i] : box.low[i]) - near_origin_[i]) * inverse_[i];
-            const T far = ((down ? box.low[i] : box.high[i]) - far_origin_[i]) * inverse_[i];
-            in.entry = near > in.entry ? near : in.entry;
-            in.exit = far < in.exit ? far : in.exit;
-        }
-        return in;
+        return slabs(
+            box, limit, [&](int i) { return near_origin_[i]; }, [&](int i) { return far_origin_[i]; });
     }
     /// Two boxes at once: entries in the low lanes, negated exits in the high ones, so that one maximum
     /// serves both. `at` has room for four.
@@ -164,6 +164,31 @@ public:
     }
 
 private:
+    /// e over a box: a share of M, 4u of |o|, and where t may underflow some subnormal steps.
+    T error_over(const Box<T, D>& box, T share) const {
+        using L = Lanes<T>;
+        const L o = L::of(ray_.origin);
+        const T reach = greatest(max(abs(L::of(box.low) - o), abs(L::of(box.high) - o)));
+        const T longest = greatest(abs(L::of(ray_.direction)));
+        constexpr T steps = 16 * std::numeric_limits<T>::denorm_min(),
+                    negligible = unit_roundoff<T> / (2 * steps);
+        T error = product(share, reach) + product(4 * unit_roundoff<T>, greatest(abs(o)));
+        if (1 + longest > reach * negligible) [[unlikely]]
+            error += product(steps, 1 + longest);
+        return error;
+    }
+    template <class Near, class Far>
+    Interval<T> slabs(const Box<T, D>& box, T limit, Near near_origin, Far far_origin) const {
+        Interval<T> in{ray_.t_min, limit};
+        for (int i = 0; i < D; ++i) {
+            const bool down = near_row_[i] != 0;
+            const T near = ((down ? box.high[i] : box.low[i]) - near_origin(i)) * inverse_[i];
+            const T far = ((down ? box.low[i] : box.high[i]) - far_origin(i)) * inverse_[i];
+            in.entry = near > in.entry ? near : in.entry;
+            in.exit = far < in.exit ? far : in.exit;
+        }
+        return in;
+    }
     /// A NaN leaves the interval as it was, and both sides are visited.
     static Cut<State> sides(const State& s, bool near_is_high, T leave, T arrive, T limit) {
         const T last = s.exit < limit ? s.exit : limit;

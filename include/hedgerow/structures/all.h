@@ -8,3 +8,4 @@
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/grid/two_level_grid.h>
 #include <hedgerow/structures/kdtree/kdtree.h>
+#include <hedgerow/structures/orthtree/orthtree.h>

@@ -1,6 +1,8 @@
 /// No structure: every primitive is tested. The oracle of all others.
 #pragma once
 
+#include <functional>
+
 #include <hedgerow/queries/concepts.h>
 #include <hedgerow/structures/references.h>
 
@@ -48,10 +50,32 @@ public:
                   Leaf{items_.data(), 0, static_cast<std::uint32_t>(items_.size())}, query);
     }
 
+    /// Takes up primitive `id`: false if it is held. As Orthtree, whose oracle this is; but O(n).
+    template <PrimitiveSet P>
+    bool insert(const P& set, PrimitiveId id) {
+        const auto box = reference_of(set, id).box();
+        const auto place = std::lower_bound(items_.begin(), items_.end(), id);
+        if (place != items_.end() && *place == id) return false;
+        items_.insert(place, id);
+        bounds_.expand(box);
+        return true;
+    }
+    /// Lets go of primitive `id`: false if it is not held.
+    template <PrimitiveSet P>
+    bool erase(const P&, PrimitiveId id) {
+        const auto place = std::lower_bound(items_.begin(), items_.end(), id);
+        if (place == items_.end() || *place != id) return false;
+        items_.erase(place);
+        return true;
+    }
+
     /// What is wrong with the structure; empty if nothing is.
     template <PrimitiveSet P>
     std::string validate(const P& set) const {
-        return items_.size() == set.size() ? "" : "items do not match the primitives";
+        if (!items_.empty() && items_.back() >= set.size()) return "items do not match the primitives";
+        const bool ascend =
+            std::adjacent_find(items_.begin(), items_.end(), std::greater_equal<>()) == items_.end();
+        return ascend ? "" : "items do not ascend";
     }
 
 private:

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include <hedgerow/structures/walk_orthants.h>
 #include <hedgerow/structures/walk_planes.h>
 #include <hedgerow/structures/walk_volumes.h>
 
@@ -23,6 +24,18 @@ V fold_from(const S& tree, NodeRef node, NodeId id, std::vector<V>& values, OfLe
     }
     return values[id] = value;
 }
+template <OrthantTree S, class V, class OfLeaf, class Combine>
+V fold_from(const S& tree, OrthantNode node, NodeId id, std::vector<V>& values, OfLeaf& of_leaf,
+            Combine& combine) {
+    if (!node.inner()) return values[id] = of_leaf(tree.leaf(node));
+    V value{};
+    for (unsigned left = node.occupied(); left != 0; left &= left - 1) {
+        const auto i = static_cast<unsigned>(std::countr_zero(left));
+        value = combine(
+            value, fold_from(tree, tree.children(node)[i], S::child_id(node, i), values, of_leaf, combine));
+    }
+    return values[id] = value;
+}
 template <PlaneTree S, class V, class OfLeaf, class Combine>
 V fold_from(const S& tree, NodeId node, std::vector<V>& values, OfLeaf& of_leaf, Combine& combine) {
     if (tree.is_leaf(node)) return values[node] = of_leaf(tree.leaf(node));
@@ -40,6 +53,8 @@ auto fold(const S& tree, OfLeaf of_leaf, Combine combine) {
     std::vector<V> values(tree.node_count());
     if constexpr (VolumeTree<S>) {
         if (!tree.root().empty()) detail::fold_from(tree, tree.root(), 0, values, of_leaf, combine);
+    } else if constexpr (OrthantTree<S>) {
+        if (!tree.root().empty()) detail::fold_from(tree, tree.root(), NodeId(0), values, of_leaf, combine);
     } else {
         if (!tree.empty()) detail::fold_from(tree, NodeId(0), values, of_leaf, combine);
     }

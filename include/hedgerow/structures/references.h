@@ -69,6 +69,25 @@ struct Reference {
     T center2(int axis) const { return low[axis] + high[axis]; }
 };
 
+namespace detail {
+/// Whether a primitive's coordinates are numbers within `largest_coordinate`.
+template <PrimitiveSet P, class BoxType>
+bool sound(const P& set, std::size_t i, const BoxType& box) {
+    using T = typename P::Scalar;
+    bool good = true;
+    for (int k = 0; k < P::dimension; ++k)
+        good = good && box.low[k] <= box.high[k] && box.low[k] >= -largest_coordinate<T> &&
+               box.high[k] <= largest_coordinate<T>;
+    if constexpr (requires { set.finite(i); }) good = good && set.finite(i);
+    return good;
+}
+template <std::floating_point T>
+[[noreturn]] void refuse(std::size_t i) {
+    throw InputError("primitive " + std::to_string(i) + " has a coordinate that is NaN, infinite or beyond " +
+                     std::to_string(double(largest_coordinate<T>)) + ": mend it, or drop it when loading");
+}
+}  // namespace detail
+
 /// The references of all primitives, in the order of their ids. Throws InputError for the first primitive
 /// with a coordinate that is NaN, infinite or beyond `largest_coordinate`, and for more than 2^31 primitives.
 template <PrimitiveSet P>
@@ -84,23 +103,28 @@ auto references_of(const P& set, Executor& executor) {
     executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Box<T, D> b = set.bounds(i);
-            bool good = true;
-            for (int k = 0; k < D; ++k)
-                good = good && b.low[k] <= b.high[k] && b.low[k] >= -largest_coordinate<T> &&
-                       b.high[k] <= largest_coordinate<T>;
-            if constexpr (requires { set.finite(i); }) good = good && set.finite(i);
+            const bool good = detail::sound(set, i, b);
             references[i] = Reference<T, D>(b, static_cast<PrimitiveId>(i));
             for (std::size_t seen = first_bad;
                  !good && i < seen && !first_bad.compare_exchange_weak(seen, i);) {
             }
         }
     });
-    if (first_bad < n)
-        throw InputError("primitive " + std::to_string(first_bad.load()) +
-                         " has a coordinate that is NaN, infinite or beyond " +
-                         std::to_string(double(largest_coordinate<T>)) +
-                         ": mend it, or drop it when loading");
+    if (first_bad < n) detail::refuse<T>(first_bad.load());
     return references;
+}
+
+/// The reference of one primitive of a set that has changed. Throws InputError if there is none or it is bad.
+template <PrimitiveSet P>
+auto reference_of(const P& set, PrimitiveId id) {
+    using T = typename P::Scalar;
+    if (id >= set.size())
+        throw InputError("there is no primitive " + std::to_string(id) + ": the set has " +
+                         std::to_string(set.size()));
+    if constexpr (requires { set.validate(std::size_t(id)); }) set.validate(std::size_t(id));
+    const Box<T, P::dimension> box = set.bounds(id);
+    if (!detail::sound(set, id, box)) detail::refuse<T>(id);
+    return Reference<T, P::dimension>(box, id);
 }
 
 }  // namespace hedgerow

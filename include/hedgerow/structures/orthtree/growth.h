@@ -1,0 +1,185 @@
+/// How an orthtree's cells are divided: which primitives stand in which orthant, and when a cell is a leaf.
+#pragma once
+
+#include <memory>
+
+#include <hedgerow/parallel/executor.h>
+#include <hedgerow/structures/cells.h>
+#include <hedgerow/structures/orthtree/store.h>
+
+namespace hedgerow {
+
+/// The orthants of a cell that a box reaches, if it reaches the cell: a bit for each.
+template <std::floating_point T, int D>
+unsigned orthants_reached(const Box<T, D>& box, const Vec<T, D>& middle) {
+    unsigned orthants = (1u << (1 << D)) - 1;
+    for (int k = 0; k < D; ++k) {
+        if (!(box.low[k] <= middle[k])) orthants &= detail::high_side<D>[k];
+        if (!(box.high[k] >= middle[k])) orthants &= ~detail::high_side<D>[k];
+    }
+    return orthants;
+}
+
+/// Which orthants of a cell primitives stand in. It depends on the primitive and the cell alone, so that what
+/// is inserted later stands where it would have stood from the start.
+template <PrimitiveSet P>
+class OrthantStanding {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+
+    explicit OrthantStanding(const P& set) : set_(set) {}
+
+    /// Only a set that is told apart more finely than by boxes needs a margin, over its own coordinates: a
+    /// closest point and an overlap lie in the box.
+    static T margin(const Box<T, D>& box) {
+        if constexpr (HitsLieOnPrimitives<P>)
+            return cell_margin(box);
+        else
+            return T(0);
+    }
+    /// The orthants that a primitive that stands in the cell stands in: at least one.
+    unsigned operator()(PrimitiveId id, const Cube<T, D>& cell) const {
+        const Box<T, D> box = set_.bounds(id);
+        const T around = margin(box);
+        const unsigned near = orthants_reached(enlarged(box, around), cell.middle);
+        if (std::has_single_bit(near) || !HitsLieOnPrimitives<P>) return near;
+        unsigned in = 0;
+        for (unsigned left = near; left != 0; left &= left - 1) {
+            const auto i = static_cast<unsigned>(std::countr_zero(left));
+            if (stands_in(set_, id, enlarged(cell.orthant(i).box(), around))) in |= 1u << i;
+        }
+        return in != 0 ? in : near;
+    }
+
+private:
+    const P& set_;
+};
+
+/// What decides where a tree ends.
+template <std::floating_point T>
+struct OrthtreeLimits {
+    std::uint32_t leaf_size = 0;
+    /// Cells are not divided into smaller ones than this.
+    T least_half = T(0);
+};
+
+/// Grows the subtree of a cell top down. A cell of more than leaf_size primitives is divided when
+/// - that does not exceed its room (in words of four bytes): each cell shares what its group of children does
+///   not take among them, by their primitives, so that the whole stays within the room of the root;
+/// - the copies of primitives in the orthants are fewer than 2^(D−1) times the primitives. An orthant has
+///   1/2^(D−1) of its cell's surface, so that is: when a random line through the cell is expected to be
+///   tested against fewer primitives than before (the SAH of equal cells). Where they all lie along a plane
+///   (in the plane, a line) it would not, however deep one went;
+/// - they do not all have the same box, and the orthants' middles are numbers of T.
+template <PrimitiveSet P>
+class OrthantGrowth {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+    using Store = OrthantStore<D>;
+    using Ids = std::vector<PrimitiveId>;
+
+    OrthantGrowth(const P& set, const OrthtreeLimits<T>& limits, Executor& executor)
+        : set_(set), standing_(set), limits_(limits), executor_(executor) {}
+
+    /// The ids are used up. The same tree for any number of threads.
+    OrthantNode grow(Ids& ids, const Cube<T, D>& cell, std::uint64_t room, Store& store) const {
+        Parts parts;
+        if (!divide(ids, cell, room, parts)) return store.make_leaf(ids);
+        const bool alone = ids.size() < worth_a_task;
+        Ids().swap(ids);
+        unsigned occupied = 0;
+        for (unsigned i = 0; i < Store::width; ++i)
+            if (!parts[i].ids.empty()) occupied |= 1u << i;
+        const std::uint32_t group = store.allocate_group();
+        if (alone) {
+            for (unsigned i = 0; i < Store::width; ++i) {
+                const OrthantNode child = grow(parts[i].ids, cell.orthant(i), parts[i].room, store);
+                store.group(group).child[i] = child;
+            }
+        } else {
+            grow_side_by_side(parts, cell, group, store);
+        }
+        return OrthantNode::inner_over(group, occupied);
+    }
+
+private:
+    struct Part {
+        Ids ids;
+        std::uint64_t room = 0;
+    };
+    using Parts = std::array<Part, Store::width>;
+    static constexpr std::size_t worth_a_task = 4096;
+    static constexpr std::uint64_t group_words = sizeof(typename Store::Group) / 4;
+
+    /// Each child in a store of its own; then they are brought together in their order.
+    void grow_side_by_side(Parts& parts, const Cube<T, D>& cell, std::uint32_t group, Store& store) const {
+        std::array<Store, Store::width> grown;
+        std::array<OrthantNode, Store::width> roots;
+        const auto some = [&](auto& self, unsigned first, unsigned last) -> void {
+            if (last - first == 1) {
+                Part& part = parts[first];
+                roots[first] = grow(part.ids, cell.orthant(first), part.room, grown[first]);
+                return;
+            }
+            const unsigned middle = (first + last) / 2;
+            executor_.both([&] { self(self, first, middle); }, [&] { self(self, middle, last); });
+        };
+        some(some, 0, Store::width);
+        std::size_t groups = 0, words = 0;
+        for (const Store& s : grown) groups += s.group_count(), words += s.list().size();
+        store.reserve(groups, words);
+        for (unsigned i = 0; i < Store::width; ++i) {
+            const OrthantNode child = store.graft(grown[i], roots[i]);
+            store.group(group).child[i] = child;
+            grown[i] = {};
+        }
+    }
+
+    bool divide(const Ids& ids, const Cube<T, D>& cell, std::uint64_t room, Parts& parts) const {
+        const std::size_t n = ids.size();
+        if (n <= limits_.leaf_size || cell.half <= limits_.least_half || !cell.divisible() || all_alike(ids))
+            return false;
+        const auto orthants = look_up(ids, cell);
+        std::array<std::uint32_t, Store::width> counts{};
+        for (const unsigned in : orthants)
+            for (unsigned i = 0; i < Store::width; ++i) counts[i] += in >> i & 1u;
+        std::uint64_t copies = 0, words = group_words;
+        for (const std::uint32_t c : counts) copies += c, words += Store::capacity_for(c);
+        if (copies >= (std::uint64_t(n) << (D - 1)) || words > room) return false;
+        const double spare = static_cast<double>(room - words) / static_cast<double>(copies);
+        for (unsigned i = 0; i < Store::width; ++i) {
+            parts[i].ids.reserve(counts[i]);
+            parts[i].room = Store::capacity_for(counts[i]) + static_cast<std::uint64_t>(spare * counts[i]);
+        }
+        for (std::size_t k = 0; k < n; ++k)
+            for (unsigned left = orthants[k]; left != 0; left &= left - 1)
+                parts[static_cast<unsigned>(std::countr_zero(left))].ids.push_back(ids[k]);
+        return true;
+    }
+    std::vector<std::uint8_t> look_up(const Ids& ids, const Cube<T, D>& cell) const {
+        std::vector<std::uint8_t> orthants(ids.size());
+        const auto look = [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                orthants[i] = static_cast<std::uint8_t>(standing_(ids[i], cell));
+        };
+        if (ids.size() < worth_a_task)
+            look(0, ids.size());
+        else
+            executor_.for_each_piece(ids.size(), worth_a_task / 4, look);
+        return orthants;
+    }
+    bool all_alike(const Ids& ids) const {
+        const Box<T, D> first = set_.bounds(ids[0]);
+        return std::all_of(ids.begin() + 1, ids.end(),
+                           [&](PrimitiveId id) { return set_.bounds(id) == first; });
+    }
+
+    const P& set_;
+    OrthantStanding<P> standing_;
+    OrthtreeLimits<T> limits_;
+    Executor& executor_;
+};
+
+}  // namespace hedgerow
