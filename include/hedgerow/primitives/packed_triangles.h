@@ -4,8 +4,8 @@
 #include <bit>
 #include <span>
 #include <type_traits>
-#include <vector>
 
+#include <hedgerow/bare_vector.h>
 #include <hedgerow/geometry/lanes.h>
 #include <hedgerow/primitives/concepts.h>
 
@@ -62,7 +62,7 @@ private:
     };
     static_assert(sizeof(Packed) == 10 * sizeof(T));
 
-    std::vector<Packed> triangles_;
+    BareVector<Packed> triangles_;
 };
 
 }  // namespace hedgerow

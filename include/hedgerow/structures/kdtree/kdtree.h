@@ -98,7 +98,7 @@ private:
         std::int32_t axis = -1;  // −1: a leaf
         std::uint32_t first = 0, count = 0;
     };
-    using References = std::vector<Reference<T, D>>;
+    using References = ReferenceList<T, D>;
 
     static std::pair<Box<T, D>, Box<T, D>> halves(const Box<T, D>& cell, const AxisPlane<T>& plane) {
         auto low = cell, high = cell;
