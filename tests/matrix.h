@@ -16,6 +16,10 @@ inline constexpr const char* structures[] = {"bvh",
                                              "bvh:builder=sweep",
                                              "bvh:builder=midpoint",
                                              "bvh:builder=equal-counts",
+                                             "bvh:builder=lbvh",
+                                             "bvh:builder=ploc",
+                                             "bvh:builder=agglomerative",
+                                             "bvh:builder=ploc,reinsertion=3",
                                              "kdtree",
                                              "grid",
                                              "bvh:ordered=off,culling=off",
@@ -24,7 +28,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "grid:resolution=3",
                                              "grid:resolution=100",
                                              "brute-force:box=on"};
-inline constexpr std::size_t fast_structures = 6;
+inline constexpr std::size_t fast_structures = 10;
 
 /// HEDGEROW_LONG=1 in the environment asks for the long suites.
 inline std::size_t in_long_runs(std::size_t many, std::size_t few) {

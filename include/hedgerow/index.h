@@ -20,8 +20,17 @@
 
 namespace hedgerow {
 
+/// A structure that can be fitted to primitives that moved.
+template <class S, class P>
+concept Refittable = requires(S& s, std::span<const Reference<typename P::Scalar, P::dimension>> references,
+                              Executor& executor) {
+    s.refit(references, executor);
+    { s.drift() } -> std::convertible_to<double>;
+};
+
 /// A structure S over the primitives that the view P looks at. Const use is thread-safe, and queries allocate
-/// nothing (those that return lists fill the caller's vector). Movable; not to be changed once built.
+/// nothing (those that return lists fill the caller's vector). Movable. Primitives are not to change under
+/// it, but for a `refit` after.
 template <class S, PrimitiveSet P>
 class Index {
 public:
@@ -54,6 +63,30 @@ public:
             return structure_.bytes();
     }
     std::string validate() const { return structure_.validate(primitives_); }
+
+    /// After borrowed primitives moved where they lie: fits the structure to them, and returns how far its
+    /// quality has drifted, as a multiple of its cost when it was built. O(n). No query may run meanwhile.
+    /// Throws InputError as `build` does, and then the index is as it was, valid for the primitives of
+    /// before. (Only an executor that throws on its own may leave boxes of both.)
+    double refit(Executor& executor = serial_executor()) requires(Refittable<S, P>) {
+        return refit(primitives_, executor);
+    }
+    /// The same where the moved primitives lie elsewhere: as many as before, each under its id, and borrowed.
+    double refit(const P& moved, Executor& executor = serial_executor()) requires(Refittable<S, P>) {
+        if (moved.size() != structure_.items().size())
+            throw InputError("a refit is for as many primitives as the index was built over: " +
+                             std::to_string(structure_.items().size()) + ", not " +
+                             std::to_string(moved.size()));
+        return in_ieee_mode([&] {
+            IeeeExecutor threads(executor);
+            const auto references = references_of(moved, threads);
+            auto leaves = pack(moved, structure_, threads);
+            structure_.refit(references, threads);
+            leaves_ = std::move(leaves);
+            primitives_ = moved;
+            return structure_.drift();
+        });
+    }
 
     /// Any query of yours. `count` is a Visits, or NoVisits.
     template <Query Q, class Count>
