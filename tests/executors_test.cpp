@@ -137,10 +137,11 @@ void expect_same_structure(const P& set, const typename S<typename P::Scalar, 3>
 
 TYPED_TEST(Executors, EveryExecutorBuildsTheSame) {
     const auto mesh = soup<TypeParam>(20000);
-    for (const auto builder :
-         {BvhBuilder::binned, BvhBuilder::sweep, BvhBuilder::equal_counts, BvhBuilder::midpoint}) {
+    for (const auto builder : bvh_builders) {
         typename Bvh<TypeParam, 3>::Options options;
         options.builder = builder;
+        expect_same_structure<Bvh>(mesh, options);
+        options.reinsertion = 1;
         expect_same_structure<Bvh>(mesh, options);
     }
     expect_same_structure<KdTree>(mesh);

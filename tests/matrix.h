@@ -17,6 +17,10 @@ inline constexpr const char* structures[] = {"bvh",
                                              "bvh:builder=sweep",
                                              "bvh:builder=midpoint",
                                              "bvh:builder=equal-counts",
+                                             "bvh:builder=lbvh",
+                                             "bvh:builder=ploc",
+                                             "bvh:builder=agglomerative",
+                                             "bvh:builder=ploc,reinsertion=3",
                                              "kdtree",
                                              "kdtree:builder=binned",
                                              "grid",
@@ -34,7 +38,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "octree:leaf_size=1",
                                              "octree:max_depth=3,mailbox=off",
                                              "brute-force:box=on"};
-inline constexpr std::size_t fast_structures = 9;
+inline constexpr std::size_t fast_structures = 13;
 
 /// What is called that in space, among sets of P.
 template <class P>

@@ -21,7 +21,8 @@ auto every_index(const P& set) {
     for (const auto& s : structure_list())
         if (s.dimension == 0 || s.dimension == P::dimension) specs.emplace_back(s.name);
     for (const char* more :
-         {"bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts", "bvh:max_leaf_size=1",
+         {"bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts", "bvh:builder=lbvh",
+          "bvh:builder=ploc", "bvh:builder=agglomerative", "bvh:reinsertion=2", "bvh:max_leaf_size=1",
           "kdtree:leaf_size=1", "grid:resolution=3", "octree:leaf_size=1", "octree:leaf_size=2,mailbox=off"})
         specs.push_back(named_for<P>(more));
     Indexes<typename P::Scalar, P::dimension> indexes;
@@ -136,6 +137,54 @@ TYPED_TEST(OfEverySet, TheOrderOfPrimitivesChangesOnlyTheirIds) {
             for (auto& id : around.overlapping) id = before[id];
             std::sort(around.overlapping.begin(), around.overlapping.end());
             RC_ASSERT(around.overlapping == regions.overlapping);
+        }
+    });
+}
+
+/// Other primitives under the same ids.
+template <class P>
+P moved(const P& set, P other) {
+    if constexpr (requires { set.vertices; })
+        items(other) = set.triangles;
+    else
+        items(other).resize(set.size());
+    return other;
+}
+
+TYPED_TEST(OfEverySet, RefitsAnswerWithTheBitsOfBruteForce) {
+    using T = typename TypeParam::Scalar;
+    constexpr int D = TypeParam::dimension;
+    expect_always([] {
+        const AnyCase<TypeParam> one;
+        BvhOptions options;
+        options.builder = *gen::elementOf(std::vector(std::begin(bvh_builders), std::end(bvh_builders)));
+        options.max_leaf_size = *gen::inRange(1u, 9u).as("leaf");
+        auto index = build<Bvh>(one.set, options);
+        for (int step = 0; step < 4; ++step) {
+            AnyCase<TypeParam> now;
+            now.set = moved(one.set, now.set);
+            index.refit(now.set.view());
+            RC_ASSERT(index.validate() == "");
+            RC_ASSERT(index.structure().drift() >= 0);
+            const auto oracle = build<BruteForce>(now.set);
+            for (int i = 0; i < 4; ++i) {
+                const auto ray = now.ray();
+                std::vector<Hit<T>> want, got;
+                all_hits(oracle, ray, want);
+                all_hits(index, ray, got);
+                RC_ASSERT(got == want);
+                RC_ASSERT(closest_hit(index, ray) == closest_hit(oracle, ray));
+            }
+            const auto point = now.point();
+            const auto box = now.box();
+            std::vector<Near<T, D>> near, nearer;
+            nearest(oracle, point, 9, near);
+            nearest(index, point, 9, nearer);
+            RC_ASSERT(nearer == near);
+            std::vector<PrimitiveId> inside, found;
+            overlapping(oracle, box, inside);
+            overlapping(index, box, found);
+            RC_ASSERT(found == inside);
         }
     });
 }

@@ -27,9 +27,17 @@ concept ChangesOneByOne = requires(S& s, const P& set, PrimitiveId id) {
     { s.erase(set, id) } -> std::same_as<bool>;
 };
 
+/// A structure that can be fitted to primitives that moved.
+template <class S, class P>
+concept Refittable = requires(S& s, const ReferenceList<typename P::Scalar, P::dimension>& references,
+                              Executor& executor) {
+    s.refit(references, executor);
+    { s.drift() } -> std::convertible_to<double>;
+};
+
 /// A structure S over the primitives that the view P looks at. Const use is thread-safe, and queries allocate
 /// nothing (those that return lists fill the caller's vector). Movable. What it looks at is not to be changed
-/// once it is built, but through `insert` and `erase` where the structure has them.
+/// once it is built, but through `insert` and `erase`, or with a `refit` after, where the structure has them.
 template <class S, PrimitiveSet P>
 class Index {
 public:
@@ -76,13 +84,40 @@ public:
     ///   index.insert(cloud, 3);
     template <class Set>
     bool insert(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
-        return change(set, [&](const P& now) { return structure_.insert(now, id); });
+        return change(set, [&](const P& now) {
+            if (!structure_.insert(now, id)) return false;
+            if constexpr (packs) now.pack(id, leaves_);
+            return true;
+        });
     }
     /// Lets go of primitive `id`, which must still be as it was inserted. False, and nothing is changed, if
     /// it is not held.
     template <class Set>
     bool erase(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
         return change(set, [&](const P& now) { return structure_.erase(now, id); });
+    }
+    /// After borrowed primitives moved where they lie: fits the structure to them, and returns how far its
+    /// quality has drifted, as a multiple of its cost when it was built. O(n). No query may run meanwhile.
+    /// Throws InputError as `build` does, and then the index is as it was, valid for the primitives of
+    /// before. (Only an executor that throws on its own may leave boxes of both.)
+    double refit(Executor& executor = serial_executor()) requires(Refittable<S, P>) {
+        return refit(primitives_, executor);
+    }
+    /// The same where the moved primitives lie elsewhere: as many as before, each under its id, and borrowed.
+    double refit(const P& moved, Executor& executor = serial_executor()) requires(Refittable<S, P>) {
+        if (moved.size() != structure_.items().size())
+            throw InputError("a refit is for as many primitives as the index was built over: " +
+                             std::to_string(structure_.items().size()) + ", not " +
+                             std::to_string(moved.size()));
+        return in_ieee_mode([&] {
+            IeeeExecutor threads(executor);
+            const auto references = references_of(moved, threads);
+            auto leaves = pack(moved, structure_, threads);
+            structure_.refit(references, threads);
+            leaves_ = std::move(leaves);
+            primitives_ = moved;
+            return structure_.drift();
+        });
     }
 
     /// Any query of yours. `count` is a Visits, or NoVisits.
@@ -117,10 +152,7 @@ private:
     bool change(const Set& set, F f) {
         static_assert(std::same_as<ViewOf<Set>, P>, "the kind of primitives that the index was built over");
         primitives_ = view_of(set);
-        const bool changed = in_ieee_mode([&] { return f(primitives_); });
-        if constexpr (packs)
-            if (changed) leaves_ = pack(primitives_, structure_, serial_executor());
-        return changed;
+        return in_ieee_mode([&] { return f(primitives_); });
     }
 
     struct Nothing {};

@@ -142,8 +142,13 @@ void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_id
                           {{"binned", BvhBuilder::binned},
                            {"sweep", BvhBuilder::sweep},
                            {"equal-counts", BvhBuilder::equal_counts},
-                           {"midpoint", BvhBuilder::midpoint}});
+                           {"midpoint", BvhBuilder::midpoint},
+                           {"lbvh", BvhBuilder::lbvh},
+                           {"ploc", BvhBuilder::ploc},
+                           {"agglomerative", BvhBuilder::agglomerative}});
     in.number("bins", o.bins, 2, BinnedSplitter<T, D>::max_bins);
+    in.number("search_radius", o.search_radius, 1, Ploc<T, D>::max_radius);
+    in.number("reinsertion", o.reinsertion, 0, 100);
     in.number("traversal_cost", o.traversal_cost, 0.0, 1e6);
     in.number("intersection_cost", o.intersection_cost, 1e-6, 1e6);
     in.number<std::uint32_t>("max_leaf_size", o.max_leaf_size, 1, 1u << 20);

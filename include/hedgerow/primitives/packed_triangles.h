@@ -4,8 +4,8 @@
 #include <bit>
 #include <span>
 #include <type_traits>
-#include <vector>
 
+#include <hedgerow/bare_vector.h>
 #include <hedgerow/geometry/lanes.h>
 #include <hedgerow/primitives/concepts.h>
 
@@ -27,6 +27,10 @@ public:
 
     std::size_t bytes() const { return triangles_.capacity() * sizeof(Packed); }
 
+    /// Makes room for position i.
+    void reach(std::size_t i) {
+        if (i >= triangles_.size()) triangles_.resize(i + 1);
+    }
     void set(std::size_t i, const Triangle<T, 3>& t, PrimitiveId id) {
         Packed& p = triangles_[i];
         for (int k = 0; k < 3; ++k)
@@ -65,7 +69,7 @@ private:
     };
     static_assert(sizeof(Packed) == 10 * sizeof(T));
 
-    std::vector<Packed> triangles_;
+    BareVector<Packed> triangles_;
 };
 
 }  // namespace hedgerow

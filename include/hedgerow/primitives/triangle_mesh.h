@@ -99,6 +99,11 @@ public:
         });
         return packed;
     }
+    /// One triangle anew, which may be beyond what was packed. O(1), amortized.
+    void pack(PrimitiveId id, PackedTriangles<T, PackedOrder::of_ids>& packed) const {
+        packed.reach(id);
+        packed.set(id, triangle(id), id);
+    }
 
 private:
     void validate_corners(std::size_t i) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <hedgerow/bare_vector.h>
 #include <hedgerow/error.h>
 #include <hedgerow/geometry/lanes.h>
 #include <hedgerow/parallel/executor.h>
@@ -23,6 +24,10 @@ struct LaneBox {
     static LaneBox none() {
         constexpr T infinity = std::numeric_limits<T>::infinity();
         return {Lanes<T>::all(infinity), Lanes<T>::all(-infinity)};
+    }
+    template <int D>
+    static LaneBox of(const Box<T, D>& b) {
+        return {Lanes<T>::of(b.low), Lanes<T>::of(b.high)};
     }
 
     void expand(const LaneBox& b) { low = min(low, b.low), high = max(high, b.high); }
@@ -53,11 +58,11 @@ template <std::floating_point T, int D>
 struct Reference {
     using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
 
-    alignas(16) T low[4] = {};
-    T high[4] = {};
+    alignas(16) T low[4];
+    T high[4];
 
-    Reference() = default;
-    Reference(const Box<T, D>& b, PrimitiveId id) {
+    Reference() = default;  // bare, to be filled
+    Reference(const Box<T, D>& b, PrimitiveId id) : low{}, high{} {
         for (int k = 0; k < D; ++k) low[k] = b.low[k], high[k] = b.high[k];
         low[3] = std::bit_cast<T>(static_cast<Bits>(id));
     }
@@ -88,6 +93,10 @@ template <std::floating_point T>
 }
 }  // namespace detail
 
+/// Where they are large, each lies in one line of the cache.
+template <std::floating_point T, int D>
+using ReferenceList = BareVector<Reference<T, D>>;
+
 /// The references of all primitives, in the order of their ids. Throws InputError for the first primitive
 /// with a coordinate that is NaN, infinite or beyond `largest_coordinate`, and for more than 2^31 primitives.
 template <PrimitiveSet P>
@@ -98,7 +107,7 @@ auto references_of(const P& set, Executor& executor) {
     if (n > 0x80000000u)
         throw InputError("an index holds at most 2^31 primitives, and was given " + std::to_string(n));
     if constexpr (requires { set.validate(); }) set.validate();
-    std::vector<Reference<T, D>> references(n);
+    ReferenceList<T, D> references(n);
     std::atomic<std::size_t> first_bad{n};
     executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

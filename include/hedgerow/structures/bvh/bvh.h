@@ -2,27 +2,17 @@
 #pragma once
 
 #include <hedgerow/geometry/box_pair.h>
-#include <hedgerow/structures/bvh/builders/binned.h>
-#include <hedgerow/structures/bvh/builders/equal_counts.h>
-#include <hedgerow/structures/bvh/builders/midpoint.h>
-#include <hedgerow/structures/bvh/builders/sweep.h>
+#include <hedgerow/structures/bvh/builders/build.h>
 #include <hedgerow/structures/walk_volumes.h>
 
 namespace hedgerow {
-
-enum class BvhBuilder { binned, sweep, equal_counts, midpoint };
 
 /// Nodes lie in depth-first order, so that a left child follows its parent. Memory: a node is 64 bytes
 /// (float, 3D), 112 (double), and there are (leaves − 1) of them; items are 4 bytes a primitive.
 template <std::floating_point T, int D>
 class Bvh {
 public:
-    struct Options : SahOptions {
-        BvhBuilder builder = BvhBuilder::binned;
-        /// Only to show what they bring: visit the nearer child first; pass over what a shrunken limit has
-        /// put out of reach.
-        bool ordered = true, culling = true;
-    };
+    using Options = BvhOptions;
     struct alignas(D == 3 && sizeof(T) == 4 ? 64 : 16) Node {  // a cache line, where it fits
         BoxPair<T, D> boxes;
         NodeRef child[2];
@@ -33,21 +23,7 @@ public:
 
     template <PrimitiveSet P>
     static Bvh build(const P& set, const Options& options, Executor& executor) {
-        auto references = references_of(set, executor);
-        const auto with = [&]<class Splitter>(Splitter splitter) {
-            return Bvh(TopDown<T, D, Splitter>(splitter, options.max_leaf_size, executor).build(), options);
-        };
-        switch (options.builder) {
-            case BvhBuilder::sweep:
-                return with(SweepSplitter<T, D>(std::move(references), options));
-            case BvhBuilder::equal_counts:
-                return with(EqualCountsSplitter<T, D>(std::move(references), options));
-            case BvhBuilder::midpoint:
-                return with(MidpointSplitter<T, D>(std::move(references), options));
-            case BvhBuilder::binned:
-                break;
-        }
-        return with(BinnedSplitter<T, D>(std::move(references), options));
+        return Bvh(build_tree(references_of(set, executor), options, executor), options, executor);
     }
 
     const Box<T, D>& bounds() const { return bounds_; }
@@ -84,18 +60,30 @@ public:
             walk_volumes<Order::none, Culling::off>(*this, primitives, query, count);
     }
 
-    /// Expected cost of a random line that meets the root's box, by the SAH.
+    /// Expected cost of a random line that meets the root's box, by the SAH. A box without area meets no such
+    /// line; then every node counts as met.
     double sah_cost() const {
         const double whole = static_cast<double>(bounds_.half_area());
-        if (root_.leaf() || root_.empty()) return options_.intersection_cost * root_.count;
+        if (root_.leaf() || root_.empty()) return options_.leaf_cost(root_.count, 1);
         double cost = options_.traversal_cost;
         for (const Node& n : nodes_)
-            for (int i = 0; i < 2; ++i)
-                cost += static_cast<double>(n.boxes[i].half_area()) / whole *
-                        (n.child[i].leaf() ? options_.intersection_cost * n.child[i].count
-                                           : options_.traversal_cost);
+            for (int i = 0; i < 2; ++i) {
+                const double share = whole > 0 ? static_cast<double>(n.boxes[i].half_area()) / whole : 1;
+                cost += n.child[i].leaf() ? options_.leaf_cost(n.child[i].count, share)
+                                          : options_.traversal_cost * share;
+            }
         return cost;
     }
+
+    /// Fits all boxes to primitives that have moved: `references` are those of the same ids as at the build.
+    /// The tree stays as it is. O(n), parallel over subtrees, allocates nothing.
+    void refit(std::span<const Reference<T, D>> references, Executor& executor) {
+        if (built_cost_ < 0) built_cost_ = sah_cost();
+        if (!root_.empty()) bounds_ = refitted(root_, nodes_.size(), references, executor).template box<D>();
+    }
+    /// How much worse the tree is for where the primitives are now than when it was built: its SAH cost as a
+    /// multiple of what it was then. 1 before any refit; less, where motion happened to suit the tree.
+    double drift() const { return built_cost_ > 0 ? sah_cost() / built_cost_ : 1; }
 
     /// What is wrong with the structure; empty if nothing is. O(n).
     template <PrimitiveSet P>
@@ -127,33 +115,69 @@ public:
     }
 
 private:
-    Bvh(BuildTree<T, D> tree, const Options& options) : options_(options), items_(std::move(tree.items)) {
+    Bvh(BuildTree<T, D> tree, const Options& options, Executor& executor)
+        : options_(options), items_(std::move(tree.items)) {
         if (items_.empty()) return;
         bounds_ = tree.nodes[0].box();
-        nodes_.reserve(tree.leaves - 1);
-        root_ = pack(tree, 0, 1);
+        nodes_.resize(tree.leaves - 1);
+        depth_ = pack(tree, 0, 0, root_, executor);
     }
-    NodeRef pack(const BuildTree<T, D>& tree, std::uint32_t from, int depth) {
+    /// The subtree into the places from `at` on; returns its depth.
+    int pack(const BuildTree<T, D>& tree, std::uint32_t from, std::uint32_t at, NodeRef& ref,
+             Executor& executor) {
         const BuildNode<T, D>& n = tree.nodes[from];
-        depth_ = std::max(depth_, depth);
-        if (n.count > 0) return {n.first, n.count};
-        const auto at = static_cast<std::uint32_t>(nodes_.size());
-        nodes_.emplace_back();
-        nodes_[at].boxes.set(0, tree.nodes[n.left].box());
-        nodes_[at].boxes.set(1, tree.nodes[n.right].box());
-        const NodeRef left = pack(tree, n.left, depth + 1);
-        const NodeRef right = pack(tree, n.right, depth + 1);
-        nodes_[at].child[0] = left;
-        nodes_[at].child[1] = right;
-        return {at, 0};
+        ref = {n.count > 0 ? n.first : at, n.count};
+        if (n.count > 0) return 1;
+        Node& node = nodes_[at];
+        node.boxes.set(0, tree.nodes[n.left].box());
+        node.boxes.set(1, tree.nodes[n.right].box());
+        int left = 0, right = 0;
+        const auto pack_left = [&] { left = pack(tree, n.left, at + 1, node.child[0], executor); };
+        const auto pack_right = [&] {
+            right = pack(tree, n.right, at + tree.nodes[n.left].leaves(), node.child[1], executor);
+        };
+        if (n.leaves() > 4096) {
+            executor.both(pack_left, pack_right);
+        } else {
+            pack_left();
+            pack_right();
+        }
+        return 1 + std::max(left, right);
+    }
+
+    /// The box of the subtree whose nodes lie before `end`.
+    LaneBox<T> refitted(NodeRef ref, std::size_t end, std::span<const Reference<T, D>> references,
+                        Executor& executor) {
+        auto box = LaneBox<T>::none();
+        if (ref.leaf()) {
+            for (std::uint32_t i = ref.first; i < ref.first + ref.count; ++i)
+                box.expand(references[items_[i]].lanes());
+            return box;
+        }
+        Node& node = nodes_[ref.first];
+        const std::size_t right_at = node.child[1].leaf() ? end : node.child[1].first;
+        LaneBox<T> left, right;
+        const auto fit_left = [&] { left = refitted(node.child[0], right_at, references, executor); };
+        const auto fit_right = [&] { right = refitted(node.child[1], end, references, executor); };
+        if (end - ref.first > 4096) {
+            executor.both(fit_left, fit_right);
+        } else {
+            fit_left();
+            fit_right();
+        }
+        node.boxes.set(0, left.template box<D>());
+        node.boxes.set(1, right.template box<D>());
+        left.expand(right);
+        return left;
     }
 
     Options options_;
     Box<T, D> bounds_;
     NodeRef root_;
-    std::vector<Node> nodes_;
+    BareVector<Node> nodes_;
     std::vector<PrimitiveId> items_;
     int depth_ = 0;
+    double built_cost_ = -1;  // not asked for before the first refit
 };
 
 }  // namespace hedgerow

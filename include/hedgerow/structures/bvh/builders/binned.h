@@ -13,7 +13,7 @@ class BinnedSplitter : public ReferenceSplitter<T, D> {
 public:
     static constexpr int max_bins = 64;
 
-    BinnedSplitter(std::vector<Reference<T, D>> references, const SahOptions& options)
+    BinnedSplitter(ReferenceList<T, D> references, const SahOptions& options)
         : ReferenceSplitter<T, D>(std::move(references)), options_(options) {}
 
     bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
@@ -24,8 +24,7 @@ public:
         if (best.axis < 0) return false;  // all centers equal
         const double area = static_cast<double>(range.box.template half_area<D>());
         const double split_cost = options_.traversal_cost * area + options_.intersection_cost * best.cost;
-        const double leaf_cost = options_.intersection_cost * range.size() * area;
-        if (leaf_cost <= split_cost && range.size() <= options_.max_leaf_size) return false;
+        if (options_.makes_leaf(range.size(), area, split_cost)) return false;
         this->partition(range, left, right, binning.before(best.axis, best.border));
         for (int b = 0; b < binning.count; ++b)
             (b < best.border ? left : right).box.expand(bins.of[best.axis][b].box);

@@ -8,7 +8,7 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class EqualCountsSplitter : public ReferenceSplitter<T, D> {
 public:
-    EqualCountsSplitter(std::vector<Reference<T, D>> references, const SahOptions&)
+    EqualCountsSplitter(ReferenceList<T, D> references, const SahOptions&)
         : ReferenceSplitter<T, D>(std::move(references)) {}
     bool split(const Range<T, D>&, Range<T, D>&, Range<T, D>&) { return false; }  // always halved
 };

@@ -8,7 +8,7 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class MidpointSplitter : public ReferenceSplitter<T, D> {
 public:
-    MidpointSplitter(std::vector<Reference<T, D>> references, const SahOptions& options)
+    MidpointSplitter(ReferenceList<T, D> references, const SahOptions& options)
         : ReferenceSplitter<T, D>(std::move(references)), max_leaf_size_(options.max_leaf_size) {}
 
     bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {

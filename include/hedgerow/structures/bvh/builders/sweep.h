@@ -11,7 +11,7 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class SweepSplitter {
 public:
-    SweepSplitter(std::vector<Reference<T, D>> references, const SahOptions& options)
+    SweepSplitter(ReferenceList<T, D> references, const SahOptions& options)
         : options_(options),
           references_(std::move(references)),
           right_cost_(references_.size()),
@@ -52,9 +52,8 @@ public:
         for (int k = 0; k < D; ++k) sweep(range, k, best, axis, border);
         const double area = static_cast<double>(range.box.template box<D>().half_area());
         const double split_cost = options_.traversal_cost * area + options_.intersection_cost * best;
-        const double leaf_cost = options_.intersection_cost * range.size() * area;
         const bool all_alike = !(max_component(range.centers2.template box<D>().extent()) > 0);
-        if (all_alike || (leaf_cost <= split_cost && range.size() <= options_.max_leaf_size)) return false;
+        if (all_alike || options_.makes_leaf(range.size(), area, split_cost)) return false;
         divide(range, axis, border, left, right);
         return true;
     }
@@ -100,7 +99,7 @@ private:
     }
 
     SahOptions options_;
-    std::vector<Reference<T, D>> references_;
+    ReferenceList<T, D> references_;
     std::vector<std::uint32_t> order_[D];
     std::vector<double> right_cost_;
     std::vector<std::uint8_t> goes_left_;  // bytes, not bits: subtrees are split at the same time

@@ -39,7 +39,7 @@ public:
     BuildTree<T, D> build() {
         const auto n = static_cast<std::uint32_t>(splitter_.references().size());
         if (n > 0) {
-            tree_.nodes = std::make_unique_for_overwrite<BuildNode<T, D>[]>(2 * std::size_t(n) - 1);
+            tree_.nodes.resize(2 * std::size_t(n) - 1);
             tree_.leaves = grow(Range<T, D>::over(splitter_.references(), 0, n), 0, 1);
         }
         tree_.items.reserve(n);
@@ -69,7 +69,7 @@ private:
             grow_left();
             grow_right();
         }
-        return on_left + on_right;
+        return node.first = on_left + on_right;
     }
 
     bool divide(const Range<T, D>& range, int depth, Range<T, D>& left, Range<T, D>& right) {
@@ -92,9 +92,8 @@ private:
 template <std::floating_point T, int D>
 class ReferenceSplitter {
 public:
-    explicit ReferenceSplitter(std::vector<Reference<T, D>> references)
-        : references_(std::move(references)) {}
-    const std::vector<Reference<T, D>>& references() const { return references_; }
+    explicit ReferenceSplitter(ReferenceList<T, D> references) : references_(std::move(references)) {}
+    const ReferenceList<T, D>& references() const { return references_; }
 
     /// Equal counts, in the order of the centers on their widest axis; ids decide between equal ones.
     void halve(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
@@ -129,7 +128,7 @@ protected:
         }
     }
 
-    std::vector<Reference<T, D>> references_;
+    ReferenceList<T, D> references_;
 };
 
 }  // namespace hedgerow

@@ -1,0 +1,161 @@
+/// Agglomerative clustering: from single primitives, again and again the two clusters are joined whose common
+/// box is least (Walter, Bala, Kulkarni, Pingali, RT 2008), in the approximate form that scales (AAC; Gu, He,
+/// Fatahalian, Blelloch, HPG 2013): a recursion along the bits of a Morton curve hands few clusters up from
+/// each part, f(n) = δ^(½+ε)/2 · n^(½−ε), so that only near ones are ever compared. δ = 20 and ε = 0.1, its
+/// high-quality setting. O(n) but for the sort. The top joins are one thread's, a small part of the work.
+///
+/// Of pairs that are equally near, the smaller one is joined first, so that clusters all alike make no chain.
+/// Boxes that nest do; `Collapse` cuts chains where they grow too deep.
+#pragma once
+
+#include <cmath>
+
+#include <hedgerow/structures/bvh/builders/joined.h>
+#include <hedgerow/structures/bvh/builders/lbvh.h>
+
+namespace hedgerow {
+
+/// A list of clusters and the nearest of each. O(count²) while few clusters share their nearest, as in space.
+template <std::floating_point T, int D>
+class NearestPairs {
+public:
+    explicit NearestPairs(std::vector<Cluster<T>>& clusters) : clusters_(clusters) {}
+
+    /// Joins the nearest two until `target` are left.
+    void reduce(std::size_t target, JoinedTree<T, D>& tree) {
+        if (clusters_.size() <= target) return;
+        find_all();
+        while (clusters_.size() > target) {
+            const std::size_t a = first_to_join(tree), b = nearest_[a].index;
+            join(std::min(a, b), std::max(a, b), tree);
+        }
+    }
+
+private:
+    struct Nearest {
+        T distance = std::numeric_limits<T>::infinity();
+        std::size_t index = 0, differs = 0;
+
+        /// Of equal ones that whose number differs in the lowest bits, so that clusters all alike pair up.
+        void consider(T d, std::size_t i, std::size_t own) {
+            if (d < distance || (d == distance && (i ^ own) < differs)) *this = {d, i, i ^ own};
+        }
+    };
+    std::size_t first_to_join(const JoinedTree<T, D>& tree) const {
+        const auto size = [&](std::size_t i) {
+            return tree.size(clusters_[i].node) + tree.size(clusters_[nearest_[i].index].node);
+        };
+        std::size_t least = 0;
+        for (std::size_t i = 1; i < nearest_.size(); ++i) {
+            const T d = nearest_[i].distance, best = nearest_[least].distance;
+            if (d < best || (d == best && size(i) < size(least))) least = i;
+        }
+        return least;
+    }
+    T between(std::size_t i, std::size_t j) const { return distance<D>(clusters_[i].box, clusters_[j].box); }
+
+    void find_all() {
+        nearest_.assign(clusters_.size(), {});
+        for (std::size_t i = 0; i < clusters_.size(); ++i)
+            for (std::size_t j = i + 1; j < clusters_.size(); ++j) {
+                const T d = between(i, j);
+                nearest_[i].consider(d, j, i);
+                nearest_[j].consider(d, i, j);
+            }
+    }
+    void find(std::size_t i) {
+        nearest_[i] = {};
+        for (std::size_t j = 0; j < clusters_.size(); ++j)
+            if (j != i) nearest_[i].consider(between(i, j), j, i);
+    }
+
+    /// The joined takes a's place in the list, the last b's. Boxes only grow, so that the joined is as near
+    /// to another as a or b was, or farther: then the other looks anew.
+    void join(std::size_t a, std::size_t b, JoinedTree<T, D>& tree) {
+        clusters_[a] = tree.join(clusters_[a], clusters_[b]);
+        const std::size_t last = clusters_.size() - 1;
+        clusters_[b] = clusters_[last];
+        nearest_[b] = nearest_[last];
+        clusters_.pop_back();
+        nearest_.pop_back();
+        nearest_[a] = {};
+        lost_.clear();
+        for (std::size_t i = 0; i < last; ++i) {
+            if (i == a) continue;
+            const T d = between(i, a);
+            nearest_[a].consider(d, i, a);
+            auto& near = nearest_[i];
+            if (near.index == a || near.index == b) {
+                near.index = a;
+                if (d > near.distance) lost_.push_back(i);
+            } else if (near.index == last) {
+                near.index = b;
+            }
+        }
+        for (const std::size_t i : lost_) find(i);
+    }
+
+    std::vector<Cluster<T>>& clusters_;
+    std::vector<Nearest> nearest_;
+    std::vector<std::size_t> lost_;
+};
+
+template <std::floating_point T, int D>
+class Agglomerative {
+public:
+    Agglomerative(std::span<const Reference<T, D>> references, Executor& executor)
+        : tree_(references, executor), curve_(tree_.order()), executor_(executor) {}
+
+    /// Of at least one primitive.
+    const JoinedTree<T, D>& build() {
+        auto clusters = gather(curve_.root());
+        NearestPairs<T, D>(clusters).reduce(1, tree_);
+        tree_.set_root(clusters[0]);
+        return tree_;
+    }
+
+private:
+    using Part = typename MortonTree<T, D>::Node;
+    static constexpr double few = 20, epsilon = 0.1;
+
+    static std::size_t handed_up(std::uint32_t n) {
+        return static_cast<std::size_t>(
+            std::max(1.0, std::pow(few, 0.5 + epsilon) / 2 * std::pow(n, 0.5 - epsilon)));
+    }
+    std::vector<Cluster<T>> gather(Part part) {
+        const std::uint32_t size = curve_.size(part);
+        std::vector<Cluster<T>> clusters;
+        if (size <= few) {
+            for (std::uint32_t i = part.first; i < part.last; ++i) clusters.push_back(tree_.cluster(i));
+        } else {
+            const auto [left, right] = curve_.children(part);
+            std::vector<Cluster<T>> second;
+            const auto on_left = [&, l = left] { clusters = gather(l); };
+            const auto on_right = [&, r = right] { second = gather(r); };
+            if (size > 4096) {
+                executor_.both(on_left, on_right);
+            } else {
+                on_left();
+                on_right();
+            }
+            clusters.insert(clusters.end(), second.begin(), second.end());
+        }
+        NearestPairs<T, D>(clusters).reduce(handed_up(size), tree_);
+        return clusters;
+    }
+
+    JoinedTree<T, D> tree_;
+    MortonTree<T, D> curve_;
+    Executor& executor_;
+};
+
+template <std::floating_point T, int D>
+BuildTree<T, D> build_agglomerative(std::span<const Reference<T, D>> references, const SahOptions& options,
+                                    Executor& executor) {
+    if (references.empty()) return {};
+    Agglomerative<T, D> clustering(references, executor);
+    return Collapse<T, D>(options, executor)
+        .build(clustering.build(), static_cast<std::uint32_t>(references.size()));
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,161 @@
+/// The order of primitives along a Morton curve (Morton 1966): what lies near in it mostly lies near in
+/// space.
+#pragma once
+
+#include <span>
+
+#include <hedgerow/parallel/radix_sort.h>
+#include <hedgerow/structures/references.h>
+
+namespace hedgerow {
+
+/// Cells along the curve: 21 bits an axis in 3D, 31 in 2D, the first axis' highest. Cells are cubes over the
+/// box of the centers: along a short side of it there are fewer, and no bit is spent on what does not differ.
+/// A box without extent, or too narrow to divide, is one cell.
+template <std::floating_point T, int D>
+class MortonCells {
+public:
+    static constexpr int bits_an_axis = 62 / D + (D == 3 ? 1 : 0);
+    static constexpr int bits = bits_an_axis * D;
+
+    explicit MortonCells(const LaneBox<T>& centers2) : low_(centers2.low) {
+        constexpr T cells = static_cast<T>(std::uint32_t(1) << bits_an_axis);
+        const T width = max_component(centers2.template box<D>().extent());
+        T scale = width > 0 ? cells * T(0.999) / width : T(0);
+        if (!(scale <= std::numeric_limits<T>::max())) scale = T(0);
+        scale_ = Lanes<T>::of(Vec<T, D>::all(scale));
+    }
+    std::uint64_t code(Lanes<T> center2) const {
+        T at[4];
+        ((center2 - low_) * scale_).store(at);
+        std::uint64_t code = 0;
+        for (int k = 0; k < D; ++k)
+            code |= spread(static_cast<std::uint64_t>(static_cast<std::int64_t>(at[k]))) << (D - 1 - k);
+        return code;
+    }
+
+private:
+    /// Bit i to bit D·i.
+    static std::uint64_t spread(std::uint64_t x) {
+        if constexpr (D == 3) {
+            x = (x | x << 32) & 0x001F00000000FFFFu;
+            x = (x | x << 16) & 0x001F0000FF0000FFu;
+            x = (x | x << 8) & 0x100F00F00F00F00Fu;
+            x = (x | x << 4) & 0x10C30C30C30C30C3u;
+            return (x | x << 2) & 0x1249249249249249u;
+        } else {
+            x = (x | x << 16) & 0x0000FFFF0000FFFFu;
+            x = (x | x << 8) & 0x00FF00FF00FF00FFu;
+            x = (x | x << 4) & 0x0F0F0F0F0F0F0F0Fu;
+            x = (x | x << 2) & 0x3333333333333333u;
+            return (x | x << 1) & 0x5555555555555555u;
+        }
+    }
+
+    Lanes<T> low_, scale_;
+};
+
+/// The box of all centers, times 2.
+template <std::floating_point T, int D>
+LaneBox<T> box_of_centers2(std::span<const Reference<T, D>> references, Executor& executor) {
+    const Blocks blocks{references.size(), 16384};
+    std::vector<LaneBox<T>> boxes(blocks.number(), LaneBox<T>::none());
+    blocks.each(executor, [&](std::size_t b, std::size_t begin, std::size_t end) {
+        auto box = LaneBox<T>::none();
+        for (std::size_t i = begin; i < end; ++i) box.expand(references[i].center2());
+        boxes[b] = box;
+    });
+    auto all = LaneBox<T>::none();
+    for (const auto& box : boxes) all.expand(box);
+    return all;
+}
+
+/// References in the order of the curve; those of one cell in their own. O(n): a key is what fits of a code
+/// above the reference's place, and is sorted by the code's first 33 bits by radix; the few that are still
+/// alike, by comparing whole codes.
+template <std::floating_point T, int D>
+class MortonOrder {
+public:
+    /// Looks at the references for as long as it lives.
+    MortonOrder(std::span<const Reference<T, D>> references, Executor& executor)
+        : references_(references),
+          cells_(box_of_centers2(references, executor)),
+          keys_(size()),
+          place_bits_(static_cast<int>(std::bit_width(std::max<std::size_t>(size(), 1) - 1))) {
+        executor.for_each_piece(size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                keys_[i] = cells_.code(references[i].center2()) << (64 - cells_.bits) >> place_bits_
+                                                                                             << place_bits_ |
+                           i;
+        });
+        const auto key = [](std::uint64_t k) { return k; };
+        if (size() > few) radix_sort(keys_, key, 31, 3, executor);
+        sort_rest(executor);
+    }
+
+    std::size_t size() const { return references_.size(); }
+    const Reference<T, D>& reference(std::size_t i) const { return references_[place(keys_[i])]; }
+    void prefetch(std::size_t i) const { __builtin_prefetch(&reference(i)); }
+
+    /// Where the part [first, last) of at least two divides: the first of those in whose codes the highest
+    /// bit is set that differs in it; the middle, where none does.
+    std::size_t split(std::size_t first, std::size_t last) const {
+        const std::uint64_t differing = keys_[first] ^ keys_[last - 1];
+        if (differing >> place_bits_ != 0)
+            return first_set(first, last, std::bit_floor(differing), [&](std::size_t i) { return keys_[i]; });
+        const auto code = [&](std::size_t i) { return code_of(keys_[i]); };
+        const std::uint64_t rest = code(first) ^ code(last - 1);
+        return rest != 0 ? first_set(first, last, std::bit_floor(rest), code) : first + (last - first) / 2;
+    }
+
+private:
+    static constexpr std::size_t few = 1024;
+
+    std::size_t place(std::uint64_t key) const { return key & ((std::uint64_t(1) << place_bits_) - 1); }
+    std::uint64_t code_of(std::uint64_t key) const { return cells_.code(references_[place(key)].center2()); }
+
+    /// Bisection without branches: which way it goes cannot be guessed.
+    template <class Bits>
+    static std::size_t first_set(std::size_t first, std::size_t last, std::uint64_t bit, Bits bits) {
+        std::size_t clear = first;
+        for (std::size_t step = std::bit_floor(last - first - 1); step > 0; step /= 2) {
+            const std::size_t next = clear + step < last ? clear + step : last - 1;  // the last has it set
+            clear = (bits(next) & bit) == 0 ? next : clear;
+        }
+        return clear + 1;
+    }
+
+    bool begins_run(std::size_t i) const { return i == 0 || keys_[i - 1] >> 31 != keys_[i] >> 31; }
+    void sort_run(std::size_t begin, std::size_t end) {
+        std::sort(keys_.data() + begin, keys_.data() + end, [&](std::uint64_t a, std::uint64_t b) {
+            if (((a ^ b) >> place_bits_) != 0) return a < b;
+            const std::uint64_t x = code_of(a), y = code_of(b);
+            return x != y ? x < y : a < b;
+        });
+    }
+    /// Each block sorts the runs that begin in it. Where they do is found before any is sorted.
+    void sort_rest(Executor& executor) {
+        if (size() <= few) return sort_run(0, size());
+        const Blocks blocks{size(), 16384};
+        std::vector<std::size_t> first(blocks.number() + 1, size());
+        for (std::size_t b = blocks.number(); b-- > 0;) {
+            std::size_t i = b * blocks.size;
+            const std::size_t end = std::min(size(), i + blocks.size);
+            while (i < end && !begins_run(i)) ++i;
+            first[b] = i < end ? i : first[b + 1];
+        }
+        blocks.each(executor, [&](std::size_t b, std::size_t, std::size_t) {
+            for (std::size_t begin = first[b], end; begin < first[b + 1]; begin = end) {
+                for (end = begin + 1; end < first[b + 1] && !begins_run(end);) ++end;
+                if (end - begin > 1) sort_run(begin, end);
+            }
+        });
+    }
+
+    std::span<const Reference<T, D>> references_;
+    MortonCells<T, D> cells_;
+    BareVector<std::uint64_t> keys_;
+    int place_bits_;
+};
+
+}  // namespace hedgerow
