@@ -26,6 +26,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "grid",
                                              "two-level-grid",
                                              "octree",
+                                             "bsp",
                                              "bvh:ordered=off,culling=off",
                                              "bvh:max_leaf_size=1",
                                              "kdtree:builder=median",
@@ -36,9 +37,10 @@ inline constexpr const char* structures[] = {"bvh",
                                              "grid:heuristic=roots,mailbox=off",
                                              "two-level-grid:resolution=2,inner_density=10",
                                              "octree:leaf_size=1",
+                                             "bsp:samples=4,leaf_size=3,plane_cost=1",
                                              "octree:max_depth=3,mailbox=off",
                                              "brute-force:box=on"};
-inline constexpr std::size_t fast_structures = 13;
+inline constexpr std::size_t fast_structures = 14;
 
 /// What is called that in space, among sets of P.
 template <class P>

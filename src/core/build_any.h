@@ -100,6 +100,7 @@ void for_each_structure(F f) {
     f.template operator()<TwoLevelGrid>("two-level-grid");
     f.template operator()<KdTree>("kdtree");
     f.template operator()<Orthtree>(orthtree_name(D));
+    f.template operator()<BspTree>("bsp");
     f.template operator()<Bvh>("bvh");
 }
 

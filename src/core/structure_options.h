@@ -137,6 +137,17 @@ void read_options(OptionReader& in, typename Orthtree<T, D>::Options& o, std::ty
     in.flag("mailbox", o.mailbox);
 }
 template <class T, int D>
+void read_options(OptionReader& in, typename BspTree<T, D>::Options& o, std::type_identity<BspTree<T, D>>) {
+    in.number<std::uint32_t>("leaf_size", o.leaf_size, 0, 1u << 20);
+    in.number("max_depth", o.max_depth, 0, BspTree<T, D>::max_depth);
+    in.number<std::uint32_t>("samples", o.samples, 1, 1u << 20);
+    in.number("traversal_cost", o.costs.traversal_cost, 0.0, 1e6);
+    in.number("plane_cost", o.costs.plane_cost, 0.0, 1e6);
+    in.number("intersection_cost", o.costs.intersection_cost, 1e-6, 1e6);
+    in.number("empty_bonus", o.costs.empty_bonus, 0.0, 0.99);
+    in.flag("mailbox", o.mailbox);
+}
+template <class T, int D>
 void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_identity<Bvh<T, D>>) {
     in.choice<BvhBuilder>("builder", o.builder,
                           {{"binned", BvhBuilder::binned},

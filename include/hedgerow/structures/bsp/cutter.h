@@ -32,13 +32,13 @@ struct BspPart {
         }
         return {low, high};
     }
-    /// What lies on one side (sign 1: low, −1: high). A box stays whole.
+    /// What lies on one side (sign 1: low, −1: high) or within the plane's margin of it. A box stays whole.
     BspPart side(const CutPlane<D>& plane, double sign) const {
         if (!exact) return *this;
         BspPart kept{id, true, {}};
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const auto &p = corners[i], &q = corners[(i + 1) % corners.size()];
-            const double a = sign * plane.height(p), b = sign * plane.height(q);
+            const double a = sign * plane.height(p) - plane.margin, b = sign * plane.height(q) - plane.margin;
             if (a <= 0) kept.corners.push_back(p);
             if ((a < 0 && b > 0) || (a > 0 && b < 0)) kept.corners.push_back(p + (q - p) * (a / (a - b)));
         }
