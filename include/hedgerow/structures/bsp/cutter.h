@@ -76,7 +76,7 @@ public:
               double margin)
         : set_(set), costs_(costs), leaf_size_(leaf_size), samples_(samples), margin_(margin) {}
 
-    Cell root(const std::vector<Reference<T, D>>& references) const {
+    Cell root(const ReferenceList<T, D>& references) const {
         Cell cell;
         for (const auto& r : references) {
             const auto b = r.box();

@@ -86,7 +86,7 @@ inline void refuse_beyond(double budget, std::uint64_t entries) {
 /// from them would take more than `budget` bytes.
 template <PrimitiveSet P, std::floating_point T, int D>
 std::vector<std::vector<CellEntry>> entries_of(const CellEntering<P>& entering, const Lattice<D>& lattice,
-                                               const std::vector<Reference<T, D>>& references, double budget,
+                                               const ReferenceList<T, D>& references, double budget,
                                                Executor& executor) {
     constexpr std::size_t grain = 4096;
     std::vector<std::vector<CellEntry>> pieces((references.size() + grain - 1) / grain);
