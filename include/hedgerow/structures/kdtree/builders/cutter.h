@@ -13,7 +13,7 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 struct KdCell {
     Box<T, D> box;
-    std::vector<Reference<T, D>> inside;
+    ReferenceList<T, D> inside;
 
     std::uint32_t size() const { return static_cast<std::uint32_t>(inside.size()); }
 };
