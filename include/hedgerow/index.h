@@ -105,10 +105,9 @@ public:
     }
     /// The same where the moved primitives lie elsewhere: as many as before, each under its id, and borrowed.
     double refit(const P& moved, Executor& executor = serial_executor()) requires(Refittable<S, P>) {
-        if (moved.size() != structure_.items().size())
+        if (moved.size() != size())
             throw InputError("a refit is for as many primitives as the index was built over: " +
-                             std::to_string(structure_.items().size()) + ", not " +
-                             std::to_string(moved.size()));
+                             std::to_string(size()) + ", not " + std::to_string(moved.size()));
         return in_ieee_mode([&] {
             IeeeExecutor threads(executor);
             const auto references = references_of(moved, threads);
@@ -156,14 +155,13 @@ private:
     }
 
     struct Nothing {};
-    static constexpr auto packed_order = S::exclusive ? PackedOrder::of_leaves : PackedOrder::of_ids;
     static constexpr bool packs = requires(const P& p) {
-        p.template pack<packed_order>(std::span<const PrimitiveId>(), serial_executor());
+        p.template pack<S::packed_order>(std::span<const PrimitiveId>(), serial_executor());
     };
 
     static auto pack(const P& primitives, const S& structure, Executor& executor) {
         if constexpr (packs) {
-            return primitives.template pack<packed_order>(structure.items(), executor);
+            return primitives.template pack<S::packed_order>(structure.items(), executor);
         } else {
             static_cast<void>(executor);
             return Nothing{};
@@ -255,7 +253,7 @@ std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
                       const Filter& filter = {}, Count& count = no_visits) {
-    if constexpr (S::exclusive) {
+    if (index.structure().exclusive()) {
         return index.template answer<HitCount<P, Filter>>(count, ray, filter);
     } else {
         static thread_local std::vector<Hit<typename P::Scalar>> hits;

@@ -156,10 +156,13 @@ void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_id
                            {"midpoint", BvhBuilder::midpoint},
                            {"lbvh", BvhBuilder::lbvh},
                            {"ploc", BvhBuilder::ploc},
-                           {"agglomerative", BvhBuilder::agglomerative}});
+                           {"agglomerative", BvhBuilder::agglomerative},
+                           {"spatial-splits", BvhBuilder::spatial_splits}});
     in.number("bins", o.bins, 2, BinnedSplitter<T, D>::max_bins);
     in.number("search_radius", o.search_radius, 1, Ploc<T, D>::max_radius);
     in.number("reinsertion", o.reinsertion, 0, 100);
+    in.number("duplicates", o.duplicates, 0.0, 10.0);
+    in.number("overlap", o.overlap, 0.0, 1.0);
     in.number("traversal_cost", o.traversal_cost, 0.0, 1e6);
     in.number("intersection_cost", o.intersection_cost, 1e-6, 1e6);
     in.number<std::uint32_t>("max_leaf_size", o.max_leaf_size, 1, 1u << 20);

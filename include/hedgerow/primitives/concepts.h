@@ -65,6 +65,10 @@ struct OverlapCandidate {
     PrimitiveId element;
 };
 
+/// Where a packed copy of the primitives stands: in the order of the leaves, for structures that hold each
+/// about once, or by id.
+enum class PackedOrder { of_leaves, of_ids };
+
 /// Some primitives, by id: `ids[first]` to `ids[first + count − 1]`.
 struct Leaf {
     const PrimitiveId* ids;

@@ -11,9 +11,6 @@
 
 namespace hedgerow {
 
-/// Where packed primitives stand: in the order of the leaves, for structures that hold each once, or by id.
-enum class PackedOrder { of_leaves, of_ids };
-
 /// Of each axis the three corners' coordinates, then the id: 40 bytes a triangle (float), 80 (double). A row
 /// is loaded as four lanes; what lies in the fourth is ignored.
 template <std::floating_point T, PackedOrder order>

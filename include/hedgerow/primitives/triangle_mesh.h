@@ -86,12 +86,12 @@ public:
         return Flow::go_on;
     }
 
-    /// The triangles in the order of a structure's items, if it holds each once, or by id: what makes a test
-    /// one read.
+    /// The triangles in the order of a structure's items, or by id: what makes a test one read.
     template <PackedOrder order>
     PackedTriangles<T, order> pack(std::span<const PrimitiveId> items, Executor& executor) const {
-        PackedTriangles<T, order> packed(size());
-        executor.for_each_piece(size(), 4096, [&](std::size_t begin, std::size_t end) {
+        const std::size_t count = order == PackedOrder::of_leaves ? items.size() : size();
+        PackedTriangles<T, order> packed(count);
+        executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const auto id = order == PackedOrder::of_leaves ? items[i] : static_cast<PrimitiveId>(i);
                 packed.set(i, triangle(id), id);

@@ -17,7 +17,8 @@ public:
         bool box = false;
     };
     /// Each primitive stands in `items` once.
-    static constexpr bool exclusive = true;
+    static constexpr auto packed_order = PackedOrder::of_leaves;
+    static constexpr bool exclusive() { return true; }
 
     template <PrimitiveSet P>
     static BruteForce build(const P& set, const Options& options, Executor& executor) {

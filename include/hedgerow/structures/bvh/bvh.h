@@ -17,15 +17,17 @@ public:
         BoxPair<T, D> boxes;
         NodeRef child[2];
     };
-    static constexpr bool exclusive = true;
+    static constexpr auto packed_order = PackedOrder::of_leaves;
     static constexpr int width = 2;
     static constexpr int max_depth = bvh_max_depth;
 
     template <PrimitiveSet P>
     static Bvh build(const P& set, const Options& options, Executor& executor) {
-        return Bvh(build_tree(references_of(set, executor), options, executor), options, executor);
+        return Bvh(build_tree(set, options, executor), set.size(), options, executor);
     }
 
+    /// Whether each primitive stands in one leaf: always but after spatial splits.
+    bool exclusive() const { return items_.size() == count_; }
     const Box<T, D>& bounds() const { return bounds_; }
     std::span<const PrimitiveId> items() const { return items_; }
     std::size_t bytes() const {
@@ -95,9 +97,11 @@ public:
             if (depth > max_depth) fault = "deeper than its bound";
             if (r.leaf()) {
                 for (std::uint32_t i = r.first; i < r.first + r.count; ++i) {
-                    if (i >= items_.size() || items_[i] >= seen.size() || seen[items_[i]]++)
+                    if (i >= items_.size() || items_[i] >= seen.size() ||
+                        (seen[items_[i]]++ != 0 && exclusive()))
                         fault = "an item is missing or held twice";
-                    else if (!box.contains(set.bounds(items_[i])))
+                    else if (exclusive() ? !box.contains(set.bounds(items_[i]))
+                                         : !overlap(box, set.bounds(items_[i])))
                         fault = "a primitive reaches out of its leaf's box";
                 }
                 return;
@@ -110,13 +114,13 @@ public:
         };
         if (!root_.empty()) visit(visit, root_, bounds_, 1);
         for (const auto s : seen)
-            if (s != 1 && fault.empty()) fault = "a primitive is in no leaf";
+            if (s == 0 && fault.empty()) fault = "a primitive is in no leaf";
         return fault;
     }
 
 private:
-    Bvh(BuildTree<T, D> tree, const Options& options, Executor& executor)
-        : options_(options), items_(std::move(tree.items)) {
+    Bvh(BuildTree<T, D> tree, std::size_t count, const Options& options, Executor& executor)
+        : options_(options), items_(std::move(tree.items)), count_(count) {
         if (items_.empty()) return;
         bounds_ = tree.nodes[0].box();
         nodes_.resize(tree.leaves - 1);
@@ -176,6 +180,7 @@ private:
     NodeRef root_;
     BareVector<Node> nodes_;
     std::vector<PrimitiveId> items_;
+    std::size_t count_ = 0;  // of the primitives
     int depth_ = 0;
     double built_cost_ = -1;  // not asked for before the first refit
 };

@@ -22,7 +22,8 @@ public:
         /// Bytes that a build may take; beyond them it is refused.
         double budget = 8e9;
     };
-    static constexpr bool exclusive = false;
+    static constexpr auto packed_order = PackedOrder::of_ids;
+    static constexpr bool exclusive() { return false; }
 
     template <PrimitiveSet P>
     static Grid build(const P& set, const Options& options, Executor& executor) {

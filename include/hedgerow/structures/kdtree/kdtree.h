@@ -30,7 +30,8 @@ public:
         /// Off only to show what it brings.
         bool mailbox = true;
     };
-    static constexpr bool exclusive = false;
+    static constexpr auto packed_order = PackedOrder::of_ids;
+    static constexpr bool exclusive() { return false; }
     static constexpr int max_depth = 64;
 
     template <PrimitiveSet P>

@@ -40,7 +40,8 @@ public:
         /// Test a primitive once a query, in however many cells it stands.
         bool mailbox = true;
     };
-    static constexpr bool exclusive = false;
+    static constexpr auto packed_order = PackedOrder::of_ids;
+    static constexpr bool exclusive() { return false; }
     static constexpr int dimension = D;
     static constexpr unsigned width = 1u << D;
     /// With what it grows upward; the walk's stack has room for it.

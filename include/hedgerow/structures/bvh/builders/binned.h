@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <tuple>
 
 #include <hedgerow/structures/bvh/builders/top_down.h>
 
@@ -17,21 +18,15 @@ public:
         : ReferenceSplitter<T, D>(std::move(references)), options_(options) {}
 
     bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
-        const Binning binning(range, std::clamp(options_.bins, 2, max_bins));
         Bins bins;
-        fill(bins, range, binning);
+        const Binning binning = fill(bins, range);
         const Best best = cheapest(bins, binning.count, range.size());
-        if (best.axis < 0) return false;  // all centers equal
-        const double area = static_cast<double>(range.box.template half_area<D>());
-        const double split_cost = options_.traversal_cost * area + options_.intersection_cost * best.cost;
-        if (options_.makes_leaf(range.size(), area, split_cost)) return false;
-        this->partition(range, left, right, binning.before(best.axis, best.border));
-        for (int b = 0; b < binning.count; ++b)
-            (b < best.border ? left : right).box.expand(bins.of[best.axis][b].box);
+        if (best.axis < 0 || cheaper_as_leaf(range, best.cost)) return false;  // −1: all centers equal
+        divide(range, binning, bins, best, left, right);
         return true;
     }
 
-private:
+protected:
     struct Bin {
         LaneBox<T> box;
         std::uint32_t count;
@@ -86,7 +81,8 @@ private:
     struct Bins {
         Bin of[D][max_bins];
     };
-    void fill(Bins& bins, const Range<T, D>& range, const Binning& binning) {
+    Binning fill(Bins& bins, const Range<T, D>& range) {
+        const Binning binning(range, std::clamp(options_.bins, 2, max_bins));
         for (auto& axis : bins.of) std::fill_n(axis, binning.count, Bin::none());
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             const auto& r = this->references_[i];
@@ -98,6 +94,24 @@ private:
                 ++bin.count;
             }
         }
+        return binning;
+    }
+    void divide(const Range<T, D>& range, const Binning& binning, const Bins& bins, const Best& best,
+                Range<T, D>& left, Range<T, D>& right) {
+        this->partition(range, left, right, binning.before(best.axis, best.border));
+        std::tie(left.box, right.box) = sides(bins, binning.count, best);
+    }
+    static std::pair<LaneBox<T>, LaneBox<T>> sides(const Bins& bins, int count, const Best& best) {
+        std::pair boxes(LaneBox<T>::none(), LaneBox<T>::none());
+        for (int b = 0; b < count; ++b)
+            (b < best.border ? boxes.first : boxes.second).expand(bins.of[best.axis][b].box);
+        return boxes;
+    }
+    /// Whether a split of that cost (of the sum of area·count) is not worth its node.
+    bool cheaper_as_leaf(const Range<T, D>& range, double cost) const {
+        const double area = static_cast<double>(range.box.template half_area<D>());
+        return options_.makes_leaf(range.size(), area,
+                                   options_.traversal_cost * area + options_.intersection_cost * cost);
     }
 
     /// The sum of area·count over both sides, at its least. Of equal costs the first axis and border.
@@ -106,6 +120,11 @@ private:
         for (int k = 0; k < D; ++k) sweep(bins.of[k], count, total, k, best);
         return best;
     }
+    static double cost(const LaneBox<T>& box, std::uint32_t count) {
+        return count == 0 ? 0 : static_cast<double>(box.template half_area<D>()) * count;
+    }
+
+private:
     static void sweep(const Bin* bins, int count, std::uint32_t total, int axis, Best& best) {
         double right_cost[max_bins];
         auto box = LaneBox<T>::none();
@@ -125,10 +144,6 @@ private:
             if (c < best.cost) best = {c, axis, b};
         }
     }
-    static double cost(const LaneBox<T>& box, std::uint32_t count) {
-        return count == 0 ? 0 : static_cast<double>(box.template half_area<D>()) * count;
-    }
-
     SahOptions options_;
 };
 

@@ -8,6 +8,7 @@
 #include <hedgerow/structures/bvh/builders/midpoint.h>
 #include <hedgerow/structures/bvh/builders/ploc.h>
 #include <hedgerow/structures/bvh/builders/reinsertion.h>
+#include <hedgerow/structures/bvh/builders/spatial_splits.h>
 #include <hedgerow/structures/bvh/builders/sweep.h>
 
 namespace hedgerow {
@@ -15,10 +16,10 @@ namespace hedgerow {
 /// By the time to build, least first: lbvh, ploc and binned, agglomerative, sweep. By the rays' visits sweep
 /// and binned come first on even surfaces, ploc and agglomerative where triangles differ much in size or are
 /// long (docs/design/003-builders.md). `equal_counts` and `midpoint` are for comparison.
-enum class BvhBuilder { binned, sweep, equal_counts, midpoint, lbvh, ploc, agglomerative };
+enum class BvhBuilder { binned, sweep, equal_counts, midpoint, lbvh, ploc, agglomerative, spatial_splits };
 inline constexpr BvhBuilder bvh_builders[] = {
-    BvhBuilder::binned, BvhBuilder::sweep, BvhBuilder::equal_counts, BvhBuilder::midpoint,
-    BvhBuilder::lbvh,   BvhBuilder::ploc,  BvhBuilder::agglomerative};
+    BvhBuilder::binned, BvhBuilder::sweep, BvhBuilder::equal_counts,  BvhBuilder::midpoint,
+    BvhBuilder::lbvh,   BvhBuilder::ploc,  BvhBuilder::agglomerative, BvhBuilder::spatial_splits};
 
 struct BvhOptions : SahOptions {
     BvhBuilder builder = BvhBuilder::binned;
@@ -30,10 +31,17 @@ struct BvhOptions : SahOptions {
     /// Most passes of improvement by reinsertion, after any builder; 0 for none. It lengthens the build by
     /// about its own time a pass, and stops on its own.
     int reinsertion = 0;
+    /// Spatial splits: how many references they may add, as a share of the primitives; and how much the sides
+    /// of a split of objects must overlap before one is tried, as a share of the root's area.
+    double duplicates = 0.5;
+    double overlap = 1e-5;
 };
 
-template <std::floating_point T, int D>
-BuildTree<T, D> build_tree(ReferenceList<T, D> references, const BvhOptions& options, Executor& executor) {
+template <PrimitiveSet P>
+auto build_tree(const P& set, const BvhOptions& options, Executor& executor) {
+    using T = typename P::Scalar;
+    constexpr int D = P::dimension;
+    ReferenceList<T, D> references = references_of(set, executor);
     const auto top_down = [&]<class Splitter>(Splitter splitter, const SahOptions& sah) {
         return TopDown<T, D, Splitter>(splitter, sah.max_leaf_size, executor).build();
     };
@@ -51,6 +59,10 @@ BuildTree<T, D> build_tree(ReferenceList<T, D> references, const BvhOptions& opt
                 return build_ploc<T, D>(references, sah, options.search_radius, executor);
             case BvhBuilder::agglomerative:
                 return build_agglomerative<T, D>(references, sah, executor);
+            case BvhBuilder::spatial_splits:
+                return top_down(
+                    SpatialSplitter<P>(set, std::move(references), sah, options.duplicates, options.overlap),
+                    sah);
             case BvhBuilder::binned:
                 break;
         }

@@ -44,6 +44,9 @@ public:
         Iterator end() const { return {*this, size()}; }
     };
     Ordered references() const { return {*this}; }
+    Range<T, D> root() const {
+        return Range<T, D>::over(references_, 0, static_cast<std::uint32_t>(references_.size()));
+    }
 
     bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
         double best = std::numeric_limits<double>::infinity();

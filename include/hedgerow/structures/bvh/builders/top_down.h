@@ -12,11 +12,15 @@ template <std::floating_point T, int D>
 struct Range {
     std::uint32_t first = 0, last = 0;
     LaneBox<T> box = LaneBox<T>::none(), centers2 = LaneBox<T>::none();
+    /// Places behind its own for references that a split may add.
+    std::uint32_t room = 0;
 
     std::uint32_t size() const { return last - first; }
+    std::uint32_t capacity() const { return size() + room; }
     template <class References>
     static Range over(const References& references, std::uint32_t first, std::uint32_t last) {
-        Range r{first, last};
+        Range r;
+        r.first = first, r.last = last;
         for (std::uint32_t i = first; i < last; ++i) r.add(references[i]);
         return r;
     }
@@ -26,10 +30,11 @@ struct Range {
     }
 };
 
-/// `Splitter` has `references()`, `split(range, left, right) -> bool` (false: make a leaf; otherwise it has
-/// arranged its references so that `left` comes before `right`) and `halve(range, left, right)`, which splits
-/// by count and always succeeds. Subtrees of n primitives own 2n − 1 places in the list of nodes, so the tree
-/// is the same however many threads build it.
+/// `Splitter` has `references()`, the `root()` over them, `split(range, left, right) -> bool` (false: make a
+/// leaf; otherwise it has arranged its references so that `left` comes before `right`) and `halve(range,
+/// left, right)`, which splits by count and always succeeds; one whose ranges have room also `share_room`.
+/// Subtrees over a capacity of n own 2n − 1 places in the list of nodes, so the tree is the same however many
+/// threads build it.
 template <std::floating_point T, int D, class Splitter>
 class TopDown {
 public:
@@ -37,13 +42,15 @@ public:
         : splitter_(splitter), max_leaf_size_(max_leaf_size), executor_(executor) {}
 
     BuildTree<T, D> build() {
-        const auto n = static_cast<std::uint32_t>(splitter_.references().size());
-        if (n > 0) {
-            tree_.nodes.resize(2 * std::size_t(n) - 1);
-            tree_.leaves = grow(Range<T, D>::over(splitter_.references(), 0, n), 0, 1);
-        }
-        tree_.items.reserve(n);
-        for (const auto& r : splitter_.references()) tree_.items.push_back(r.id());
+        const Range<T, D> root = splitter_.root();
+        if (root.size() == 0) return std::move(tree_);
+        tree_.nodes.resize(2 * std::size_t(root.capacity()) - 1);
+        tree_.leaves = grow(root, 0, 1);
+        tree_.items.reserve(root.capacity());
+        if (root.room == 0)
+            for (const auto& r : splitter_.references()) tree_.items.push_back(r.id());
+        else
+            gather_items(tree_.nodes[0]);
         return std::move(tree_);
     }
 
@@ -59,7 +66,7 @@ private:
             return 1;
         }
         node.left = at + 1;
-        node.right = at + 2 * left.size();
+        node.right = at + 2 * left.capacity();
         std::uint32_t on_left = 0, on_right = 0;
         const auto grow_left = [&] { on_left = grow(left, node.left, depth + 1); };
         const auto grow_right = [&] { on_right = grow(right, node.right, depth + 1); };
@@ -73,6 +80,11 @@ private:
     }
 
     bool divide(const Range<T, D>& range, int depth, Range<T, D>& left, Range<T, D>& right) {
+        if (!divide_references(range, depth, left, right)) return false;
+        if (left.size() + right.size() < range.capacity()) share_room(range, left, right);
+        return true;
+    }
+    bool divide_references(const Range<T, D>& range, int depth, Range<T, D>& left, Range<T, D>& right) {
         if (range.size() == 1) return false;
         const int halvings = static_cast<int>(std::bit_width(range.size()));
         const bool deep = depth + halvings >= bvh_max_depth;
@@ -80,6 +92,21 @@ private:
         if (range.size() <= max_leaf_size_) return false;
         splitter_.halve(range, left, right);
         return true;
+    }
+
+    void share_room(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
+        if constexpr (requires { splitter_.share_room(range, left, right); })
+            splitter_.share_room(range, left, right);
+    }
+
+    /// Where ranges had room to spare, leaves lie apart.
+    void gather_items(BuildNode<T, D>& node) {
+        if (node.count == 0)
+            return gather_items(tree_.nodes[node.left]), gather_items(tree_.nodes[node.right]);
+        const auto first = static_cast<std::uint32_t>(tree_.items.size());
+        for (std::uint32_t i = 0; i < node.count; ++i)
+            tree_.items.push_back(splitter_.references()[node.first + i].id());
+        node.first = first;
     }
 
     Splitter& splitter_;
@@ -94,6 +121,9 @@ class ReferenceSplitter {
 public:
     explicit ReferenceSplitter(ReferenceList<T, D> references) : references_(std::move(references)) {}
     const ReferenceList<T, D>& references() const { return references_; }
+    Range<T, D> root() const {
+        return Range<T, D>::over(references_, 0, static_cast<std::uint32_t>(references_.size()));
+    }
 
     /// Equal counts, in the order of the centers on their widest axis; ids decide between equal ones.
     void halve(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
@@ -109,6 +139,18 @@ public:
         std::sort(at(middle), at(range.last), by_id);
         left = Range<T, D>::over(references_, range.first, middle);
         right = Range<T, D>::over(references_, middle, range.last);
+    }
+
+    /// What room a split has left goes to its sides by their sizes: the left side's lies before the right
+    /// side, which moves up.
+    void share_room(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
+        const std::uint32_t taken = left.size() + right.size(), room = range.capacity() - taken;
+        left.room = static_cast<std::uint32_t>(std::uint64_t(room) * left.size() / taken);
+        right.room = room - left.room;
+        const std::uint32_t moved = std::min(left.room, right.size());
+        const auto at = [&](std::uint32_t i) { return references_.begin() + static_cast<std::ptrdiff_t>(i); };
+        std::copy(at(right.first), at(right.first + moved), at(right.last + left.room - moved));
+        right.first += left.room, right.last += left.room;
     }
 
 protected:

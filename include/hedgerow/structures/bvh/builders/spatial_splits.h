@@ -1,0 +1,210 @@
+/// SBVH (Stich, Friedrich, Dietrich, Spatial splits in bounding volume hierarchies, HPG 2009): where the two
+/// sides of the best split of objects overlap much, a plane may cut the primitives themselves, each side
+/// keeping the bounds of its part.
+#pragma once
+
+#include <hedgerow/structures/bvh/builders/binned.h>
+#include <hedgerow/structures/cells.h>
+
+namespace hedgerow {
+
+/// A primitive cut by a plane stands on both sides, or, where that costs less, whole on one (the paper's
+/// unsplitting). Each range owns spare places for what it may duplicate, and passes them on to its children
+/// by their sizes, so that memory has a bound and the tree is the same however many threads build it.
+///
+/// Where it pays: long or large triangles that boxes fit badly (a turned building). On scans, whose triangles
+/// are small beside their nodes, and on hair finer than the nodes above it, it hardly does
+/// (docs/design/003-builders.md).
+///
+/// A part's bounds are enlarged by the margin of cells.h on every side, within the bounds of what it was cut
+/// from, so that the leaves of a primitive together hold every answer that lies on it.
+template <PrimitiveSet P>
+class SpatialSplitter : public BinnedSplitter<typename P::Scalar, P::dimension> {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+    using Base = BinnedSplitter<T, D>;
+
+    /// `duplicates`: how many references may be added, as a share of the primitives. `overlap`: a plane is
+    /// only tried where the boxes of the best split of objects overlap by more than that share of the root's
+    /// area (the paper's α).
+    SpatialSplitter(const P& set, ReferenceList<T, D> references, const SahOptions& options,
+                    double duplicates, double overlap)
+        : Base(std::move(references), options), set_(set), size_(this->references_.size()) {
+        auto scene = LaneBox<T>::none();
+        for (const auto& r : this->references_) scene.expand(r.lanes());
+        if (size_ > 0) {
+            margin_ = cell_margin(scene.template box<D>());
+            worth_a_plane_ = overlap * static_cast<double>(scene.template half_area<D>());
+        }
+        const auto room = static_cast<std::size_t>(duplicates * static_cast<double>(size_));
+        this->references_.resize(std::min<std::size_t>(size_ + room, 0x80000000u), Reference<T, D>({}, 0));
+    }
+
+    Range<T, D> root() const {
+        auto all = Range<T, D>::over(this->references_, 0, static_cast<std::uint32_t>(size_));
+        all.room = static_cast<std::uint32_t>(this->references_.size() - size_);
+        return all;
+    }
+
+    bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
+        typename Base::Bins bins;
+        const auto binning = this->fill(bins, range);
+        const auto objects = this->cheapest(bins, binning.count, range.size());
+        Plane plane;
+        if (range.room > 0 && overlap_of(bins, binning.count, objects) >= worth_a_plane_)
+            plane = cheapest_plane(range);
+        const double cost = std::min(objects.cost, plane.cost);
+        if (!(cost < std::numeric_limits<double>::infinity()) || this->cheaper_as_leaf(range, cost))
+            return false;
+        if (plane.cost < objects.cost && cut(range, plane, left, right)) return true;
+        if (objects.axis < 0) return false;
+        this->divide(range, binning, bins, objects, left, right);
+        return true;
+    }
+
+private:
+    struct Plane {
+        double cost = std::numeric_limits<double>::infinity();
+        int axis = -1;
+        T position = T(0);
+        LaneBox<T> left = LaneBox<T>::none(), right = LaneBox<T>::none();
+        std::uint32_t on_left = 0, on_right = 0;
+    };
+    /// What lies between two planes across an axis: the parts there, and which primitives begin and end.
+    struct Slab {
+        LaneBox<T> box = LaneBox<T>::none();
+        std::uint32_t begin = 0, end = 0;
+    };
+    static constexpr int most_slabs = 32;
+
+    double overlap_of(const typename Base::Bins& bins, int count, const typename Base::Best& best) const {
+        if (best.axis < 0) return std::numeric_limits<double>::infinity();
+        const auto [left, right] = Base::sides(bins, count, best);
+        const Box<T, D> shared = intersection(left.template box<D>(), right.template box<D>());
+        return shared.empty() ? 0 : static_cast<double>(shared.half_area());
+    }
+
+    /// The parts of a reference on the sides of a plane. Either may be empty.
+    std::pair<Reference<T, D>, Reference<T, D>> parts(const Reference<T, D>& r, int axis, T position) const {
+        Box<T, D> low = r.box(), high = low;
+        low.high[axis] = std::min(low.high[axis], position + margin_);
+        high.low[axis] = std::max(high.low[axis], position - margin_);
+        return {{part_in_box(r, low), r.id()}, {part_in_box(r, high), r.id()}};
+    }
+    Box<T, D> part_in_box(const Reference<T, D>& r, const Box<T, D>& box) const {
+        const Box<T, D> part = part_in(set_, r.id(), box);
+        return part.empty() ? part : intersection(enlarged(part, margin_), box);
+    }
+
+    /// Of equal slabs along each axis the border of least cost that the room allows.
+    Plane cheapest_plane(const Range<T, D>& range) const {
+        Plane best;
+        const Box<T, D> box = range.box.template box<D>();
+        const int count = std::min(most_slabs, 4 + static_cast<int>(std::min(range.size() / 20, 64u)));
+        for (int axis = 0; axis < D; ++axis) {
+            const T width = (box.high[axis] - box.low[axis]) / T(count);
+            if (!(width > 8 * margin_)) continue;
+            std::array<Slab, most_slabs> slabs;
+            const auto border = [&](int i) { return box.low[axis] + product(T(i), width); };
+            const auto slab = [&](T x) {
+                return std::clamp(static_cast<int>((x - box.low[axis]) / width), 0, count - 1);
+            };
+            for (std::uint32_t i = range.first; i < range.last; ++i)
+                enter(this->references_[i], axis, slab, border, slabs);
+            sweep(range, axis, count, border, slabs, best);
+        }
+        return best;
+    }
+    /// Chops a reference at each border that it crosses.
+    template <class SlabOf, class Border>
+    void enter(const Reference<T, D>& whole, int axis, SlabOf slab, Border border,
+               std::array<Slab, most_slabs>& slabs) const {
+        Reference<T, D> rest = whole;
+        auto at = static_cast<std::size_t>(slab(rest.low[axis]));
+        const auto last = static_cast<std::size_t>(slab(rest.high[axis]));
+        ++slabs[at].begin;
+        ++slabs[last].end;
+        for (; at < last; ++at) {
+            const auto [left, right] = parts(rest, axis, border(static_cast<int>(at) + 1));
+            if (!left.box().empty()) slabs[at].box.expand(left.lanes());
+            rest = right;
+            if (rest.box().empty()) return;
+        }
+        slabs[at].box.expand(rest.lanes());
+    }
+    template <class Border>
+    static void sweep(const Range<T, D>& range, int axis, int count, Border border,
+                      const std::array<Slab, most_slabs>& slabs, Plane& best) {
+        std::array<LaneBox<T>, most_slabs> right_box;
+        auto box = LaneBox<T>::none();
+        for (auto b = static_cast<std::size_t>(count); b-- > 1;) {
+            box.expand(slabs[b].box);
+            right_box[b] = box;
+        }
+        Plane p{0, axis, T(0), LaneBox<T>::none(), LaneBox<T>::none(), 0, range.size()};
+        for (std::size_t b = 1; b < static_cast<std::size_t>(count); ++b) {
+            p.left.expand(slabs[b - 1].box);
+            p.on_left += slabs[b - 1].begin;
+            p.on_right -= slabs[b - 1].end;
+            if (p.on_left == 0 || p.on_right == 0 || p.on_left + p.on_right > range.capacity()) continue;
+            p.right = right_box[b];
+            p.cost = Base::cost(p.left, p.on_left) + Base::cost(p.right, p.on_right);
+            p.position = border(static_cast<int>(b));
+            if (p.cost < best.cost) best = p;
+        }
+    }
+
+    /// Brings what lies wholly left before what lies wholly right, and straddlers to one side or both. False,
+    /// and the references are only reordered, if all end on one side.
+    bool cut(const Range<T, D>& range, const Plane& plane, Range<T, D>& left, Range<T, D>& right) {
+        auto& all = this->references_;
+        std::uint32_t last = range.last, end = range.last;
+        left = right = {};
+        for (std::uint32_t i = range.first; i < last;) {
+            const Reference<T, D> r = all[i];
+            int sides = sides_of(r, plane);
+            // Rounding may find more straddlers than the slabs had counted.
+            if (sides == both && end == range.first + range.capacity()) sides = only_left;
+            if (sides == both) {
+                const auto [low, high] = parts(r, plane.axis, plane.position);
+                left.add(low), right.add(high);
+                all[i++] = low;
+                all[end++] = high;
+            } else if (sides == only_left) {
+                left.add(r);
+                ++i;
+            } else {
+                right.add(r);
+                std::swap(all[i], all[--last]);
+            }
+        }
+        left.first = range.first, left.last = right.first = last, right.last = end;
+        return left.size() > 0 && right.size() > 0;
+    }
+    static constexpr int only_left = 1, only_right = 2, both = 3;
+    int sides_of(const Reference<T, D>& r, const Plane& plane) const {
+        if (r.high[plane.axis] <= plane.position) return only_left;
+        if (r.low[plane.axis] >= plane.position) return only_right;
+        const auto [low, high] = parts(r, plane.axis, plane.position);
+        if (low.box().empty()) return only_right;
+        if (high.box().empty()) return only_left;
+        const auto with = [&](LaneBox<T> box) {
+            box.expand(r.lanes());
+            return box;
+        };
+        const double to_left =
+            Base::cost(with(plane.left), plane.on_left) + Base::cost(plane.right, plane.on_right - 1);
+        const double to_right =
+            Base::cost(plane.left, plane.on_left - 1) + Base::cost(with(plane.right), plane.on_right);
+        if (plane.cost <= std::min(to_left, to_right)) return both;
+        return to_left <= to_right ? only_left : only_right;
+    }
+
+    const P& set_;
+    std::size_t size_;
+    T margin_ = T(0);
+    double worth_a_plane_ = 0;
+};
+
+}  // namespace hedgerow
