@@ -21,6 +21,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "bvh:builder=ploc",
                                              "bvh:builder=agglomerative",
                                              "bvh:builder=ploc,reinsertion=3",
+                                             "bvh:builder=spatial-splits",
                                              "kdtree",
                                              "kdtree:builder=binned",
                                              "grid",
@@ -29,6 +30,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "bsp",
                                              "bvh:ordered=off,culling=off",
                                              "bvh:max_leaf_size=1",
+                                             "bvh:builder=spatial-splits,overlap=0,duplicates=3,max_leaf_size=1",
                                              "kdtree:builder=median",
                                              "kdtree:builder=midpoint,leaf_size=1",
                                              "kdtree:mailbox=off,intersection_cost=100",
@@ -40,7 +42,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "bsp:samples=4,leaf_size=3,plane_cost=1",
                                              "octree:max_depth=3,mailbox=off",
                                              "brute-force:box=on"};
-inline constexpr std::size_t fast_structures = 14;
+inline constexpr std::size_t fast_structures = 15;
 
 /// What is called that in space, among sets of P.
 template <class P>

@@ -84,17 +84,13 @@ public:
     ///   index.insert(cloud, 3);
     template <class Set>
     bool insert(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
-        return change(set, [&](const P& now) {
-            if (!structure_.insert(now, id)) return false;
-            if constexpr (packs) now.pack(id, leaves_);
-            return true;
-        });
+        return change(set, id, [&](const P& now) { return structure_.insert(now, id); });
     }
     /// Lets go of primitive `id`, which must still be as it was inserted. False, and nothing is changed, if
     /// it is not held.
     template <class Set>
     bool erase(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
-        return change(set, [&](const P& now) { return structure_.erase(now, id); });
+        return change(set, id, [&](const P& now) { return structure_.erase(now, id); });
     }
     /// After borrowed primitives moved where they lie: fits the structure to them, and returns how far its
     /// quality has drifted, as a multiple of its cost when it was built. O(n). No query may run meanwhile.
@@ -148,10 +144,17 @@ private:
     }
 
     template <class Set, class F>
-    bool change(const Set& set, F f) {
+    bool change(const Set& set, PrimitiveId id, F f) {
         static_assert(std::same_as<ViewOf<Set>, P>, "the kind of primitives that the index was built over");
         primitives_ = view_of(set);
-        return in_ieee_mode([&] { return f(primitives_); });
+        if (!in_ieee_mode([&] { return f(primitives_); })) return false;
+        if constexpr (packs && S::packed_order == PackedOrder::of_ids) {
+            if (structure_.holds(id)) primitives_.pack(id, id, leaves_);
+        } else if constexpr (packs) {
+            for (const auto place : structure_.places_changed())
+                primitives_.pack(structure_.items()[place], place, leaves_);
+        }
+        return true;
     }
 
     struct Nothing {};

@@ -99,10 +99,11 @@ public:
         });
         return packed;
     }
-    /// One triangle anew, which may be beyond what was packed. O(1), amortized.
-    void pack(PrimitiveId id, PackedTriangles<T, PackedOrder::of_ids>& packed) const {
-        packed.reach(id);
-        packed.set(id, triangle(id), id);
+    /// One triangle into a place of its own, which may be beyond what was packed. O(1), amortized.
+    template <PackedOrder order>
+    void pack(PrimitiveId id, std::size_t place, PackedTriangles<T, order>& packed) const {
+        packed.reach(place);
+        packed.set(place, triangle(id), id);
     }
 
 private:

@@ -17,7 +17,7 @@ public:
         bool box = false;
     };
     /// Each primitive stands in `items` once.
-    static constexpr auto packed_order = PackedOrder::of_leaves;
+    static constexpr auto packed_order = PackedOrder::of_ids;
     static constexpr bool exclusive() { return true; }
 
     template <PrimitiveSet P>
@@ -51,6 +51,7 @@ public:
                   Leaf{items_.data(), 0, static_cast<std::uint32_t>(items_.size())}, query);
     }
 
+    bool holds(PrimitiveId id) const { return std::binary_search(items_.begin(), items_.end(), id); }
     /// Takes up primitive `id`: false if it is held. As Orthtree, whose oracle this is; but O(n).
     template <PrimitiveSet P>
     bool insert(const P& set, PrimitiveId id) {

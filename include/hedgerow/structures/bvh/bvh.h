@@ -1,22 +1,21 @@
 /// Binary bounding volume hierarchy, as it is walked: a node holds the boxes of its two children.
 #pragma once
 
-#include <hedgerow/geometry/box_pair.h>
+#include <optional>
+
 #include <hedgerow/structures/bvh/builders/build.h>
-#include <hedgerow/structures/walk_volumes.h>
+#include <hedgerow/structures/bvh/editor.h>
 
 namespace hedgerow {
 
-/// Nodes lie in depth-first order, so that a left child follows its parent. Memory: a node is 64 bytes
+/// Nodes lie in depth-first order, so that a left child follows its parent, until single primitives are
+/// inserted or erased (editor.h). Memory: a node is 64 bytes
 /// (float, 3D), 112 (double), and there are (leaves − 1) of them; items are 4 bytes a primitive.
 template <std::floating_point T, int D>
 class Bvh {
 public:
     using Options = BvhOptions;
-    struct alignas(D == 3 && sizeof(T) == 4 ? 64 : 16) Node {  // a cache line, where it fits
-        BoxPair<T, D> boxes;
-        NodeRef child[2];
-    };
+    using Node = BvhNode<T, D>;
     static constexpr auto packed_order = PackedOrder::of_leaves;
     static constexpr int width = 2;
     static constexpr int max_depth = bvh_max_depth;
@@ -27,25 +26,34 @@ public:
     }
 
     /// Whether each primitive stands in one leaf: always but after spatial splits.
-    bool exclusive() const { return items_.size() == count_; }
-    const Box<T, D>& bounds() const { return bounds_; }
-    std::span<const PrimitiveId> items() const { return items_; }
+    bool exclusive() const { return exclusive_; }
+    const Box<T, D>& bounds() const { return tree_.bounds; }
+    std::span<const PrimitiveId> items() const { return tree_.items; }
+    /// What changes ask for included: 1 byte a node, 1 bit a primitive.
     std::size_t bytes() const {
-        return nodes_.capacity() * sizeof(Node) + items_.capacity() * sizeof(PrimitiveId);
+        return tree_.nodes.capacity() * sizeof(Node) + tree_.items.capacity() * sizeof(PrimitiveId) +
+               (edits_ ? edits_->bytes() : 0);
     }
-    std::size_t node_count() const { return 2 * nodes_.size() + (root_.empty() ? 0 : 1); }
-    std::size_t leaf_count() const { return root_.empty() ? 0 : nodes_.size() + 1; }
-    int depth() const { return depth_; }
+    /// NodeIds are below it.
+    std::size_t node_count() const { return 2 * tree_.nodes.size() + (tree_.root.empty() ? 0 : 1); }
+    std::size_t leaf_count() const {
+        return tree_.root.empty() ? 0 : tree_.nodes.size() - (edits_ ? edits_->free_nodes.size() : 0) + 1;
+    }
+    std::size_t item_count() const { return tree_.items.size() - (edits_ ? edits_->free_items.size() : 0); }
+    int depth() const {
+        if (!edits_) return depth_;
+        return tree_.root.empty() ? 0 : tree_.root.leaf() ? 1 : edits_->height[tree_.root.first] + 1;
+    }
     const Options& options() const { return options_; }
 
     // What the walk and `fold` ask.
-    NodeRef root() const { return root_; }
-    const BoxPair<T, D>& volumes(NodeRef r) const { return nodes_[r.first].boxes; }
-    NodeRef child(NodeRef r, int i) const { return nodes_[r.first].child[i]; }
-    Leaf leaf(NodeRef r) const { return {items_.data(), r.first, r.count}; }
+    NodeRef root() const { return tree_.root; }
+    const BoxPair<T, D>& volumes(NodeRef r) const { return tree_.nodes[r.first].boxes; }
+    NodeRef child(NodeRef r, int i) const { return tree_.nodes[r.first].child[i]; }
+    Leaf leaf(NodeRef r) const { return {tree_.items.data(), r.first, r.count}; }
     /// The far child is most often opened soon: its cache miss may pass while the near one is walked.
     void prefetch(NodeRef r) const {
-        if (!r.leaf()) __builtin_prefetch(nodes_.data() + r.first);
+        if (!r.leaf()) __builtin_prefetch(tree_.nodes.data() + r.first);
     }
     static NodeId child_id(NodeRef parent, int i) { return 2 * parent.first + 1 + static_cast<NodeId>(i); }
 
@@ -65,11 +73,12 @@ public:
     /// Expected cost of a random line that meets the root's box, by the SAH. A box without area meets no such
     /// line; then every node counts as met.
     double sah_cost() const {
-        const double whole = static_cast<double>(bounds_.half_area());
-        if (root_.leaf() || root_.empty()) return options_.leaf_cost(root_.count, 1);
+        const double whole = static_cast<double>(tree_.bounds.half_area());
+        if (tree_.root.leaf() || tree_.root.empty()) return options_.leaf_cost(tree_.root.count, 1);
         double cost = options_.traversal_cost;
-        for (const Node& n : nodes_)
+        for (const Node& n : tree_.nodes)
             for (int i = 0; i < 2; ++i) {
+                if (n.child[i].empty()) break;  // a place that waits
                 const double share = whole > 0 ? static_cast<double>(n.boxes[i].half_area()) / whole : 1;
                 cost += n.child[i].leaf() ? options_.leaf_cost(n.child[i].count, share)
                                           : options_.traversal_cost * share;
@@ -77,11 +86,49 @@ public:
         return cost;
     }
 
+    /// How many primitives are held, and whether one is.
+    std::size_t size() const { return edits_ ? edits_->count : count_; }
+    bool holds(PrimitiveId id) const {
+        return edits_ ? id < edits_->held.size() && edits_->held[id] : id < count_;
+    }
+    /// Takes up primitive `id` of the set: false, and nothing is changed, if it is held already. Throws
+    /// InputError, and changes nothing, if the set has no such primitive or it is bad. `count` is told of the
+    /// nodes opened.
+    template <PrimitiveSet P, class Count>
+    bool insert(const P& set, PrimitiveId id, Count& count) {
+        const Box<T, D> box = reference_of(set, id).box();
+        if (holds(id)) return false;
+        editor().insert(id, box, count);
+        return true;
+    }
+    template <PrimitiveSet P>
+    bool insert(const P& set, PrimitiveId id) {
+        NoVisits none;
+        return insert(set, id, none);
+    }
+    /// Lets go of primitive `id`, which must be as it was when it was inserted: false, and nothing is
+    /// changed, if it is not held.
+    template <PrimitiveSet P, class Count>
+    bool erase(const P& set, PrimitiveId id, Count& count) {
+        if (!holds(id)) return false;
+        const Box<T, D> box = reference_of(set, id).box();
+        editor().erase(set, id, box, exclusive_, count);
+        return true;
+    }
+    template <PrimitiveSet P>
+    bool erase(const P& set, PrimitiveId id) {
+        NoVisits none;
+        return erase(set, id, none);
+    }
+    /// Where in `items` the last insertion or erasure put something else.
+    std::span<const std::uint32_t> places_changed() const { return edits_->placed; }
+
     /// Fits all boxes to primitives that have moved: `references` are those of the same ids as at the build.
     /// The tree stays as it is. O(n), parallel over subtrees, allocates nothing.
     void refit(std::span<const Reference<T, D>> references, Executor& executor) {
         if (built_cost_ < 0) built_cost_ = sah_cost();
-        if (!root_.empty()) bounds_ = refitted(root_, nodes_.size(), references, executor).template box<D>();
+        if (!tree_.root.empty())
+            tree_.bounds = refitted(tree_.root, tree_.nodes.size(), references, executor).template box<D>();
     }
     /// How much worse the tree is for where the primitives are now than when it was built: its SAH cost as a
     /// multiple of what it was then. 1 before any refit; less, where motion happened to suit the tree.
@@ -92,39 +139,51 @@ public:
     std::string validate(const P& set) const {
         std::vector<std::uint8_t> seen(set.size());
         std::string fault;
+        if (edits_ ? edits_->held.size() > set.size() : count_ != set.size())
+            return "not built over these primitives";
         const auto visit = [&](auto& self, NodeRef r, const Box<T, D>& box, int depth) -> void {
             if (!fault.empty()) return;
             if (depth > max_depth) fault = "deeper than its bound";
             if (r.leaf()) {
                 for (std::uint32_t i = r.first; i < r.first + r.count; ++i) {
-                    if (i >= items_.size() || items_[i] >= seen.size() ||
-                        (seen[items_[i]]++ != 0 && exclusive()))
+                    if (i >= tree_.items.size() || tree_.items[i] >= seen.size() ||
+                        (seen[tree_.items[i]]++ != 0 && exclusive()))
                         fault = "an item is missing or held twice";
-                    else if (exclusive() ? !box.contains(set.bounds(items_[i]))
-                                         : !overlap(box, set.bounds(items_[i])))
+                    else if (exclusive() ? !box.contains(set.bounds(tree_.items[i]))
+                                         : !overlap(box, set.bounds(tree_.items[i])))
                         fault = "a primitive reaches out of its leaf's box";
                 }
                 return;
             }
-            if (r.first >= nodes_.size()) return void(fault = "a child that is not there");
+            if (r.first >= tree_.nodes.size()) return void(fault = "a child that is not there");
             for (int i = 0; i < 2; ++i) {
                 if (!box.contains(volumes(r)[i])) fault = "a node reaches out of its parent's box";
                 self(self, child(r, i), volumes(r)[i], depth + 1);
             }
         };
-        if (!root_.empty()) visit(visit, root_, bounds_, 1);
-        for (const auto s : seen)
-            if (s == 0 && fault.empty()) fault = "a primitive is in no leaf";
+        if (!tree_.root.empty()) visit(visit, tree_.root, tree_.bounds, 1);
+        for (std::size_t i = 0; i < seen.size() && fault.empty(); ++i) {
+            if (holds(static_cast<PrimitiveId>(i)) && seen[i] == 0) fault = "a primitive is in no leaf";
+            if (!holds(static_cast<PrimitiveId>(i)) && seen[i] != 0) fault = "an item that is not held";
+        }
         return fault;
     }
 
 private:
     Bvh(BuildTree<T, D> tree, std::size_t count, const Options& options, Executor& executor)
-        : options_(options), items_(std::move(tree.items)), count_(count) {
-        if (items_.empty()) return;
-        bounds_ = tree.nodes[0].box();
-        nodes_.resize(tree.leaves - 1);
-        depth_ = pack(tree, 0, 0, root_, executor);
+        : options_(options), count_(count), exclusive_(tree.items.size() == count) {
+        tree_.items = std::move(tree.items);
+        if (tree_.items.empty()) return;
+        tree_.bounds = tree.nodes[0].box();
+        tree_.nodes.resize(tree.leaves - 1);
+        depth_ = pack(tree, 0, 0, tree_.root, executor);
+    }
+    BvhEditor<T, D> editor() {
+        const bool first = !edits_;
+        if (first) edits_.emplace();
+        BvhEditor<T, D> editor(tree_, *edits_);
+        if (first) editor.begin(count_);
+        return editor;
     }
     /// The subtree into the places from `at` on; returns its depth.
     int pack(const BuildTree<T, D>& tree, std::uint32_t from, std::uint32_t at, NodeRef& ref,
@@ -132,7 +191,7 @@ private:
         const BuildNode<T, D>& n = tree.nodes[from];
         ref = {n.count > 0 ? n.first : at, n.count};
         if (n.count > 0) return 1;
-        Node& node = nodes_[at];
+        Node& node = tree_.nodes[at];
         node.boxes.set(0, tree.nodes[n.left].box());
         node.boxes.set(1, tree.nodes[n.right].box());
         int left = 0, right = 0;
@@ -155,15 +214,15 @@ private:
         auto box = LaneBox<T>::none();
         if (ref.leaf()) {
             for (std::uint32_t i = ref.first; i < ref.first + ref.count; ++i)
-                box.expand(references[items_[i]].lanes());
+                box.expand(references[tree_.items[i]].lanes());
             return box;
         }
-        Node& node = nodes_[ref.first];
+        Node& node = tree_.nodes[ref.first];
         const std::size_t right_at = node.child[1].leaf() ? end : node.child[1].first;
         LaneBox<T> left, right;
         const auto fit_left = [&] { left = refitted(node.child[0], right_at, references, executor); };
         const auto fit_right = [&] { right = refitted(node.child[1], end, references, executor); };
-        if (end - ref.first > 4096) {
+        if (end > ref.first + std::size_t(4096)) {
             executor.both(fit_left, fit_right);
         } else {
             fit_left();
@@ -176,13 +235,12 @@ private:
     }
 
     Options options_;
-    Box<T, D> bounds_;
-    NodeRef root_;
-    BareVector<Node> nodes_;
-    std::vector<PrimitiveId> items_;
-    std::size_t count_ = 0;  // of the primitives
+    BvhTree<T, D> tree_;
+    std::size_t count_ = 0;  // of the primitives, when it was built
+    bool exclusive_ = true;
     int depth_ = 0;
-    double built_cost_ = -1;  // not asked for before the first refit
+    std::optional<BvhEdits> edits_;  // none before the first change
+    double built_cost_ = -1;         // not asked for before the first refit
 };
 
 }  // namespace hedgerow

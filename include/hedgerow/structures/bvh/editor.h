@@ -1,0 +1,282 @@
+/// Single primitives in and out of a BVH.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+#include <hedgerow/geometry/box_pair.h>
+#include <hedgerow/structures/bvh/build_tree.h>
+#include <hedgerow/structures/walk_volumes.h>
+
+namespace hedgerow {
+
+template <std::floating_point T, int D>
+struct alignas(D == 3 && sizeof(T) == 4 ? 64 : 16) BvhNode {  // a cache line, where it fits
+    BoxPair<T, D> boxes;
+    NodeRef child[2];
+};
+
+/// What a BVH is walked by.
+template <std::floating_point T, int D>
+struct BvhTree {
+    NodeRef root;
+    Box<T, D> bounds;
+    BareVector<BvhNode<T, D>> nodes;
+    std::vector<PrimitiveId> items;
+};
+
+/// What changes need to know of a BVH beside that: made by the first one, O(n).
+struct BvhEdits {
+    std::vector<bool> held;                 // by primitive
+    std::size_t count = 0;                  // of those held
+    std::vector<std::uint8_t> height;       // by node: 1 over two leaves
+    std::vector<std::uint32_t> free_nodes;  // places in the lists that wait for their next use
+    std::vector<std::uint32_t> free_items;
+    std::vector<std::uint32_t> placed;  // where in `items` the last change put something else
+
+    std::size_t bytes() const {
+        return held.capacity() / 8 + height.capacity() +
+               4 * (free_nodes.capacity() + free_items.capacity() + placed.capacity());
+    }
+};
+
+/// An insertion goes down to where a new leaf costs the least by the SAH: at each node, over all of it or in
+/// the child whose boxes grow the least (Goldsmith and Salmon 1987, greedily as Catto, Dynamic bounding
+/// volume hierarchies, GDC 2019). An erasure looks into each child whose box meets the primitive's, and joins
+/// what is left. Where a tree would grow too deep, the lowest subtree is built anew that is more than twice
+/// as high as a balanced one (as in scapegoat trees, Galperin and Rivest 1993): O(log n) amortized.
+template <std::floating_point T, int D>
+class BvhEditor {
+public:
+    using Node = BvhNode<T, D>;
+
+    BvhEditor(BvhTree<T, D>& tree, BvhEdits& edits) : tree_(tree), edits_(edits) {}
+
+    /// Before the first change, of a tree over `count` primitives that are all held.
+    void begin(std::size_t count) {
+        edits_.held.assign(count, true);
+        edits_.count = count;
+        edits_.height.assign(tree_.nodes.size(), 0);
+        measure(tree_.root);
+    }
+
+    template <class Count>
+    void insert(PrimitiveId id, const Box<T, D>& box, Count& count) {
+        edits_.placed.clear();
+        if (id >= edits_.held.size()) edits_.held.resize(std::size_t(id) + 1);
+        edits_.held[id] = true;
+        ++edits_.count;
+        const std::vector<Place> path = path_to_cheapest(box, count);
+        put(path.back(), new_leaf(id), box);
+        tree_.bounds.expand(box);
+        for (std::size_t i = path.size(); i-- > 1;) {
+            Node& n = tree_.nodes[path[i].node];
+            n.boxes.set(path[i].child, merged(n.boxes[path[i].child], box));
+            set_height(path[i].node);
+        }
+        if (height_of(tree_.root) >= bvh_max_depth) balance(path);
+    }
+    /// From a tree that holds each primitive once, or from one that may hold its parts.
+    template <PrimitiveSet P, class Count>
+    void erase(const P& set, PrimitiveId id, const Box<T, D>& box, bool exclusive, Count& count) {
+        edits_.placed.clear();
+        edits_.held[id] = false;
+        --edits_.count;
+        const auto from = [&](auto& self, NodeRef& ref, const Box<T, D>& whole) -> Box<T, D> {
+            if (ref.leaf()) {
+                count.leaf(ref.count);
+                return erase_from_leaf(set, ref, whole, id, exclusive);
+            }
+            count.node();
+            Node& n = tree_.nodes[ref.first];
+            for (int i = 0; i < 2; ++i) {
+                const Box<T, D> child = n.boxes[i];
+                if (exclusive ? child.contains(box) : overlap(child, box))
+                    n.boxes.set(i, self(self, n.child[i], child));
+            }
+            for (const int i : {0, 1})
+                if (n.child[i].empty()) {
+                    const NodeRef left = n.child[1 - i];
+                    free_node(ref.first);
+                    ref = left;
+                    return n.boxes[1 - i];
+                }
+            set_height(ref.first);
+            return merged(n.boxes[0], n.boxes[1]);
+        };
+        tree_.bounds = from(from, tree_.root, tree_.bounds);
+    }
+
+private:
+    /// A child by its parent; the root's parent is nobody.
+    struct Place {
+        std::uint32_t node;
+        int child;
+    };
+    struct Part {
+        NodeRef ref;
+        Box<T, D> box;
+    };
+    static constexpr std::uint32_t nobody = NodeRef::nowhere;
+
+    NodeRef& ref_at(Place p) { return p.node == nobody ? tree_.root : tree_.nodes[p.node].child[p.child]; }
+    Box<T, D> box_at(Place p) const {
+        return p.node == nobody ? tree_.bounds : tree_.nodes[p.node].boxes[p.child];
+    }
+    int height_of(NodeRef r) const { return r.leaf() ? 0 : edits_.height[r.first]; }
+    void set_height(std::uint32_t node) {
+        const Node& n = tree_.nodes[node];
+        edits_.height[node] =
+            static_cast<std::uint8_t>(1 + std::max(height_of(n.child[0]), height_of(n.child[1])));
+    }
+    void measure(NodeRef r) {
+        if (r.empty() || r.leaf()) return;
+        for (const NodeRef child : tree_.nodes[r.first].child) measure(child);
+        set_height(r.first);
+    }
+
+    NodeRef new_leaf(PrimitiveId id) {
+        std::uint32_t at;
+        if (edits_.free_items.empty()) {
+            at = static_cast<std::uint32_t>(tree_.items.size());
+            tree_.items.push_back(id);
+        } else {
+            at = edits_.free_items.back();
+            edits_.free_items.pop_back();
+            tree_.items[at] = id;
+        }
+        edits_.placed.push_back(at);
+        return {at, 1};
+    }
+    std::uint32_t new_node() {
+        if (!edits_.free_nodes.empty()) {
+            const std::uint32_t at = edits_.free_nodes.back();
+            edits_.free_nodes.pop_back();
+            return at;
+        }
+        tree_.nodes.emplace_back();
+        edits_.height.push_back(0);
+        return static_cast<std::uint32_t>(tree_.nodes.size() - 1);
+    }
+
+    void free_node(std::uint32_t node) {
+        tree_.nodes[node].child[0] = tree_.nodes[node].child[1] = NodeRef();
+        edits_.free_nodes.push_back(node);
+    }
+
+    /// Places from the root down to the one where a new leaf is put beside what stands there.
+    template <class Count>
+    std::vector<Place> path_to_cheapest(const Box<T, D>& box, Count& count) {
+        std::vector<Place> path = {{nobody, 0}};
+        while (true) {
+            const NodeRef ref = ref_at(path.back());
+            if (ref.empty() || ref.leaf()) return path;
+            count.node();
+            const Node& n = tree_.nodes[ref.first];
+            const Box<T, D> whole = box_at(path.back());
+            double least = area(merged(whole, box));  // of a new node over all of this
+            const double growth = least - area(whole);
+            int cheapest = -1;
+            for (int i = 0; i < 2; ++i) {
+                // This node's box grows; the child's too, or over a leaf there is a new node.
+                const double with = area(merged(n.boxes[i], box));
+                const double cost = growth + with - (n.child[i].leaf() ? 0 : area(n.boxes[i]));
+                if (cost < least) least = cost, cheapest = i;
+            }
+            if (cheapest < 0) return path;
+            path.push_back({ref.first, cheapest});
+        }
+    }
+    void put(Place at, NodeRef leaf, const Box<T, D>& box) {
+        const NodeRef beside = ref_at(at);
+        const NodeRef joined = beside.empty() ? leaf : join({beside, box_at(at)}, {leaf, box}).ref;
+        ref_at(at) = joined;  // once the list of nodes has grown
+    }
+    Part join(const Part& a, const Part& b) {
+        const std::uint32_t node = new_node();
+        Node& n = tree_.nodes[node];
+        n.child[0] = a.ref, n.child[1] = b.ref;
+        n.boxes.set(0, a.box), n.boxes.set(1, b.box);
+        set_height(node);
+        return {{node, 0}, merged(a.box, b.box)};
+    }
+
+    /// The box of what is left.
+    template <PrimitiveSet P>
+    Box<T, D> erase_from_leaf(const P& set, NodeRef& ref, const Box<T, D>& whole, PrimitiveId id,
+                              bool exclusive) {
+        const auto begin = tree_.items.begin() + ref.first, end = begin + ref.count;
+        const auto found = std::find(begin, end, id);
+        if (found == end) return whole;
+        if (*found != *(end - 1)) {
+            *found = *(end - 1);
+            edits_.placed.push_back(static_cast<std::uint32_t>(found - tree_.items.begin()));
+        }
+        edits_.free_items.push_back(ref.first + ref.count - 1);
+        if (--ref.count == 0) {
+            ref = NodeRef();
+            return {};
+        }
+        if (!exclusive) return whole;
+        Box<T, D> left;
+        for (std::uint32_t i = 0; i < ref.count; ++i) left.expand(set.bounds(tree_.items[ref.first + i]));
+        return left;
+    }
+
+    /// Builds the lowest subtree on the path anew that is too high for its leaves.
+    void balance(const std::vector<Place>& path) {
+        std::vector<Part> leaves;
+        NodeRef gathered;
+        for (std::size_t i = path.size(); i-- > 0;) {
+            const NodeRef ref = ref_at(path[i]);
+            if (ref.leaf()) continue;
+            gather(ref, gathered, leaves);
+            gathered = ref;
+            if (height_of(ref) <= 2 * static_cast<int>(std::bit_width(leaves.size())) + 1) continue;
+            free_nodes_of(ref);
+            const NodeRef anew = balanced(leaves).ref;
+            ref_at(path[i]) = anew;
+            for (std::size_t above = i; above > 0; --above) set_height(path[above].node);
+            return;
+        }
+    }
+    /// The leaves below, but for a subtree whose leaves are there already.
+    void gather(NodeRef ref, NodeRef but, std::vector<Part>& leaves) const {
+        const Node& n = tree_.nodes[ref.first];
+        for (int i = 0; i < 2; ++i) {
+            if (n.child[i].leaf())
+                leaves.push_back({n.child[i], n.boxes[i]});
+            else if (n.child[i].first != but.first)
+                gather(n.child[i], but, leaves);
+        }
+    }
+    void free_nodes_of(NodeRef ref) {
+        for (const NodeRef child : {tree_.nodes[ref.first].child[0], tree_.nodes[ref.first].child[1]})
+            if (!child.leaf()) free_nodes_of(child);
+        free_node(ref.first);
+    }
+    /// Halved by the middles of their boxes on the widest axis.
+    Part balanced(std::span<Part> leaves) {
+        if (leaves.size() == 1) return leaves[0];
+        Box<T, D> centers;
+        for (const Part& p : leaves) centers.expand(p.box.center());
+        const int axis = max_axis(centers.extent());
+        const std::size_t half = leaves.size() / 2;
+        std::nth_element(leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(half), leaves.end(),
+                         [axis](const Part& a, const Part& b) {
+                             const T x = a.box.center()[axis], y = b.box.center()[axis];
+                             return x != y ? x < y : a.ref.first < b.ref.first;
+                         });
+        const Part low = balanced(leaves.first(half));
+        return join(low, balanced(leaves.subspan(half)));
+    }
+
+    static Box<T, D> merged(Box<T, D> a, const Box<T, D>& b) { return a.expand(b); }
+    static double area(const Box<T, D>& b) { return static_cast<double>(b.half_area()); }
+
+    BvhTree<T, D>& tree_;
+    BvhEdits& edits_;
+};
+
+}  // namespace hedgerow
