@@ -1,0 +1,290 @@
+/// Structures that change: what is inserted, erased and moved one by one is answered as by brute force; bad
+/// changes change nothing; depth and the cost of a change are bounded.
+#include <array>
+#include <limits>
+
+#include "changes.h"
+
+using namespace hedgerow;
+using namespace hedgerow::changes;
+namespace gen = rc::gen;
+
+namespace {
+
+template <template <class, int> class S, class P>
+struct Kind {
+    template <class T, int D>
+    using Structure = S<T, D>;
+    using Set = P;
+};
+template <class K>
+using BothOf = Both<K::template Structure, typename K::Set>;
+template <class K>
+using OptionsOf = typename BothOf<K>::Tree::Options;
+
+template <class K>
+class OfEveryKind : public testing::Test {};
+using Kinds = testing::Types<Kind<Orthtree, TriangleMesh<float>>, Kind<Orthtree, TriangleMesh<double>>,
+                             Kind<Orthtree, SphereSet<float, 3>>, Kind<Orthtree, SphereSet<double, 3>>,
+                             Kind<Orthtree, SegmentSet<float>>, Kind<Orthtree, SegmentSet<double>>,
+                             Kind<Orthtree, PointCloud<float, 3>>, Kind<Orthtree, PointCloud<double, 3>>,
+                             Kind<Orthtree, PointCloud<float, 2>>, Kind<Orthtree, PointCloud<double, 2>>,
+                             Kind<Bvh, TriangleMesh<float>>, Kind<Bvh, TriangleMesh<double>>,
+                             Kind<Bvh, SphereSet<float, 3>>, Kind<Bvh, SegmentSet<float>>,
+                             Kind<Bvh, SegmentSet<double>>, Kind<Bvh, PointCloud<double, 3>>,
+                             Kind<Bvh, PointCloud<float, 2>>>;
+TYPED_TEST_SUITE(OfEveryKind, Kinds);
+
+template <class O>
+O any_options(O options) {
+    if constexpr (requires { options.mailbox; }) {
+        options.leaf_size = *gen::inRange(1u, 9u).as("leaf_size");
+        options.max_depth = *gen::element(20, 20, 32, 3, 0).as("max_depth");
+        options.mailbox = *gen::arbitrary<bool>().as("mailbox");
+    } else {
+        options.builder = *gen::elementOf(std::vector(std::begin(bvh_builders), std::end(bvh_builders)));
+        options.max_leaf_size = *gen::inRange(1u, 9u).as("max_leaf_size");
+        options.overlap = 0;
+        options.duplicates = 3;
+    }
+    return options;
+}
+/// So that trees are as deep as they may be.
+template <class O>
+void make_deep(O& options) {
+    if constexpr (requires { options.mailbox; })
+        options.leaf_size = 2, options.max_depth = 32;
+    else
+        options.max_leaf_size = 1;
+}
+
+TYPED_TEST(OfEveryKind, AnyChangesAreAnsweredAsByBruteForce) {
+    using P = typename TypeParam::Set;
+    using T = typename P::Scalar;
+    constexpr int D = P::dimension;
+    expect_always([] {
+        AnyCase<P> one;
+        BothOf<TypeParam> both(one.set, any_options(OptionsOf<TypeParam>()));
+        const int steps = *gen::inRange(0, 30).as("steps");
+        for (int i = 0; i < steps; ++i) {
+            const int kind = *gen::inRange(0, 4).as("kind of change");
+            const auto which = *gen::inRange<std::uint64_t>(0, 1000).as("which");
+            RC_ASSERT(change(both, kind, which, *any_item<P>(one.wild).as("primitive")));
+        }
+        RC_ASSERT(both.tree.validate() == "");
+        one.set = both.set;
+        Questions<T, D> questions({}, {}, 0);
+        for (int i = 0; i < 4; ++i) questions.rays.push_back(one.ray());
+        questions.points = {one.point(), one.point()};
+        questions.boxes = {one.box(), one.box()};
+        RC_ASSERT(both.same(questions));
+    });
+}
+
+/// Ten thousand steps on one tree, in the long run: first it mostly grows, then it mostly shrinks, and again.
+TYPED_TEST(OfEveryKind, ALongLifeIsAnsweredAsByBruteForce) {
+    using P = typename TypeParam::Set;
+    rc::Random draw(5);
+    P start;
+    if constexpr (requires { start.vertices; })
+        start.vertices = gen::container<decltype(start.vertices)>(10, vectors<typename P::Scalar, 3>(true))(
+                             draw.split(), rc::kNominalSize)
+                             .value();
+    BothOf<TypeParam> both(start);
+    const auto tame = any_item<P>(false), wild = any_item<P>(true);
+    const std::size_t steps = matrix::in_long_runs(10000, 1000);
+    for (std::size_t i = 0; i < steps; ++i) {
+        Random random(17, i);
+        const bool grows = i / 250 % 2 == 0;
+        const int kind =
+            (grows ? std::array{0, 0, 0, 1, 2, 3} : std::array{0, 1, 2, 3, 3, 3})[random.bits() % 6];
+        const auto& item = random.bits() % 16 == 0 ? wild : tame;
+        const auto which = random.bits();
+        ASSERT_TRUE(change(both, kind, which, item(draw.split(), rc::kNominalSize).value())) << i;
+        if (i % 5 == 0) {
+            ASSERT_TRUE(both.same(Questions(both.oracle, 6))) << i;
+        }
+        if (i % 50 == 0) {
+            ASSERT_EQ(both.tree.validate(), "") << i;
+        }
+    }
+}
+
+template <template <class, int> class S, class T>
+struct Scaled {
+    template <class U, int D>
+    using Structure = S<U, D>;
+    using Scalar = T;
+};
+template <class K>
+class OfEveryStructure : public testing::Test {};
+using Structures = testing::Types<Scaled<Orthtree, float>, Scaled<Orthtree, double>, Scaled<Bvh, float>,
+                                  Scaled<Bvh, double>>;
+TYPED_TEST_SUITE(OfEveryStructure, Structures);
+
+/// Nothing is left to its first place: a third is erased, a third inserted anew, all in a scattered order.
+TYPED_TEST(OfEveryStructure, ScenesMayBeTakenApartAndPutTogether) {
+    with_scenes<typename TypeParam::Scalar>(3000, [](const char* name, auto set) {
+        SCOPED_TRACE(name);
+        using P = decltype(set);
+        Both<TypeParam::template Structure, P> both(std::move(set));
+        const Questions questions(both.oracle, 300);
+        const auto n = static_cast<PrimitiveId>(both.set.size());
+        for (PrimitiveId i = 0; i < n; ++i) {
+            const PrimitiveId id = i * 7919 % n;
+            if (id % 3 != 0) both.tree.erase(both.set, id);
+        }
+        EXPECT_EQ(both.tree.validate(), "");
+        for (PrimitiveId id = n; id-- > 0;)
+            if (id % 3 == 1) both.tree.insert(both.set, id);
+        EXPECT_EQ(both.tree.validate(), "");
+        for (PrimitiveId id = 2; id < n; id += 3) both.oracle.erase(both.set, id);
+        EXPECT_EQ(both.tree.structure().size(), both.oracle.structure().items().size());
+        EXPECT_TRUE(both.same(questions));
+        for (PrimitiveId id = 0; id < n; ++id) both.tree.erase(both.set, id);
+        EXPECT_EQ(both.tree.validate(), "");
+        EXPECT_EQ(both.tree.structure().size(), 0u);
+        EXPECT_EQ(both.tree.structure().leaf_count(), 0u);
+        EXPECT_EQ(both.tree.structure().item_count(), 0u);
+        EXPECT_FALSE(closest_point(both.tree, questions.points[0]));
+    });
+}
+
+// ---- Changes that cannot be
+
+TYPED_TEST(OfEveryStructure, WhatIsHeldIsNotInsertedAndWhatIsNotHeldIsNotErased) {
+    using T = typename TypeParam::Scalar;
+    Both<TypeParam::template Structure, PointCloud<T, 2>> both(points2d<T>(100));
+    const std::vector<PrimitiveId> before(both.tree.structure().items().begin(),
+                                          both.tree.structure().items().end());
+    EXPECT_FALSE(both.tree.insert(both.set, 7));
+    EXPECT_FALSE(both.tree.erase(both.set, 100));
+    EXPECT_FALSE(both.tree.erase(both.set, 0xFFFFFFFFu));
+    EXPECT_TRUE(std::ranges::equal(both.tree.structure().items(), before));
+    EXPECT_TRUE(both.tree.erase(both.set, 7));
+    EXPECT_FALSE(both.tree.erase(both.set, 7));
+    EXPECT_FALSE(both.tree.structure().holds(7));
+    EXPECT_EQ(both.tree.structure().size(), 99u);
+    EXPECT_TRUE(both.tree.insert(both.set, 7));
+    EXPECT_FALSE(both.tree.insert(both.set, 7));
+    EXPECT_EQ(both.tree.structure().size(), 100u);
+    EXPECT_EQ(both.tree.validate(), "");
+}
+
+template <template <class, int> class S, class P>
+void expect_refused(Both<S, P>& both, PrimitiveId id, const char* word) {
+    const std::vector<PrimitiveId> before(both.tree.structure().items().begin(),
+                                          both.tree.structure().items().end());
+    const auto bounds = both.tree.bounds();
+    try {
+        both.tree.insert(both.set, id);
+        ADD_FAILURE() << "primitive " << id << " was let in";
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+    }
+    EXPECT_THROW(both.oracle.insert(both.set, id), InputError);
+    EXPECT_FALSE(both.tree.structure().holds(id));
+    EXPECT_TRUE(std::ranges::equal(both.tree.structure().items(), before));
+    EXPECT_EQ(both.tree.bounds(), bounds);
+    EXPECT_EQ(both.tree.validate(), "");
+    EXPECT_TRUE(both.same(Questions(both.oracle, 50)));
+}
+
+TYPED_TEST(OfEveryStructure, BadPrimitivesAreRefusedAndChangeNothing) {
+    using T = typename TypeParam::Scalar;
+    constexpr T nan = std::numeric_limits<T>::quiet_NaN(), infinity = std::numeric_limits<T>::infinity();
+    Both<TypeParam::template Structure, PointCloud<T, 3>> cloud(points<T>(200));
+    expect_refused(cloud, 200, "no primitive 200");
+    for (const T bad : {nan, infinity, -infinity, 2 * largest_coordinate<T>}) {
+        ASSERT_TRUE(cloud.erase(9));
+        const auto good = cloud.set.points[9];
+        cloud.set.points[9][2] = bad;
+        expect_refused(cloud, 9, "primitive 9 ");
+        cloud.set.points[9] = good;
+        ASSERT_TRUE(cloud.insert(9));
+    }
+    Both<TypeParam::template Structure, TriangleMesh<T>> mesh(teapot<T>(200));
+    mesh.set.triangles.push_back({0, 1, static_cast<std::uint32_t>(mesh.set.vertices.size())});
+    expect_refused(mesh, mesh.last(), "names vertex");
+    mesh.set.triangles.back() = {0, 1, 2};
+    EXPECT_TRUE(mesh.insert(mesh.last()));
+    EXPECT_TRUE(mesh.same(Questions(mesh.oracle, 50)));
+}
+
+// ---- Shape
+
+/// Many that no division parts: a build ends, in a sensible tree; more of them can be inserted, and erased.
+template <template <class, int> class S, class P>
+void expect_bounded(const char* name, P set) {
+    SCOPED_TRACE(name);
+    typename S<typename P::Scalar, P::dimension>::Options options;
+    make_deep(options);
+    Both<S, P> both(std::move(set), options);
+    const auto& tree = both.tree.structure();
+    EXPECT_LE(tree.depth(), tree.max_depth);
+    const Questions questions(both.oracle, 100);
+    EXPECT_TRUE(both.same(questions));
+    for (int i = 0; i < 300; ++i) {
+        const auto again = items(both.set)[both.set.size() - 7];
+        ASSERT_TRUE(both.append(again));
+    }
+    for (PrimitiveId id = 0; id < both.set.size(); id += 3) ASSERT_TRUE(both.erase(id));
+    EXPECT_EQ(both.tree.validate(), "");
+    EXPECT_LE(tree.depth(), tree.max_depth);
+    EXPECT_TRUE(both.same(questions));
+}
+
+TYPED_TEST(OfEveryStructure, WhatCannotBePartedMakesNoDepthBomb) {
+    using T = typename TypeParam::Scalar;
+    TriangleMesh<T> alike;
+    alike.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+    alike.triangles.assign(2000, {0, 1, 2});
+    expect_bounded<TypeParam::template Structure>("equal triangles", alike);
+
+    TriangleMesh<T> fan = cube<T>(12);
+    for (std::uint64_t i = 0; i < 500; ++i) {
+        Random random(1, i);
+        for (int k = 0; k < 2; ++k) fan.vertices.emplace_back(random.direction<3>());
+        const auto n = static_cast<std::uint32_t>(fan.vertices.size());
+        fan.triangles.push_back({0, n - 2, n - 1});
+    }
+    expect_bounded<TypeParam::template Structure>("triangles around one vertex", fan);
+
+    PointCloud<T, 2> near_twins = points2d<T>(20);
+    for (int i = 0; i < 1000; ++i)
+        near_twins.points.emplace_back(T(0.3), i % 2 == 0 ? T(0.3) : std::nextafter(T(0.3), T(1)));
+    expect_bounded<TypeParam::template Structure>("two places side by side", near_twins);
+
+    PointCloud<T, 3> geometric;
+    for (int i = 0; i < 300; ++i)
+        geometric.points.emplace_back(std::ldexp(T(1), i % 100 - 50), std::ldexp(T(1), i % 59 - 40), T(0));
+    expect_bounded<TypeParam::template Structure>("a geometric progression", geometric);
+
+    SphereSet<T, 3> onion;
+    for (int i = 0; i < 500; ++i) onion.spheres.push_back({Vec<T, 3>::all(T(i) / 500), T(1) + T(i) / 100});
+    expect_bounded<TypeParam::template Structure>("spheres around each other", onion);
+
+    SegmentSet<T> star;
+    for (std::uint64_t i = 0; i < 1000; ++i)
+        star.segments.push_back({{T(0.1), T(0.2)}, Vec<T, 2>(Random(2, i).direction<2>())});
+    expect_bounded<TypeParam::template Structure>("segments through one point", star);
+}
+
+TYPED_TEST(OfEveryStructure, GrowsOverWhatLiesBeyondItsBounds) {
+    using T = typename TypeParam::Scalar;
+    Both<TypeParam::template Structure, PointCloud<T, 3>> both(points<T>(500));
+    for (int i = 0; i < 60; ++i) {
+        const T away = std::ldexp(T(1), i);
+        ASSERT_TRUE(both.append({i % 2 == 0 ? away : -away, T(i), i % 3 == 0 ? -away : away}));
+        ASSERT_EQ(both.tree.validate(), "") << i;
+        ASSERT_LE(both.tree.structure().depth(), (TypeParam::template Structure<T, 3>::max_depth + 1));
+        ASSERT_TRUE(both.same(Questions(both.oracle, 20))) << i;
+    }
+    while (both.set.size() > 500) {
+        ASSERT_TRUE(both.erase(both.last()));
+        both.set.points.pop_back();
+    }
+    EXPECT_TRUE(both.same(Questions(build<Bvh>(both.set), 100)));
+}
+
+}  // namespace
