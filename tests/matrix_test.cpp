@@ -19,6 +19,10 @@ void expect_equal(const char* name, const P& set, const Points<typename P::Scala
         indexes.push_back(build_any(named_for<P>(spec), set));
         EXPECT_EQ(indexes.back()->validate(), "") << spec;
     }
+    if constexpr (PointSet<ViewOf<P>>) {
+        indexes.push_back(build_any("point-kdtree", set));
+        EXPECT_EQ(indexes.back()->validate(), "");
+    }
     if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));
     if (targets.empty()) return;
     const std::size_t for_all = in_long_runs(100000, 1500);

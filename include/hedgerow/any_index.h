@@ -59,6 +59,7 @@ struct StructureInfo {
     std::vector<OptionInfo> options;
     /// Of the only sets that it holds; 0: of any.
     int dimension = 0;
+    bool points_only = false;
 };
 /// Every structure that `build_any` knows.
 const std::vector<StructureInfo>& structure_list();

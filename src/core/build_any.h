@@ -99,6 +99,7 @@ void for_each_structure(F f) {
     f.template operator()<Grid>("grid");
     f.template operator()<TwoLevelGrid>("two-level-grid");
     f.template operator()<KdTree>("kdtree");
+    f.template operator()<PointKdTree>("point-kdtree");
     f.template operator()<Orthtree>(orthtree_name(D));
     f.template operator()<BspTree>("bsp");
     f.template operator()<Bvh>("bvh");
@@ -124,9 +125,12 @@ std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(std::strin
         typename S<T, D>::Options options;
         detail::read_options(in, options, std::type_identity<S<T, D>>());
         in.finish();
-        const auto view = view_of(primitives);
-        built = std::make_unique<detail::Holder<S<T, D>, std::remove_const_t<decltype(view)>>>(
-            std::string(spec), view, options, executor);
+        using View = ViewOf<P>;
+        if constexpr (requires { S<T, D>::build(std::declval<View>(), options, executor); })
+            built = std::make_unique<detail::Holder<S<T, D>, View>>(std::string(spec), view_of(primitives),
+                                                                    options, executor);
+        else
+            throw InputError("structure '" + std::string(wanted) + "' holds points alone");
     });
     if (wanted == detail::orthtree_name(5 - D))
         throw InputError("structure '" + std::string(wanted) + "' holds what lies in " +

@@ -108,6 +108,9 @@ void read_options(OptionReader& in, typename KdTree<T, D>::Options& o, std::type
     in.number("empty_bonus", o.costs.empty_bonus, 0.0, 0.99);
     in.flag("mailbox", o.mailbox);
 }
+template <class T, int D>
+void read_options(OptionReader&, typename PointKdTree<T, D>::Options&,
+                  std::type_identity<PointKdTree<T, D>>) {}
 inline void read_resolution(OptionReader& in, GridResolution& o, int least, int most) {
     in.choice<GridHeuristic>("heuristic", o.heuristic,
                              {{"density", GridHeuristic::density}, {"roots", GridHeuristic::roots}});

@@ -12,7 +12,8 @@
 
 namespace hedgerow {
 
-/// A point or direction with D components of type T (float or double), D = 2 or 3.
+/// A point or direction with D components of type T (float or double): 2 or 3, or 1 on a line, where there
+/// are points alone.
 template <std::floating_point T, int D>
 struct Vec {
     using Scalar = T;
@@ -21,6 +22,7 @@ struct Vec {
     T data[D] = {};
 
     constexpr Vec() = default;
+    constexpr explicit Vec(T x) requires(D == 1) : data{x} {}
     constexpr Vec(T x, T y) requires(D == 2) : data{x, y} {}
     constexpr Vec(T x, T y, T z) requires(D == 3) : data{x, y, z} {}
     template <std::floating_point U>

@@ -39,6 +39,7 @@ struct Visits {
 
     void node() { ++nodes; }
     void leaf(std::uint64_t count) { ++leaves, primitives += count; }
+    void item() { ++primitives; }
     void skip() { --primitives, ++skipped; }
     Visits& operator+=(const Visits& o) {
         nodes += o.nodes, leaves += o.leaves, primitives += o.primitives, skipped += o.skipped;
@@ -50,6 +51,7 @@ struct Visits {
 struct NoVisits {
     void node() const {}
     void leaf(std::uint64_t) const {}
+    void item() const {}
     void skip() const {}
 };
 

@@ -8,4 +8,5 @@
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/grid/two_level_grid.h>
 #include <hedgerow/structures/kdtree/kdtree.h>
+#include <hedgerow/structures/kdtree/point_kdtree.h>
 #include <hedgerow/structures/orthtree/orthtree.h>

@@ -41,7 +41,9 @@ V fold_from(const S& tree, NodeId node, std::vector<V>& values, OfLeaf& of_leaf,
     if (tree.is_leaf(node)) return values[node] = of_leaf(tree.leaf(node));
     const V low = fold_from(tree, tree.low_child(node), values, of_leaf, combine);
     const V high = fold_from(tree, tree.high_child(node), values, of_leaf, combine);
-    return values[node] = combine(low, high);
+    values[node] = combine(low, high);
+    if constexpr (HoldsInNodes<S>) values[node] = combine(values[node], of_leaf(tree.own(node)));
+    return values[node];
 }
 }  // namespace detail
 

@@ -16,6 +16,12 @@ concept PlaneTree = requires(const S& s, NodeId n) {
     { s.high_child(n) } -> std::same_as<NodeId>;
 };
 
+/// One whose inner nodes hold something themselves, too.
+template <class S>
+concept HoldsInNodes = requires(const S& s, NodeId n) {
+    { s.own(n) } -> std::same_as<Leaf>;
+};
+
 /// Follows the near side of each cut and keeps the far side on a stack, with what is left of the probe there;
 /// it is passed over if by then the limit lies before it. Allocates nothing: one entry a level.
 template <PlaneTree S, class Primitives, Query Q, class Count>
@@ -44,6 +50,10 @@ void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) 
             if (test_leaf(primitives, probe, leaf, query) == Flow::stop) return;
         } else {
             count.node();
+            if constexpr (HoldsInNodes<S>) {
+                count.item();
+                if (test_leaf(primitives, probe, tree.own(node), query) == Flow::stop) return;
+            }
             const auto cut = tree.cut(probe, state, node, query.limit());
             const NodeId near = cut.near_is_high ? tree.high_child(node) : tree.low_child(node);
             const NodeId far = cut.near_is_high ? tree.low_child(node) : tree.high_child(node);
