@@ -39,7 +39,7 @@ inline constexpr const char* structures[] = {"bvh",
                                              "grid:heuristic=roots,mailbox=off",
                                              "two-level-grid:resolution=2,inner_density=10",
                                              "octree:leaf_size=1",
-                                             "bsp:samples=4,leaf_size=3,plane_cost=1",
+                                             "bsp:samples=4,intersection_cost=20,plane_cost=1",
                                              "octree:max_depth=3,mailbox=off",
                                              "brute-force:box=on"};
 inline constexpr std::size_t fast_structures = 15;

@@ -1,4 +1,4 @@
-/// What kd-trees and BSP trees share as they are built: nodes in depth-first order, and the recursion.
+/// What kd-trees and BSP trees share: how their nodes lie, and the recursion that grows them.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,31 @@
 
 namespace hedgerow {
 
-/// A whole tree or a subtree of one. An inner node's low child follows it; its `link` is where its high child
-/// stands. A leaf's `link` is its count, and it begins at `first` in the items.
+/// A tree as it is walked: node 0 is the root, nothing stands at 1, and an inner node's `link` is where its
+/// low child stands, with the high child behind it. A leaf's `link` is its count, and it begins at `first` in
+/// the items.
 template <class Node>
 struct CutTree {
     std::vector<Node> nodes;
     std::vector<PrimitiveId> items;
     int depth = 0;
 
+    std::size_t bytes() const {
+        return nodes.capacity() * sizeof(Node) + items.capacity() * sizeof(PrimitiveId);
+    }
+    std::size_t leaf_count() const { return nodes.size() / 2; }
+};
+
+/// The same while it grows, or a subtree: an inner node's low child follows it, and its `link` is where its
+/// high child stands.
+template <class Node>
+struct GrowingCutTree {
+    std::vector<Node> nodes;
+    std::vector<PrimitiveId> items;
+    int depth = 0;
+
     /// Puts another subtree behind this one.
-    void append(const CutTree& other) {
+    void append(const GrowingCutTree& other) {
         const auto node_shift = static_cast<std::uint32_t>(nodes.size());
         const auto item_shift = static_cast<std::uint32_t>(items.size());
         if (nodes.size() + other.nodes.size() > Node::most || items.size() + other.items.size() > 0xFFFFFFFFu)
@@ -32,12 +47,39 @@ struct CutTree {
         items.insert(items.end(), other.items.begin(), other.items.end());
         depth = std::max(depth, other.depth);
     }
-    std::size_t bytes() const {
-        return nodes.capacity() * sizeof(Node) + items.capacity() * sizeof(PrimitiveId);
-    }
-    void shrink_to_fit() {
-        nodes.shrink_to_fit();
+    /// Brings siblings together, and small subtrees of as many pairs as fill a line of the cache: a walk down
+    /// enters fewer lines than in depth-first order (as the treelets of Yoon and Manocha, 2006). O(n).
+    CutTree<Node> packed() && {
+        constexpr std::size_t pairs_together = 64 / (2 * sizeof(Node)) > 1 ? 64 / (2 * sizeof(Node)) : 1;
+        struct Place {
+            std::uint32_t grown, packed;
+        };
+        CutTree<Node> tree;
+        tree.nodes.reserve(nodes.size() + 1);
+        tree.nodes.push_back(nodes[0]);
+        tree.nodes.push_back(Node::leaf(0, 0));
+        std::vector<Place> waiting = {{0, 0}}, near;
+        while (!waiting.empty()) {
+            near.assign(1, waiting.back());
+            waiting.pop_back();
+            std::size_t next = 0;
+            for (; next < near.size() && next < pairs_together; ++next) {
+                const Place at = near[next];
+                if (nodes[at.grown].is_leaf()) continue;
+                const auto pair = static_cast<std::uint32_t>(tree.nodes.size());
+                tree.nodes[at.packed].set_link(pair);
+                const std::uint32_t children[] = {at.grown + 1, nodes[at.grown].link()};
+                for (std::uint32_t i = 0; i < 2; ++i) {
+                    tree.nodes.push_back(nodes[children[i]]);
+                    if (!nodes[children[i]].is_leaf()) near.push_back({children[i], pair + i});
+                }
+            }
+            waiting.insert(waiting.end(), near.rbegin(), near.rend() - static_cast<std::ptrdiff_t>(next));
+        }
         items.shrink_to_fit();
+        tree.items = std::move(items);
+        tree.depth = depth;
+        return tree;
     }
 };
 
@@ -48,16 +90,15 @@ template <class Node, class Cutter>
 class CutTreeGrowth {
 public:
     using Cell = typename Cutter::Cell;
-    using Tree = CutTree<Node>;
+    using Tree = GrowingCutTree<Node>;
 
     CutTreeGrowth(const Cutter& cutter, int deepest, Executor& executor)
         : cutter_(cutter), deepest_(deepest), executor_(executor) {}
 
-    Tree grow(Cell root) {
+    CutTree<Node> grow(Cell root) {
         Tree tree;
         grow(std::move(root), 1, tree);
-        tree.shrink_to_fit();
-        return tree;
+        return std::move(tree).packed();
     }
 
 private:

@@ -10,6 +10,7 @@ concept PlaneTree = requires(const S& s, NodeId n) {
     {s.bounds()};
     { s.empty() } -> std::same_as<bool>;
     { s.is_leaf(n) } -> std::same_as<bool>;
+    { s.is_empty(n) } -> std::same_as<bool>;  // a leaf with nothing in it
     { s.leaf(n) } -> std::same_as<Leaf>;
     {s.plane(n)};  // `cut` is the probe's cut by it
     { s.low_child(n) } -> std::same_as<NodeId>;
@@ -34,7 +35,8 @@ void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) 
         State state;
     };
     const auto within = [&](const State& s) { return probe.within(s, query.limit()); };
-    const auto opened = [&]([[maybe_unused]] NodeId n) {
+    const auto opened = [&](NodeId n) {
+        if (tree.is_empty(n)) return false;
         if constexpr (SubtreeQuery<Q>) return query.accept(n) == Verdict::open;
         return true;
     };

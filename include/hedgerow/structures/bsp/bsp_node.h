@@ -45,6 +45,7 @@ public:
     }
 
     bool is_leaf() const { return kind() == leaf_mark; }
+    bool is_empty() const { return kind_and_link_ == leaf_mark; }  // a count of 0
     bool across_axis() const { return kind() < 3; }
     BspPlane<T, D> plane() const { return {normal_, offset_, across_axis() ? static_cast<int>(kind()) : -1}; }
     AxisPlane<T> axis_plane() const { return {static_cast<int>(kind()), offset_}; }

@@ -10,7 +10,7 @@ namespace hedgerow {
 /// A primitive stands in every leaf that its part reaches; nothing is cut but the parts by which that is
 /// decided (Fuchs, Kedem, Naylor 1980; for rays Ize, Wald, Parker, RT 2008). Planes can follow the geometry
 /// where it lies askew; each is dearer to find and to walk than a kd-tree's. Memory: 24 bytes a node (40 for
-/// double), 4 an item. Built in O(n log n) with a large constant: some dozens of candidates a primitive and
+/// double), 4 an item, and a packed triangle an item. Built in O(n log n) with a large constant: some dozens of candidates a primitive and
 /// level.
 template <std::floating_point T, int D>
 class BspTree {
@@ -26,7 +26,7 @@ public:
         /// Off only to show what it brings.
         bool mailbox = true;
     };
-    static constexpr auto packed_order = PackedOrder::of_ids;
+    static constexpr auto packed_order = PackedOrder::of_leaves;
     static constexpr bool exclusive() { return false; }
     static constexpr int max_depth = 64;
 
@@ -53,16 +53,17 @@ public:
     std::span<const PrimitiveId> items() const { return tree_.items; }
     std::size_t bytes() const { return tree_.bytes(); }
     std::size_t node_count() const { return tree_.nodes.size(); }
-    std::size_t leaf_count() const { return (tree_.nodes.size() + 1) / 2; }
+    std::size_t leaf_count() const { return tree_.leaf_count(); }
     int depth() const { return tree_.depth; }
 
     // What the walk and `fold` ask.
     bool empty() const { return tree_.nodes.empty(); }
     bool is_leaf(NodeId n) const { return tree_.nodes[n].is_leaf(); }
+    bool is_empty(NodeId n) const { return tree_.nodes[n].is_empty(); }
     Leaf leaf(NodeId n) const { return {tree_.items.data(), tree_.nodes[n].first(), tree_.nodes[n].link()}; }
     CutPlane<D> plane(NodeId n) const { return tree_.nodes[n].plane().in_double(margin_); }
-    static NodeId low_child(NodeId n) { return n + 1; }
-    NodeId high_child(NodeId n) const { return tree_.nodes[n].link(); }
+    NodeId low_child(NodeId n) const { return tree_.nodes[n].link(); }
+    NodeId high_child(NodeId n) const { return tree_.nodes[n].link() + 1; }
     /// Most planes lie across an axis, and are as cheap as a kd-tree's.
     template <class Probe>
     auto cut(const Probe& probe, const typename Probe::State& state, NodeId n, T limit) const {

@@ -9,9 +9,9 @@ namespace hedgerow {
 
 /// How the SAH decides. A node across an axis costs `traversal_cost`, one with any other plane `plane_cost`.
 struct BspCosts {
-    double traversal_cost = 1;
-    double plane_cost = 1.5;
-    double intersection_cost = 2;
+    double traversal_cost = 4;
+    double plane_cost = 6;
+    double intersection_cost = 1;
     /// A plane that cuts off empty space costs that part less.
     double empty_bonus = 0.2;
 };

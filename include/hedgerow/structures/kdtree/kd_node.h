@@ -21,6 +21,7 @@ public:
     }
 
     bool is_leaf() const { return (kind_and_link_ & 3u) == leaf_mark; }
+    bool is_empty() const { return kind_and_link_ == leaf_mark; }  // a count of 0
     AxisPlane<T> plane() const { return {static_cast<int>(kind_and_link_ & 3u), std::bit_cast<T>(place_)}; }
     std::uint32_t first() const { return static_cast<std::uint32_t>(place_); }
     std::uint32_t link() const { return kind_and_link_ >> 2; }

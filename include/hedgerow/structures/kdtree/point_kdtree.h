@@ -52,6 +52,7 @@ public:
     // What the walk and `fold` ask.
     bool empty() const { return items_.empty(); }
     bool is_leaf(NodeId n) const { return low_child(n) >= items_.size(); }
+    bool is_empty(NodeId n) const { return n >= items_.size(); }
     Leaf leaf(NodeId n) const { return {items_.data(), n, n < items_.size() ? 1u : 0u}; }
     /// The node's own point.
     Leaf own(NodeId n) const { return leaf(n); }
