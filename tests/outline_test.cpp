@@ -97,7 +97,7 @@ TYPED_TEST(Outline, LeavesOfPartitionsTileTheRoot) {
             double sum = 0;
             for (const auto& c : cells)
                 if (c.leaf) sum += c.region().volume();
-            EXPECT_NEAR(sum / volume(root), 1, 1e-4);
+            EXPECT_NEAR(sum / volume(root), 1, 1e-6);
             for (std::uint64_t i = 0; i < 200; ++i) {
                 Random random(5, i);
                 const auto p = matrix::point_in(root, 0, random);
@@ -197,6 +197,12 @@ TEST(Polytope, ItsPartsMakeUpTheWhole) {
     EXPECT_DOUBLE_EQ(high.volume(), 8 - 8.0 / 6);
     EXPECT_EQ(cube.section(corner).size() / 2, 3u);  // each corner from two faces
     EXPECT_EQ(cube.section({{1, 0, 0}, 5, 0}).size(), 0u);
+    // Along a face: it is not counted twice.
+    const auto [all, face] = cube.cut({{1, 0, 0}, 2, 0});
+    EXPECT_DOUBLE_EQ(all.volume(), 8);
+    EXPECT_DOUBLE_EQ(all.surface(), 24);
+    EXPECT_DOUBLE_EQ(face.volume(), 0);
+    EXPECT_DOUBLE_EQ(face.surface(), 8);
 
     const Polytope<2> square(Box2d{{0, 0}, {2, 2}});
     EXPECT_DOUBLE_EQ(square.volume(), 4);

@@ -69,8 +69,19 @@ public:
         return cap;
     }
 
-    /// The two parts on the sides of a plane: low, high. Either may have no faces.
+    /// The two parts on the sides of a plane: low, high. Of a plane along a face, but for roundings, one is
+    /// that face, seen from both sides, and the other the whole; of one that meets nothing, one has no faces.
     std::pair<Polytope, Polytope> cut(const CutPlane<D>& plane) const {
+        double lowest = 0, highest = 0, largest = 0;
+        for (const Face& f : faces_)
+            for (const Point& p : f) {
+                const double h = plane.height(p);
+                lowest = std::min(lowest, h), highest = std::max(highest, h);
+                largest = std::max(largest, max_component(abs(p)));
+            }
+        const double rounding = 0x1p-40 * product(plane.reach(), largest);
+        if (highest <= rounding) return {*this, touched(plane, rounding)};
+        if (lowest >= -rounding) return {touched(plane, rounding), *this};
         std::pair<Polytope, Polytope> sides;
         Face cap;
         for (const Face& f : faces_) {
@@ -86,6 +97,17 @@ public:
     }
 
 private:
+    /// The part within a distance of a plane that the rest lies on one side of.
+    Polytope touched(const CutPlane<D>& plane, double height) const {
+        Face cap;
+        for (const Face& f : faces_)
+            for (const Point& p : f)
+                if (std::abs(plane.height(p)) <= height) cap.push_back(p);
+        close(cap, plane.normal);
+        Polytope flat;
+        if (cap.size() >= D) flat.faces_ = {cap, cap};
+        return flat;
+    }
     static Face face_of(const Box<double, D>& box, int axis, double side) {
         Face face;
         constexpr int around[4] = {0, 1, 3, 2};
