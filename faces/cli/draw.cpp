@@ -297,27 +297,23 @@ Image::Pixel pixel_of(const std::string& colour) {
     return p;
 }
 
-/// The levels of boxes that can be told apart.
-std::vector<OutlineCell<3>> some_levels(std::vector<OutlineCell<3>> cells, int wanted, int& levels) {
-    std::erase_if(cells, [](const auto& c) { return c.leaf && c.items.empty(); });
-    std::vector<std::size_t> upto;
-    for (const auto& c : cells) {
-        const auto level = static_cast<std::size_t>(c.level);
-        if (upto.size() < level) upto.resize(level);
-        ++upto[level - 1];
+/// The boxes of the levels that are wanted, or of as many as can be told apart. Empty ones are left out.
+template <class T>
+std::vector<OutlineCell<3>> boxes_of(const AnyIndex<T, 3>& index, int wanted, int& levels) {
+    const auto first_levels = [&](int n) {
+        auto cells = index.outline({n});
+        std::erase_if(cells, [](const auto& c) { return c.leaf && c.items.empty(); });
+        return cells;
+    };
+    levels = wanted > 0 ? std::min(wanted, std::max(1, index.depth())) : 1;
+    auto cells = first_levels(levels);
+    while (wanted == 0 && levels < index.depth()) {
+        auto more = first_levels(levels + 1);
+        if (more.size() > most_boxes) break;
+        cells = std::move(more);
+        ++levels;
     }
-    levels = wanted;
-    if (wanted == 0) {
-        std::size_t sum = 0;
-        for (const std::size_t n : upto)
-            if (levels == 0 || sum + n <= most_boxes)
-                sum += n, ++levels;
-            else
-                break;
-    }
-    levels = std::min(levels, static_cast<int>(upto.size()));
-    std::erase_if(cells, [&](const auto& c) { return c.level > levels; });
-    return cells;
+    return few(std::move(cells));
 }
 
 void draw_edges(const OutlineCell<3>& cell, const Image::Pixel& colour, float width, Wireframe& wires) {
@@ -344,9 +340,9 @@ void draw_level_legend(Image& image, int levels) {
 }
 
 /// One structure's boxes over the picture of what can be seen.
-template <class T, class P, class Seen>
+template <class T, class Seen>
 Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, const Seen& seen,
-                const RenderOptions& options, int wanted, std::string& facts, const P&) {
+                const RenderOptions& options, int wanted, std::string& facts) {
     auto picture = raycast(seen_index, seen, options, default_executor());
     for (auto& pixel : picture.image.pixels)
         for (auto& c : pixel)
@@ -354,7 +350,7 @@ Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, c
     const RayMaker maker(options.camera, options.width, options.height);
     const auto surface = depths(seen_index, maker, options.width, options.height, default_executor());
     int levels = 0;
-    auto cells = some_levels(few(index.outline({wanted > 0 ? wanted : 24})), wanted, levels);
+    auto cells = boxes_of(index, wanted, levels);
     std::stable_sort(cells.begin(), cells.end(),
                      [](const auto& a, const auto& b) { return a.level > b.level; });
     Wireframe wires(picture.image, surface, maker);
@@ -396,7 +392,7 @@ int draw_wireframe(const DrawArguments& a, const P& set, const Seen& seen) {
     for (const auto& spec : specs) {
         const auto index = build_any(spec, set);
         std::string facts;
-        const Image one = wireframe(*index, *seen_index, seen, options, a.levels, facts, set);
+        const Image one = wireframe(*index, *seen_index, seen, options, a.levels, facts);
         image = image ? joined(*image, one) : one;
         NamedStructure s{spec, facts, {}};
         if (!a.beside.empty()) {
