@@ -1,4 +1,5 @@
 /// hedgerow draw: what a structure looks like, and where rays spend their steps.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -160,12 +161,12 @@ int draw_cells(const DrawArguments& a, const P& set) {
             add_shared(cells, section, s.flat);
             s.flat.overlap = whole.overlap;
         }
-        s.facts =
-            fmt::format("{} cells here; {} leaves, depth {}, {} items of {} primitives", s.flat.cells.size(),
-                        index->leaf_count(), index->depth(), index->item_count(), index->size());
+        s.facts = {fmt::format("{} cells here; {} leaves, depth {}, {} items of {} primitives",
+                               s.flat.cells.size(), index->leaf_count(), index->depth(), index->item_count(),
+                               index->size())};
         if (s.flat.overlap > 0)
-            s.facts += fmt::format("; siblings share {:.2f}% of their parents' {}", 100 * s.flat.overlap,
-                                   D == 2 ? "area" : "volume");
+            s.facts.push_back(fmt::format("siblings share {:.2f}% of their parents' {}", 100 * s.flat.overlap,
+                                          D == 2 ? "area" : "volume"));
         report.push_back(facts_of(s, index->leaf_count(), index->depth()));
         if (scene.primitives.empty()) scene = flat_scene(a, set, section, bounds);
         structures.push_back(std::move(s));
@@ -176,7 +177,7 @@ int draw_cells(const DrawArguments& a, const P& set) {
     if (a.json)
         fmt::print("{}\n", ordered_json{{"output", a.output}, {"structures", report}}.dump(2));
     else if (!a.quiet)
-        for (const auto& s : structures) fmt::print("{}: {}\n", s.name, s.facts);
+        for (const auto& s : structures) fmt::print("{}: {}\n", s.name, fmt::join(s.facts, "; "));
     return 0;
 }
 
@@ -317,13 +318,19 @@ std::vector<OutlineCell<3>> boxes_of(const AnyIndex<T, 3>& index, int wanted, in
 }
 
 void draw_edges(const OutlineCell<3>& cell, const Image::Pixel& colour, float width, Wireframe& wires) {
-    for (const auto& face : cell.region().faces())
+    const Polytope<3> region = cell.region();
+    std::vector<std::pair<Vec3d, Vec3d>> edges;
+    const auto before = [](const Vec3d& p, const Vec3d& q) {
+        return std::lexicographical_compare(p.data, p.data + 3, q.data, q.data + 3);
+    };
+    for (const auto& face : region.faces())
         for (std::size_t i = 0; i < face.size(); ++i) {
             const Vec3d &p = face[i], &q = face[(i + 1) % face.size()];
-            // An edge is met in two faces, from its two ends.
-            if (std::lexicographical_compare(p.data, p.data + 3, q.data, q.data + 3))
-                wires.draw({Vec3f(p), Vec3f(q), colour, width});
+            const auto edge = before(p, q) ? std::pair(p, q) : std::pair(q, p);
+            // Each belongs to two faces.
+            if (std::find(edges.begin(), edges.end(), edge) == edges.end()) edges.push_back(edge);
         }
+    for (const auto& [p, q] : edges) wires.draw({Vec3f(p), Vec3f(q), colour, width});
 }
 /// A swatch and a number a level, in the upper left corner.
 void draw_level_legend(Image& image, int levels) {
@@ -394,7 +401,7 @@ int draw_wireframe(const DrawArguments& a, const P& set, const Seen& seen) {
         std::string facts;
         const Image one = wireframe(*index, *seen_index, seen, options, a.levels, facts);
         image = image ? joined(*image, one) : one;
-        NamedStructure s{spec, facts, {}};
+        NamedStructure s{spec, {facts}, {}};
         if (!a.beside.empty()) {
             add_shared(index->outline(), Section<3>{{}, {1, 0, 0}, {0, 1, 0}}, s.flat);
             if (s.flat.overlap > 0)

@@ -11,7 +11,7 @@ namespace hedgerow::cli {
 
 namespace {
 
-constexpr double margin = 24, head = 64, foot = 44, legend_width = 132;
+constexpr double margin = 24, head = 64, foot = 74, legend_width = 132;
 
 constexpr std::string_view plain_style =
     "text{font-family:'DejaVu Sans',Helvetica,Arial,sans-serif;font-size:12px;fill:#333}\n"
@@ -153,8 +153,9 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
         draw_corners(svg, panel, shown);
         draw_cells(svg, panel, structures[s].flat);
         for (const auto& p : scene.primitives) draw_primitive(svg, panel, p, size, "");
-        svg.text({area(s).low[0], scene.height - 22.0}, structures[s].name, "class=\"name\"");
-        svg.text({area(s).low[0], scene.height - 7.0}, structures[s].facts);
+        double y = scene.height - 38;
+        svg.text({area(s).low[0], y}, structures[s].name, "class=\"name\"");
+        for (const auto& line : structures[s].facts) svg.text({area(s).low[0], y += 16}, line);
     }
     draw_legend(svg, scene.width - legend_width, scene, structures, levels);
     return svg.finished();
@@ -225,6 +226,17 @@ std::string text_of(const TraceTable& table) {
 
 namespace {
 
+/// "3-5 8" of 3, 4, 5, 8.
+std::string runs_text(const std::vector<std::size_t>& numbers) {
+    std::string text;
+    for (std::size_t i = 0, end; i < numbers.size(); i = end) {
+        for (end = i + 1; end < numbers.size() && numbers[end] == numbers[end - 1] + 1;) ++end;
+        text += fmt::format("{}{}", text.empty() ? "" : " ", numbers[i]);
+        if (end - i > 1) text += fmt::format("-{}", numbers[end - 1]);
+    }
+    return text;
+}
+
 /// The ray's picture, part by part: the page puts its steps into groups of their own.
 class RayDrawing {
 public:
@@ -240,8 +252,8 @@ public:
 
     void ground() {
         svg_.text({margin, 32}, scene_.title, "class=\"title\"");
-        svg_.text({margin, scene_.height - 22.0}, table_.structure, "class=\"name\"");
-        svg_.text({margin, scene_.height - 7.0}, table_.summary());
+        svg_.text({margin, scene_.height - 38.0}, table_.structure, "class=\"name\"");
+        svg_.text({margin, scene_.height - 22.0}, table_.summary());
         for (const auto& c : all_.cells) svg_.polygon(panel_(c.corners), "class=\"cell all\"", hint_of(c));
         const double size = crowding(scene_.primitives.size(), panel_);
         for (const auto& p : scene_.primitives) draw_primitive(svg_, panel_, p, size, " faint");
@@ -279,7 +291,7 @@ public:
     void numbers() {
         struct Label {
             Vec2d at;
-            std::string text;
+            std::vector<std::size_t> steps;
         };
         std::vector<Label> nodes;
         const Vec2d along = normalized(at(last_) - at(first_)), side(along[1], -along[0]);
@@ -292,9 +304,9 @@ public:
                 const auto near = std::find_if(nodes.begin(), nodes.end(),
                                                [&](const Label& l) { return length(l.at - p) < 12; });
                 if (near != nodes.end())
-                    near->text += fmt::format(" {}", i + 1);
+                    near->steps.push_back(i + 1);
                 else
-                    nodes.push_back({p, fmt::format("{}", i + 1)});
+                    nodes.push_back({p, {i + 1}});
                 continue;
             }
             Vec2d p = at(in.entry) * 0.5 + at(in.exit) * 0.5;
@@ -308,7 +320,7 @@ public:
         }
         for (const auto& l : nodes) {
             svg_.circle(l.at, 2, "fill=\"#555\"");
-            svg_.text(l.at - side * 14.0 + Vec2d(0, 4), l.text,
+            svg_.text(l.at - side * 14.0 + Vec2d(0, 4), runs_text(l.steps),
                       "class=\"quiet halo\" text-anchor=\"middle\"");
         }
     }
@@ -330,7 +342,7 @@ private:
     }
     /// What is seen, with the ray from its origin, if that is near, to a little beyond where it ends.
     Box2d frame_with_ray() {
-        Box2d box = frame_of(scene_, {{"", "", all_}});
+        Box2d box = frame_of(scene_, {{"", {}, all_}});
         for (const auto& row : table_.rows) expand(box, row.corners);
         const double speed = std::max(length(table_.flat_direction), 1e-300), wide = length(box.extent());
         double enter = 0, leave = 0;

@@ -18,7 +18,8 @@ struct FlatScene {
     int width, height;
 };
 struct NamedStructure {
-    std::string name, facts;
+    std::string name;
+    std::vector<std::string> facts;  // a line each
     FlatStructure flat;
 };
 
