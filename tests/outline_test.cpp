@@ -59,8 +59,10 @@ void expect_sound_outline(const P& set, const std::string& spec) {
         leaves += c.leaf, occupied += c.leaf && !c.items.empty(), items += c.items.size();
         depth = std::max(depth, c.level);
         for (const PrimitiveId id : c.items) {
-            // Grids enter primitives a little beyond the cells that they meet, the others within a margin.
-            const auto reach = enlarged_by(c.box, 0.02 * length(c.box.extent()) + 1e-4 * extent);
+            // Grids enter primitives a little beyond the cells of their first level, the others within a
+            // margin.
+            const auto reach =
+                enlarged_by(c.box, 0.02 * length(by_id.at(c.parent)->box.extent()) + 1e-4 * extent);
             EXPECT_TRUE(overlap(reach, detail::box_in_double(view_of(set).bounds(id))))
                 << "primitive " << id << " is far from cell " << c.id;
         }

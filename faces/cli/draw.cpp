@@ -11,6 +11,7 @@
 #include <hedgerow/error.h>
 #include <hedgerow/io/image.h>
 #include <hedgerow/io/text_file.h>
+#include <hedgerow/render/lettering.h>
 #include <hedgerow/render/raycast.h>
 #include <hedgerow/render/wireframe.h>
 
@@ -332,17 +333,21 @@ void draw_edges(const OutlineCell<3>& cell, const Image::Pixel& colour, float wi
         }
     for (const auto& [p, q] : edges) wires.draw({Vec3f(p), Vec3f(q), colour, width});
 }
-/// A swatch and a number a level, in the upper left corner.
-void draw_level_legend(Image& image, int levels) {
-    const int unit = std::max(1, image.height / 256), row = 8 * unit, wide = 22 * unit;
-    const int shown = std::min(levels, (image.height - 4 * unit) / row);
-    for (int y = 0; y < shown * row + 2 * unit && y < image.height; ++y)
-        for (int x = 0; x < wide && x < image.width; ++x) image.at(x, y) = {12, 12, 16};
-    for (int k = 0; k < shown; ++k) {
+int letter_scale(const Image& image) {
+    return std::max(1, image.height / 600);
+}
+/// A title and below it a swatch and a number a level, from the upper left corner.
+void draw_level_legend(Image& image, const std::vector<std::string>& title, int levels) {
+    const int unit = letter_scale(image), row = letter_height * unit;
+    std::vector<std::string> lines = title;
+    const int first = static_cast<int>(lines.size());
+    for (int k = 0; k < levels; ++k) lines.push_back(fmt::format("     level {}", k + 1));
+    draw_note(image, 0, 0, lines, unit);
+    for (int k = 0; k < levels; ++k) {
         const auto colour = pixel_of(level_colour(k, levels));
-        for (int y = 2 * unit + k * row; y < 7 * unit + k * row && y < image.height; ++y)
-            for (int x = 2 * unit; x < 10 * unit && x < image.width; ++x) image.at(x, y) = colour;
-        draw_number(image, 12 * unit, 2 * unit + k * row, static_cast<std::uint64_t>(k + 1), unit);
+        const int top = (first + k) * row + 4 * unit;
+        for (int y = top; y < top + 8 * unit && y < image.height; ++y)
+            for (int x = 6 * unit; x < 28 * unit && x < image.width; ++x) image.at(x, y) = colour;
     }
 }
 
@@ -365,8 +370,8 @@ Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, c
     for (const auto& c : cells)
         draw_edges(c, pixel_of(level_colour(c.level - 1, levels)),
                    unit * std::max(1.1f, 2.8f * std::pow(0.85f, static_cast<float>(c.level - 1))), wires);
-    draw_level_legend(picture.image, levels);
     facts = fmt::format("{} boxes of the first {} levels of {}", cells.size(), levels, index.depth());
+    draw_level_legend(picture.image, {std::string(index.structure()), facts}, levels);
     return picture.image;
 }
 Image joined(const Image& left, const Image& right) {
@@ -438,6 +443,12 @@ int draw_heat(const DrawArguments& a, const P& set) {
         ProgressLine line("casting rays", a.quiet);
         picture = raycast(*index, set, options, default_executor(), line.progress());
     }
+    const std::string unit =
+        a.heat == "time" ? "nanoseconds" : (a.heat == "tests" ? "primitives tested" : a.heat);
+    draw_note(picture.image, 0, 0,
+              {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
+               fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit, picture.mean, picture.most)},
+              letter_scale(picture.image));
     save_png(a.output, picture.image);
     const double pixels = double(options.width) * double(options.height);
     if (a.json)
@@ -454,8 +465,8 @@ int draw_heat(const DrawArguments& a, const P& set) {
         fmt::print(
             "{}: {} a ray: {:.1f} on average, at most {:.0f}; the scale ends at {}, and {:.2f}% of the "
             "pixels lie beyond\n",
-            a.structure, a.heat == "time" ? "nanoseconds" : a.heat, picture.mean, picture.most,
-            options.steps_max, 100 * double(picture.beyond) / pixels);
+            a.structure, unit, picture.mean, picture.most, options.steps_max,
+            100 * double(picture.beyond) / pixels);
     return interrupted ? 130 : 0;
 }
 
