@@ -26,7 +26,7 @@ struct TraceStep {
     Interval<T> inside{};
     /// Where the nearest hit so far lies (or the ray ends): what begins beyond is passed over.
     T limit = T(0);
-    /// Of a leaf.
+    /// Of a leaf that was looked into.
     std::vector<TraceTest<T>> tests;
 };
 
@@ -47,8 +47,9 @@ public:
         Place place;
         std::optional<Interval<T>> inside;
         T limit;
-        std::vector<PrimitiveId> skipped;
-        std::vector<std::pair<PrimitiveId, T>> offered;
+        bool looked_into = false;  // its primitives were tested
+        std::vector<PrimitiveId> skipped = {};
+        std::vector<std::pair<PrimitiveId, T>> offered = {};
     };
 
     void node(const Place& place) { visits.node(), add(place, std::nullopt); }
@@ -65,11 +66,12 @@ public:
 
 private:
     void add(const Place& place, const std::optional<Interval<T>>& inside) {
-        entries.push_back({place, inside, limit, {}, {}});
+        entries.push_back({place, inside, limit});
     }
     /// A grid counts a cell as a node, and then as a leaf if something stands in it: one step.
     void look_into(const Place& place, const std::optional<Interval<T>>& inside) {
         if (entries.empty() || entries.back().place != place) add(place, inside);
+        entries.back().looked_into = true;
     }
 };
 
@@ -116,7 +118,7 @@ std::vector<TraceStep<T, D>> steps_of(const S& structure, const RayProbe<T, D>& 
         const Box<T, D> box{Vec<T, D>(cell->box.low), Vec<T, D>(cell->box.high)};
         step.inside = e.inside ? *e.inside : probe.inside(box, e.limit);
         step.inside.exit = std::min(step.inside.exit, e.limit);
-        for (const PrimitiveId id : cell->items) {
+        for (const PrimitiveId id : e.looked_into ? cell->items : std::span<const PrimitiveId>()) {
             TraceTest<T> test{id};
             test.skipped = std::find(e.skipped.begin(), e.skipped.end(), id) != e.skipped.end();
             for (const auto& [offered, t] : e.offered)
