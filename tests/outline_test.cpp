@@ -193,10 +193,10 @@ TEST(Trace, IntervalsAreTheRaysPartsInTheCells) {
 TEST(Polytope, ItsPartsMakeUpTheWhole) {
     const Polytope<3> cube(Box3d{{0, 0, 0}, {2, 2, 2}});
     EXPECT_DOUBLE_EQ(cube.volume(), 8);
-    const CutPlane<3> corner{{1, 1, 1}, 2, 0};
+    const CutPlane<3> corner{{1, 1, 1}, 1, 0};
     const auto [low, high] = cube.cut(corner);
-    EXPECT_DOUBLE_EQ(low.volume(), 8.0 / 6);
-    EXPECT_DOUBLE_EQ(high.volume(), 8 - 8.0 / 6);
+    EXPECT_NEAR(low.volume(), 1.0 / 6, 1e-12);
+    EXPECT_NEAR(high.volume(), 8 - 1.0 / 6, 1e-12);
     EXPECT_EQ(cube.section(corner).size() / 2, 3u);  // each corner from two faces
     EXPECT_EQ(cube.section({{1, 0, 0}, 5, 0}).size(), 0u);
     // Along a face: it is not counted twice.
