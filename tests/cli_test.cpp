@@ -1,59 +1,18 @@
 /// The tool as its user sees it: exit codes, messages, pictures.
 #include <csignal>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
 #include <thread>
-
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <gtest/gtest.h>
 
 #include <hedgerow/io/image.h>
 
+#include "tool.h"
+
 namespace {
 
-namespace fs = std::filesystem;
-
-struct Result {
-    int code;
-    std::string output;  // both streams
-};
-
-Result run(const std::string& arguments) {
-    const std::string command = std::string(HEDGEROW_TOOL_PATH) + " " + arguments + " 2>&1";
-    FILE* pipe = popen(command.c_str(), "r");
-    Result result{-1, {}};
-    char buffer[4096];
-    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) result.output.append(buffer, n);
-    result.code = WEXITSTATUS(pclose(pipe));
-    return result;
-}
-
-std::string bytes_of(const fs::path& path) {
-    std::ostringstream all;
-    all << std::ifstream(path, std::ios::binary).rdbuf();
-    return all.str();
-}
-
-class Cli : public testing::Test {
-protected:
-    fs::path folder = fs::temp_directory_path() / ("hedgerow-cli-" + std::to_string(getpid()));
-    void SetUp() override { fs::create_directories(folder); }
-    void TearDown() override { fs::remove_all(folder); }
-    std::string file(const std::string& name) const { return (folder / name).string(); }
-    void expect_bad(const std::string& arguments, const std::string& said) const {
-        const auto r = run(arguments);
-        EXPECT_EQ(r.code, 3) << arguments << "\n" << r.output;
-        EXPECT_NE(r.output.find(said), std::string::npos) << r.output;
-    }
-};
+using namespace hedgerow;
+using Cli = ToolTest;
 
 TEST_F(Cli, HelpOpensWithExamples) {
-    for (const char* verb : {"", "render ", "info ", "generate "}) {
+    for (const char* verb : {"", "render ", "draw ", "info ", "generate "}) {
         const auto r = run(std::string(verb) + "--help");
         EXPECT_EQ(r.code, 0);
         EXPECT_EQ(r.output.rfind("Examples:", 0), 0u) << r.output;

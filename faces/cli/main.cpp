@@ -34,6 +34,16 @@ constexpr Verb verbs[] = {
      "Examples:\n  hedgerow render gen:teapot -o teapot.png --size 640x480\n"
      "  hedgerow render gen:teapot-in-stadium --shading steps -o steps.png\n\na picture, by rays",
      add_render},
+    {"draw",
+     "Examples:\n  hedgerow draw gen:clusters2d:300 --structure quadtree:leaf_size=4 -o cells.svg\n"
+     "  hedgerow draw gen:teapot --slice y=0.5 --structure kdtree -o slice.svg\n"
+     "  hedgerow draw gen:teapot --depth 6 -o boxes.png\n"
+     "  hedgerow draw gen:segments2d:80 --ray=-0.1,0.3,1,0.3 --frames -o steps.html\n"
+     "  hedgerow draw gen:segments2d:80 --structure bvh:builder=midpoint --beside bvh:builder=sweep -o "
+     "two.svg\n"
+     "  hedgerow draw gen:teapot-in-stadium --heat tests --scale 60 -o heat.png\n\n"
+     "what a structure looks like, and where rays spend their steps",
+     add_draw},
     {"info",
      "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n\n"
      "what is in a scene, and what is wrong with it",

@@ -1,6 +1,4 @@
 /// hedgerow render: a picture, by rays.
-#include <cmath>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -10,43 +8,19 @@
 #include <hedgerow/render/raycast.h>
 
 #include "verbs.h"
+#include "view.h"
 
 namespace hedgerow::cli {
 
 namespace {
 
 struct RenderArguments : Common {
-    std::string structure = "bvh", size = "1024x768", shading = "diffuse", up = "auto";
-    std::vector<float> eye, target, light;
-    float fov = 0;
-    double radius = 0;
+    std::string structure = "bvh", shading = "diffuse";
+    ViewArguments view;
     int spp = 1;
     unsigned threads = 0;
     std::uint64_t steps_max = 0;
 };
-
-std::pair<int, int> parse_size(const std::string& text) {
-    int w = 0, h = 0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > 32768 || h > 32768)
-        throw InputError(fmt::format(
-            "--size {}: a picture is WIDTHxHEIGHT pixels, each from 1 to 32768, as 1024x768", text));
-    return {w, h};
-}
-
-Camera camera_of(const RenderArguments& a, const Box3f& bounds) {
-    Camera c = camera_for(generated_name(a)).value_or(automatic_camera(bounds));
-    if (a.eye.size() == 3) c.eye = {a.eye[0], a.eye[1], a.eye[2]};
-    if (a.target.size() == 3) c.target = {a.target[0], a.target[1], a.target[2]};
-    if (a.light.size() == 3) c.light = {a.light[0], a.light[1], a.light[2]};
-    if (a.up == "x") c.up = {1, 0, 0};
-    if (a.up == "y") c.up = {0, 1, 0};
-    if (a.up == "z") c.up = {0, 0, 1};
-    if (a.fov > 0) c.field_of_view = a.fov;
-    if (length2(cross(c.target - c.eye, c.up)) == 0)
-        throw InputError("the camera looks along its up direction; change --eye, --target or --up");
-    return c;
-}
 
 struct Outcome {
     Picture picture;
@@ -88,7 +62,7 @@ void report(const RenderArguments& a, const Outcome& o) {
 template <class P>
 int render(const RenderArguments& a, const P& primitives) {
     RenderOptions options;
-    std::tie(options.width, options.height) = parse_size(a.size);
+    std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = a.spp, options.seed = a.seed, options.steps_max = a.steps_max;
     options.shading = parse_shading(a.shading);
     const ThreadLimit limit(a.threads);
@@ -97,7 +71,7 @@ int render(const RenderArguments& a, const P& primitives) {
     const auto index = build_any(a.structure, primitives);
     o.build_seconds = now() - start;
     o.primitives = index->size(), o.bytes = index->bytes();
-    options.camera = camera_of(a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)});
+    options.camera = camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)});
     {
         ProgressLine line("rendering", a.quiet);
         start = now();
@@ -110,17 +84,9 @@ int render(const RenderArguments& a, const P& primitives) {
     fmt::print(stderr, "hedgerow: interrupted; the finished part is in {}\n", a.output);
     return 130;
 }
-/// Rays pass between points, so points are drawn as small spheres.
 template <class T>
 int render(const RenderArguments& a, const PointCloud<T, 3>& cloud) {
-    Box<T, 3> box;
-    for (const auto& p : cloud.points) box.expand(p);
-    T radius = static_cast<T>(a.radius);
-    if (radius == 0 && cloud.size() > 0)
-        radius = length(box.extent()) / (10 * std::cbrt(static_cast<T>(cloud.size())));
-    SphereSet<T, 3> spheres;
-    for (const auto& p : cloud.points) spheres.spheres.push_back({p, radius > 0 ? radius : T(1)});
-    return render(a, spheres);
+    return render(a, spheres_at(cloud, a.view.radius));
 }
 template <class T>
 int render(const RenderArguments& a, const PointCloud<T, 2>&) {
@@ -137,23 +103,15 @@ Run add_render(CLI::App& verb) {
     auto a = std::make_shared<RenderArguments>();
     add_common(verb, *a, true);
     verb.add_option("--structure", a->structure, "NAME[:OPTION=VALUE,...]")->capture_default_str();
-    verb.add_option("--size", a->size, "WIDTHxHEIGHT")->capture_default_str();
     verb.add_option("--shading", a->shading, "normals, depth, diffuse or steps")
         ->capture_default_str()
         ->check(CLI::IsMember({"normals", "depth", "diffuse", "steps"}));
     verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
     verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
-    verb.add_option("--eye", a->eye, "x,y,z")->delimiter(',')->expected(3);
-    verb.add_option("--target", a->target, "x,y,z")->delimiter(',')->expected(3);
-    verb.add_option("--light", a->light, "x,y,z: towards the light")->delimiter(',')->expected(3);
-    verb.add_option("--up", a->up, "x, y or z")->check(CLI::IsMember({"auto", "x", "y", "z"}));
-    verb.add_option("--fov", a->fov, "vertical angle of view in degrees; 45 if not given")
-        ->check(CLI::Range(1.0f, 170.0f));
-    verb.add_option("--radius", a->radius, "of points, drawn as spheres; 0: by their number")
-        ->check(CLI::NonNegativeNumber);
+    add_view(verb, a->view);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
     return [a] {
-        parse_size(a->size);
+        parse_size(a->view.size);
         check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) {
             return std::visit([&](const auto& set) { return render(*a, set); }, load<T>(*a));

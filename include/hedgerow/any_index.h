@@ -11,6 +11,7 @@
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
+#include <hedgerow/trace.h>
 
 namespace hedgerow {
 
@@ -48,6 +49,11 @@ public:
                                 Visits* visits = nullptr) const = 0;
     virtual std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
                                     Visits* visits = nullptr) const = 0;
+
+    /// Its cells, parents before their children (structures/outline.h).
+    virtual std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits = {}) const = 0;
+    /// What `closest_hits` does with a ray, step by step (trace.h).
+    virtual Trace<T, D> trace(const Ray<T, D>& ray) const = 0;
 };
 
 /// An option of a structure, for help and for messages.

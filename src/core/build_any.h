@@ -81,6 +81,10 @@ public:
                             Visits* visits) const override {
         return counted(visits, [&](auto& count) { return hedgerow::overlapping(index_, box, found, count); });
     }
+    std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits) const override {
+        return hedgerow::outline(index_.structure(), limits);
+    }
+    Trace<T, D> trace(const Ray<T, D>& ray) const override { return hedgerow::trace(index_, ray); }
 
 private:
     std::string name_;

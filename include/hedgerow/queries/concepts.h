@@ -22,6 +22,13 @@ concept Query = requires(Q& q, const Q& asked) {
 /// `node_count()`.
 using NodeId = std::uint32_t;
 
+/// How a walk names the node that it is at: two words that no other node of the structure has, but those that
+/// hold nothing. Which NodeId that is, structures/outline.h says.
+struct Place {
+    std::uint32_t first = 0, second = 0;
+    friend constexpr bool operator==(const Place&, const Place&) = default;
+};
+
 /// What a query says of a whole subtree before it is looked into.
 enum class Verdict { prune, open, accept };
 
@@ -33,14 +40,21 @@ concept SubtreeQuery = Query<Q> && requires(Q& q, NodeId node) {
 };
 
 /// How much a query looked at. `nodes`: inner nodes opened (cells of a grid); `leaves`; `primitives` tested,
-/// and how many a mailbox `skipped`, since they had been tested before.
+/// and how many a mailbox `skipped`, since they had been tested before. Walks also say where they are: the
+/// place, and what is left of the probe there if they know it. Only a trace listens (trace.h).
 struct Visits {
     std::uint64_t nodes = 0, leaves = 0, primitives = 0, skipped = 0;
 
-    void node() { ++nodes; }
-    void leaf(std::uint64_t count) { ++leaves, primitives += count; }
-    void item() { ++primitives; }
-    void skip() { --primitives, ++skipped; }
+    template <class... Where>
+    void node(const Where&...) {
+        ++nodes;
+    }
+    template <class... Where>
+    void leaf(std::uint64_t count, const Where&...) {
+        ++leaves, primitives += count;
+    }
+    void own(PrimitiveId) { ++primitives; }
+    void skip(PrimitiveId) { --primitives, ++skipped; }
     Visits& operator+=(const Visits& o) {
         nodes += o.nodes, leaves += o.leaves, primitives += o.primitives, skipped += o.skipped;
         return *this;
@@ -49,10 +63,12 @@ struct Visits {
 };
 /// Counts nothing and costs nothing.
 struct NoVisits {
-    void node() const {}
-    void leaf(std::uint64_t) const {}
-    void item() const {}
-    void skip() const {}
+    template <class... Where>
+    void node(const Where&...) const {}
+    template <class... Where>
+    void leaf(std::uint64_t, const Where&...) const {}
+    void own(PrimitiveId) const {}
+    void skip(PrimitiveId) const {}
 };
 
 }  // namespace hedgerow

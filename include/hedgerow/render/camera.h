@@ -54,6 +54,14 @@ public:
         const Vec3f d = forward_ + right_ * ((x - middle_x_) * scale_) + up_ * ((middle_y_ - y) * scale_);
         return {Vec<T, 3>(eye_), Vec<T, 3>(normalized(d))};
     }
+    /// Where a point is seen: x and y as above, and how far forward it lies; behind the eye that is < 0.
+    Vec3f seen(const Vec3f& p) const {
+        const Vec3f d = p - eye_;
+        const float forward = dot(d, forward_), per_pixel = forward * scale_;
+        return {middle_x_ + dot(d, right_) / per_pixel, middle_y_ - dot(d, up_) / per_pixel, forward};
+    }
+    /// How far forward the point of a ray at distance 1 lies, through the pixel there.
+    float forward_of(const Vec3f& direction) const { return dot(direction, forward_); }
 
 private:
     static float tangent(float degrees) { return std::tan(degrees * 3.14159265f / 180); }

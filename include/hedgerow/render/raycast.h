@@ -1,6 +1,7 @@
 /// Ray casting: a picture from any index, in tiles over an executor.
 #pragma once
 
+#include <chrono>
 #include <mutex>
 
 #include <hedgerow/any_index.h>
@@ -11,12 +12,19 @@
 
 namespace hedgerow {
 
-enum class Shading { normals, depth, diffuse, steps };
+/// The last three are counted, not seen: cells and primitives looked at, primitives tested, nanoseconds.
+/// Where time is measured a ray is cast three times, and the least counts.
+enum class Shading { normals, depth, diffuse, steps, tests, time };
+constexpr bool counted(Shading s) {
+    return s >= Shading::steps;
+}
 
 inline Shading parse_shading(std::string_view name) {
     if (name == "normals") return Shading::normals;
     if (name == "depth") return Shading::depth;
     if (name == "steps") return Shading::steps;
+    if (name == "tests") return Shading::tests;
+    if (name == "time") return Shading::time;
     return Shading::diffuse;
 }
 
@@ -25,7 +33,7 @@ struct RenderOptions {
     int width = 1024, height = 768, samples = 1;
     Shading shading = Shading::diffuse;
     std::uint64_t seed = 0;
-    /// Top of the scale of `steps`; 0: the most that was seen.
+    /// Top of the scale of what is counted; 0: the most that was seen.
     std::uint64_t steps_max = 0;
 };
 
@@ -33,6 +41,9 @@ struct Picture {
     Image image;
     std::uint64_t rays = 0;
     Visits visits;
+    /// Of what is counted: the mean and the most of all pixels, and how many lie beyond the scale.
+    double mean = 0, most = 0;
+    std::uint64_t beyond = 0;
 };
 
 /// Casts one or more rays a pixel; diffuse adds a shadow ray where the light is faced. Rows that are not done
@@ -69,7 +80,7 @@ private:
         const Vec3f forward = normalized(c.target - c.eye);
         return normalized(c.up + cross(forward, c.up) * 0.5f - forward * 0.35f);
     }
-    /// Colour, or for `steps` the number of visits, of every sample's mean.
+    /// Colour, or what is counted, of every sample's mean.
     bool row(int y, const Progress& progress) {
         Visits visits;
         std::uint64_t rays = 0;
@@ -106,6 +117,8 @@ private:
         visits += here;
         if (o_.shading == Shading::steps)
             return Vec3f::all(static_cast<float>(here.nodes + here.leaves + here.primitives));
+        if (o_.shading == Shading::tests) return Vec3f::all(static_cast<float>(here.primitives));
+        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(ray));
         if (!hit) return background(Vec3f(ray.direction));
         Vec3f n = normal(hit, ray);
         if (dot(n, Vec3f(ray.direction)) > 0) n = -n;
@@ -113,6 +126,17 @@ private:
         if (o_.shading == Shading::depth)
             return Vec3f::all(std::exp(-1.5f * static_cast<float>(hit.t) / (diagonal_ + 1e-30f)));
         return lit(ray, hit, n, visits, rays);
+    }
+    float nanoseconds(const Ray<T, 3>& ray) const {
+        using Clock = std::chrono::steady_clock;
+        auto least = Clock::duration::max();
+        for (int k = 0; k < 3; ++k) {
+            Hit<T> hit;
+            const auto start = Clock::now();
+            index_.closest_hits({&ray, 1}, {&hit, 1});
+            least = std::min(least, Clock::now() - start);
+        }
+        return std::chrono::duration<float, std::nano>(least).count();
     }
     Vec3f lit(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& n, Visits& visits,
               std::uint64_t& rays) const {
@@ -143,19 +167,21 @@ private:
 
     Picture develop() const {
         Picture picture{Image(o_.width, o_.height), rays_, visits_};
-        float most = static_cast<float>(o_.steps_max);
-        if (o_.steps_max == 0)
-            for (const auto& v : values_) most = std::max(most, v[0]);
+        for (const auto& v : values_) {
+            picture.most = std::max(picture.most, double(v[0]));
+            picture.mean += double(v[0]) / double(values_.size());
+            picture.beyond += o_.steps_max > 0 && v[0] > static_cast<float>(o_.steps_max);
+        }
+        const float most = static_cast<float>(o_.steps_max > 0 ? double(o_.steps_max) : picture.most);
         for (int y = 0; y < o_.height; ++y) {
             if (!done_[static_cast<std::size_t>(y)]) continue;
             for (int x = 0; x < o_.width; ++x) {
                 const Vec3f& v = values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) +
                                          static_cast<std::size_t>(x)];
-                picture.image.at(x, y) =
-                    o_.shading == Shading::steps ? heat(most > 0 ? v[0] / most : 0) : srgb(v);
+                picture.image.at(x, y) = counted(o_.shading) ? heat(most > 0 ? v[0] / most : 0) : srgb(v);
             }
         }
-        if (o_.shading == Shading::steps) draw_colour_bar(picture.image, static_cast<std::uint64_t>(most));
+        if (counted(o_.shading)) draw_colour_bar(picture.image, static_cast<std::uint64_t>(most));
         return picture;
     }
 

@@ -43,10 +43,10 @@ public:
         if (items_.empty() || query.limit() < 0) return;
         if (options_.box) {
             T at;
-            count.node();
+            count.node(Place{});
             if (!query.probe().enter(bounds_, query.limit(), at)) return;
         }
-        count.leaf(items_.size());
+        count.leaf(items_.size(), Place{});
         test_leaf(primitives, query.probe(),
                   Leaf{items_.data(), 0, static_cast<std::uint32_t>(items_.size())}, query);
     }

@@ -22,7 +22,7 @@ public:
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             PrimitiveId& last = last_[leaf.ids[i] % slots];
             if (last == leaf.ids[i]) {
-                count_.skip();
+                count_.skip(leaf.ids[i]);
                 continue;
             }
             last = leaf.ids[i];

@@ -8,15 +8,11 @@ namespace hedgerow {
 /// The probe knows the way from cell to cell; `visit(cell)` looks into each. What is found in any cell is
 /// kept, and the walk ends when the next cell begins beyond the limit, or when a visit stops it. A cell may
 /// itself be a lattice to be walked.
-template <class Lattice, Query Q, class Count, class Visit>
-Flow walk_lattice(const Lattice& lattice, const Q& query, Count& count, Visit visit) {
+template <class Lattice, Query Q, class Visit>
+Flow walk_lattice(const Lattice& lattice, const Q& query, Visit visit) {
     Flow flow = Flow::go_on;
     query.probe().sweep(
-        lattice, [&] { return query.limit(); },
-        [&](const auto& cell) {
-            count.node();
-            return flow = visit(cell);
-        });
+        lattice, [&] { return query.limit(); }, [&](const auto& cell) { return flow = visit(cell); });
     return flow;
 }
 

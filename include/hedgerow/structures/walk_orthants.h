@@ -20,6 +20,7 @@ struct OrthantNode {
     }
     constexpr bool inner() const { return (count & inner_bit) != 0; }
     constexpr bool empty() const { return count == 0; }
+    constexpr Place place() const { return {first, count}; }
     constexpr unsigned occupied() const { return count & ~inner_bit; }
     friend constexpr bool operator==(const OrthantNode&, const OrthantNode&) = default;
 };
@@ -134,10 +135,10 @@ void walk_orthants(const S& tree, Primitives& primitives, Q& query, Count& count
     Waiting waiting(query);
     do {
         if (e.node.inner()) {
-            count.node();
+            count.node(e.node.place(), e.state);
             waiting.open(e, tree.children(e.node));
         } else {
-            count.leaf(e.node.count);
+            count.leaf(e.node.count, e.node.place(), e.state);
             if (test_leaf(primitives, query.probe(), tree.leaf(e.node), query) == Flow::stop) return;
         }
     } while (waiting.pop(e));

@@ -48,13 +48,14 @@ void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) 
     while (true) {
         if (tree.is_leaf(node)) {
             const Leaf leaf = tree.leaf(node);
-            count.leaf(leaf.count);
+            count.leaf(leaf.count, Place{node}, state);
             if (test_leaf(primitives, probe, leaf, query) == Flow::stop) return;
         } else {
-            count.node();
+            count.node(Place{node}, state);
             if constexpr (HoldsInNodes<S>) {
-                count.item();
-                if (test_leaf(primitives, probe, tree.own(node), query) == Flow::stop) return;
+                const Leaf own = tree.own(node);
+                count.own(own.ids[own.first]);
+                if (test_leaf(primitives, probe, own, query) == Flow::stop) return;
             }
             const auto cut = tree.cut(probe, state, node, query.limit());
             const NodeId near = cut.near_is_high ? tree.high_child(node) : tree.low_child(node);

@@ -13,6 +13,7 @@ struct NodeRef {
     static constexpr std::uint32_t nowhere = 0xFFFFFFFFu;
     bool empty() const { return count == 0 && first == nowhere; }
     bool leaf() const { return count != 0; }
+    Place place() const { return {first, count}; }
 };
 
 /// What the walk needs to know of a tree: packs of `width` volumes, and where each leads.
@@ -50,10 +51,10 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
     const auto& probe = query.probe();
     while (true) {
         if (node.leaf()) {
-            count.leaf(node.count);
+            count.leaf(node.count, node.place());
             if (test_leaf(primitives, probe, tree.leaf(node), query) == Flow::stop) return;
         } else {
-            count.node();
+            count.node(node.place());
             alignas(16) T at[S::width < 4 ? 4 : S::width];
             unsigned entered = probe.enter(tree.volumes(node), query.limit(), at);
             if constexpr (SubtreeQuery<Q>)

@@ -1,8 +1,8 @@
 /// How BSP trees choose planes and cut cells.
 #pragma once
 
+#include <hedgerow/geometry/polytope.h>
 #include <hedgerow/structures/bsp/bsp_node.h>
-#include <hedgerow/structures/bsp/polytope.h>
 #include <hedgerow/structures/cells.h>
 
 namespace hedgerow {

@@ -48,17 +48,24 @@ public:
     int depth() const { return empty() ? 0 : 1; }
     bool empty() const { return count_ == 0; }
     const Lattice<D>& lattice() const { return rows_.lattice(); }
+    /// What stands in a cell.
+    Leaf leaf(const typename Lattice<D>::Cell& cell) const {
+        const std::uint32_t row = rows_.cursor().row(cell);
+        return row == CellRows<D>::none ? Leaf{nullptr, 0, 0} : rows_.leaf(row);
+    }
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (empty() || query.limit() < 0) return;
         with_mailbox(options_.mailbox, primitives, count, [&](auto& tested) {
             auto cursor = rows_.cursor();
-            walk_lattice(lattice(), query, count, [&](const auto& cell) {
+            walk_lattice(lattice(), query, [&](const auto& cell) {
+                const Place place{lattice().number(cell)};
+                count.node(place);
                 const std::uint32_t row = cursor.row(cell);
                 if (row == CellRows<D>::none) return Flow::go_on;
                 const Leaf leaf = rows_.leaf(row);
-                count.leaf(leaf.count);
+                count.leaf(leaf.count, place);
                 return test_leaf(tested, query.probe(), leaf, query);
             });
         });

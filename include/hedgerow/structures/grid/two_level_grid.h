@@ -61,26 +61,48 @@ public:
     }
     int depth() const { return empty() ? 0 : 2; }
     bool empty() const { return count_ == 0; }
+    const Lattice<D>& lattice() const { return rows_.lattice(); }
+    /// What stands in a cell of the first level that is a row of its own.
+    Leaf leaf(const typename Lattice<D>::Cell& cell) const {
+        const Inner* inner = inner_of(cell);
+        return inner == nullptr ? Leaf{nullptr, 0, 0} : leaf(inner->start);
+    }
+    /// Calls f(lattice, leaf_of, place_of) if a cell of the first level is a grid of its own: with what
+    /// stands in each of its cells, and how walks name them.
+    template <class F>
+    void with_lattice_in(const typename Lattice<D>::Cell& cell, F f) const {
+        const Inner* inner = inner_of(cell);
+        if (inner == nullptr || inner->cell_count() == 1) return;
+        const auto start = [&](const auto& c) { return inner->start + inner->number(c); };
+        f(
+            inner->lattice_in(lattice(), cell), [&](const auto& c) { return leaf(start(c)); },
+            [&](const auto& c) { return place_of(start(c)); });
+    }
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (empty() || query.limit() < 0) return;
         with_mailbox(options_.mailbox, primitives, count, [&](auto& tested) {
             auto cursor = rows_.cursor();
-            const auto look_into = [&](std::uint32_t start) {
-                const Leaf leaf{items_.data(), starts_[start], starts_[start + 1] - starts_[start]};
-                if (leaf.count == 0) return Flow::go_on;
-                count.leaf(leaf.count);
-                return test_leaf(tested, query.probe(), leaf, query);
+            const auto look_into = [&](std::uint32_t start, const Place& place) {
+                const Leaf found = leaf(start);
+                if (found.count == 0) return Flow::go_on;
+                count.leaf(found.count, place);
+                return test_leaf(tested, query.probe(), found, query);
             };
-            walk_lattice(rows_.lattice(), query, count, [&](const auto& cell) {
+            walk_lattice(rows_.lattice(), query, [&](const auto& cell) {
+                const Place place{rows_.lattice().number(cell)};
+                count.node(place);
                 const std::uint32_t row = cursor.row(cell);
                 if (row == CellRows<D>::none) return Flow::go_on;
                 const Inner& inner = inner_[row];
-                if (inner.cell_count() == 1) return look_into(inner.start);
+                if (inner.cell_count() == 1) return look_into(inner.start, place);
                 const auto lattice = inner.lattice_in(rows_.lattice(), cell);
-                return walk_lattice(lattice, query, count,
-                                    [&](const auto& c) { return look_into(inner.start + inner.number(c)); });
+                return walk_lattice(lattice, query, [&](const auto& c) {
+                    const std::uint32_t start = inner.start + inner.number(c);
+                    count.node(place_of(start));
+                    return look_into(start, place_of(start));
+                });
             });
         });
     }
@@ -147,6 +169,16 @@ private:
         std::vector<std::uint32_t> starts;
         std::vector<PrimitiveId> items;
     };
+
+    const Inner* inner_of(const Cell& cell) const {
+        const std::uint32_t row = rows_.cursor().row(cell);
+        return row == CellRows<D>::none ? nullptr : &inner_[row];
+    }
+    Leaf leaf(std::uint32_t start) const {
+        return {items_.data(), starts_[start], starts_[start + 1] - starts_[start]};
+    }
+    /// Of a cell of the second level.
+    static Place place_of(std::uint32_t start) { return {start, 1}; }
 
     template <PrimitiveSet P>
     void divide(const P& set, Executor& executor) {

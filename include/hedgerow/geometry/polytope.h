@@ -1,4 +1,4 @@
-/// Convex cells between planes.
+/// Convex polytopes: cells between planes.
 #pragma once
 
 #include <algorithm>
@@ -24,15 +24,64 @@ public:
                 faces_.push_back(face_of(box, axis, side));
     }
 
+    bool empty() const { return faces_.empty(); }
+    const std::vector<Face>& faces() const { return faces_; }
+    Box<double, D> bounds() const {
+        Box<double, D> box;
+        for (const Face& f : faces_)
+            for (const Point& p : f) box.expand(p);
+        return box;
+    }
     /// The surface's area, or in the plane the perimeter.
     double surface() const {
         double sum = 0;
         for (const Face& f : faces_) sum += measure(f);
         return sum;
     }
+    /// In the plane the area: the sum of the pyramids over the faces.
+    double volume() const {
+        if (empty()) return 0;
+        const Point apex = faces_[0][0];
+        double sum = 0;
+        for (const Face& f : faces_)
+            for (std::size_t i = D - 1; i < f.size(); ++i) {
+                if constexpr (D == 2)
+                    sum += std::abs(dot(f[i] - apex, crosswise(f[i - 1] - apex))) / 2;
+                else
+                    sum += std::abs(dot(f[0] - apex, cross(f[i - 1] - apex, f[i] - apex))) / 6;
+            }
+        return sum;
+    }
+    /// The corners as they go round.
+    Face corners() const requires(D == 2) {
+        Face all;
+        for (const Face& f : faces_) all.insert(all.end(), f.begin(), f.end());
+        go_round(all, 0, 1);
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        return all;
+    }
+    /// What a plane has of it: the corners of a convex polygon, the ends of a segment in the plane. Fewer
+    /// than D: nothing.
+    Face section(const CutPlane<D>& plane) const {
+        Face low, high, cap;
+        for (const Face& f : faces_) clip(f, plane, low, high, cap);
+        close(cap, plane.normal);
+        return cap;
+    }
 
-    /// The two parts on the sides of a plane: low, high. Either may have no faces.
+    /// The two parts on the sides of a plane: low, high. Of a plane along a face, but for roundings, one is
+    /// that face, seen from both sides, and the other the whole; of one that meets nothing, one has no faces.
     std::pair<Polytope, Polytope> cut(const CutPlane<D>& plane) const {
+        double lowest = 0, highest = 0, largest = 0;
+        for (const Face& f : faces_)
+            for (const Point& p : f) {
+                const double h = plane.height(p);
+                lowest = std::min(lowest, h), highest = std::max(highest, h);
+                largest = std::max(largest, max_component(abs(p)));
+            }
+        const double rounding = 0x1p-40 * product(plane.reach(), largest);
+        if (highest <= rounding) return {*this, touched(plane, rounding)};
+        if (lowest >= -rounding) return {touched(plane, rounding), *this};
         std::pair<Polytope, Polytope> sides;
         Face cap;
         for (const Face& f : faces_) {
@@ -48,6 +97,17 @@ public:
     }
 
 private:
+    /// The part within a distance of a plane that the rest lies on one side of.
+    Polytope touched(const CutPlane<D>& plane, double height) const {
+        Face cap;
+        for (const Face& f : faces_)
+            for (const Point& p : f)
+                if (std::abs(plane.height(p)) <= height) cap.push_back(p);
+        close(cap, plane.normal);
+        Polytope flat;
+        if (cap.size() >= D) flat.faces_ = {cap, cap};
+        return flat;
+    }
     static Face face_of(const Box<double, D>& box, int axis, double side) {
         Face face;
         constexpr int around[4] = {0, 1, 3, 2};
@@ -91,24 +151,29 @@ private:
     static void close(Face& cap, const Point& normal) {
         if (cap.size() < D) return;
         if constexpr (D == 2) {
-            const Point along(-normal[1], normal[0]);
+            const Point along = crosswise(normal);
             const auto [first, last] = std::minmax_element(
                 cap.begin(), cap.end(),
                 [&](const Point& p, const Point& q) { return dot(p, along) < dot(q, along); });
             cap = {*first, *last};
         } else {
-            Point center;
-            for (const Point& p : cap) center = center + p / double(cap.size());
-            const int axis = max_axis(normal), x = (axis + 1) % 3, y = (axis + 2) % 3;
-            // By half planes and cross products: no angle has to be computed.
-            const auto upper = [&](const Point& d) { return d[y] > 0 || (d[y] == 0 && d[x] > 0); };
-            std::sort(cap.begin(), cap.end(), [&](const Point& p, const Point& q) {
-                const Point a = p - center, b = q - center;
-                if (upper(a) != upper(b)) return upper(a);
-                return product(a[x], b[y]) - product(a[y], b[x]) > 0;
-            });
+            const int axis = max_axis(normal);
+            go_round(cap, (axis + 1) % 3, (axis + 2) % 3);
         }
     }
+    /// Sorts a convex polygon's corners as they go round their middle, seen along the other axis than x and
+    /// y. By half planes and cross products: no angle has to be computed.
+    static void go_round(Face& corners, int x, int y) {
+        Point center;
+        for (const Point& p : corners) center = center + p / double(corners.size());
+        const auto upper = [&](const Point& d) { return d[y] > 0 || (d[y] == 0 && d[x] > 0); };
+        std::sort(corners.begin(), corners.end(), [&](const Point& p, const Point& q) {
+            const Point a = p - center, b = q - center;
+            if (upper(a) != upper(b)) return upper(a);
+            return product(a[x], b[y]) - product(a[y], b[x]) > 0;
+        });
+    }
+    static Point crosswise(const Point& d) requires(D == 2) { return {-d[1], d[0]}; }
 
     std::vector<Face> faces_;
 };

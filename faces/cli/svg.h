@@ -1,0 +1,67 @@
+/// SVG: text that is well formed by construction, and a panel that maps a scene to pixels.
+#pragma once
+
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <hedgerow/geometry/box.h>
+
+namespace hedgerow::cli {
+
+/// With &, <, > and quotes as entities.
+std::string escaped(std::string_view text);
+
+/// Attributes are written as they are given; texts are escaped. Lengths are in pixels.
+class Svg {
+public:
+    using Points = std::vector<Vec2d>;
+
+    Svg(int width, int height, std::string_view style);
+
+    void open_group(std::string_view attributes) { put("<g {}>\n", attributes); }
+    void close_group() { put("</g>\n"); }
+    /// `hint` is what a browser shows under the pointer; may be empty.
+    void polygon(const Points& points, std::string_view attributes, std::string_view hint = {});
+    void line(const Vec2d& a, const Vec2d& b, std::string_view attributes);
+    void circle(const Vec2d& center, double radius, std::string_view attributes);
+    void rect(const Box2d& box, std::string_view attributes);
+    void text(const Vec2d& at, std::string_view text, std::string_view attributes = {});
+    /// Definitions and the like: well formed already.
+    void raw(std::string_view xml) { put("{}", xml); }
+
+    /// The whole document.
+    std::string finished() const { return text_ + "</svg>\n"; }
+
+private:
+    template <class... A>
+    void put(fmt::format_string<A...> format, A&&... a) {
+        fmt::format_to(std::back_inserter(text_), format, std::forward<A>(a)...);
+    }
+    std::string text_;
+};
+
+/// A part of the picture that shows a part of the plane: as large as fits, in the middle, y upwards.
+class Panel {
+public:
+    Panel(const Box2d& shown, const Box2d& area);
+
+    Vec2d operator()(const Vec2d& p) const;
+    std::vector<Vec2d> operator()(const std::vector<Vec2d>& points) const;
+    double pixels(double length) const { return length * scale_; }
+    /// Where the shown part lies in the picture.
+    Box2d frame() const;
+
+private:
+    Box2d shown_;
+    Vec2d middle_;  // of the area
+    double scale_;
+};
+
+/// A colour for level k of n, as "#rrggbb": from dark blue by green to red, each plain on white.
+std::string level_colour(int k, int n);
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,47 @@
+#include "view.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include <hedgerow/error.h>
+
+namespace hedgerow::cli {
+
+void add_view(CLI::App& verb, ViewArguments& view) {
+    verb.add_option("--size", view.size, "WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--eye", view.eye, "x,y,z")->delimiter(',')->expected(3);
+    verb.add_option("--target", view.target, "x,y,z")->delimiter(',')->expected(3);
+    verb.add_option("--light", view.light, "x,y,z: towards the light")->delimiter(',')->expected(3);
+    verb.add_option("--up", view.up, "x, y or z")->check(CLI::IsMember({"auto", "x", "y", "z"}));
+    verb.add_option("--fov", view.fov, "vertical angle of view in degrees; 45 if not given")
+        ->check(CLI::Range(1.0f, 170.0f));
+    verb.add_option("--radius", view.radius, "of points, drawn as spheres; 0: by their number")
+        ->check(CLI::NonNegativeNumber);
+}
+
+std::pair<int, int> parse_size(const std::string& text) {
+    int w = 0, h = 0;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > 32768 || h > 32768)
+        throw InputError(fmt::format(
+            "--size {}: a picture is WIDTHxHEIGHT pixels, each from 1 to 32768, as 1024x768", text));
+    return {w, h};
+}
+
+Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds) {
+    Camera c = camera_for(generated_name(common)).value_or(automatic_camera(bounds));
+    if (view.eye.size() == 3) c.eye = {view.eye[0], view.eye[1], view.eye[2]};
+    if (view.target.size() == 3) c.target = {view.target[0], view.target[1], view.target[2]};
+    if (view.light.size() == 3) c.light = {view.light[0], view.light[1], view.light[2]};
+    if (view.up == "x") c.up = {1, 0, 0};
+    if (view.up == "y") c.up = {0, 1, 0};
+    if (view.up == "z") c.up = {0, 0, 1};
+    if (view.fov > 0) c.field_of_view = view.fov;
+    if (length2(cross(c.target - c.eye, c.up)) == 0)
+        throw InputError("the camera looks along its up direction; change --eye, --target or --up");
+    return c;
+}
+
+}  // namespace hedgerow::cli

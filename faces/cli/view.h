@@ -1,0 +1,45 @@
+/// How the verbs that make pictures say how large they are and from where.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <hedgerow/primitives/point_cloud.h>
+#include <hedgerow/primitives/sphere_set.h>
+#include <hedgerow/render/camera.h>
+
+#include "common.h"
+
+namespace hedgerow::cli {
+
+struct ViewArguments {
+    std::string size = "1024x768", up = "auto";
+    std::vector<float> eye, target, light;
+    float fov = 0;
+    double radius = 0;
+};
+void add_view(CLI::App& verb, ViewArguments& view);
+
+/// Width and height. Throws InputError unless it is WIDTHxHEIGHT, each from 1 to 32768.
+std::pair<int, int> parse_size(const std::string& text);
+
+/// Where the scene is best seen from, but for what the user says. Throws InputError for a view along up.
+Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds);
+
+/// Rays pass between points, so that points are seen as small spheres.
+template <class T>
+SphereSet<T, 3> spheres_at(const PointCloud<T, 3>& cloud, double wanted_radius) {
+    Box<T, 3> box;
+    for (const auto& p : cloud.points) box.expand(p);
+    T radius = static_cast<T>(wanted_radius);
+    if (radius == 0 && cloud.size() > 0)
+        radius = length(box.extent()) / (10 * std::cbrt(static_cast<T>(cloud.size())));
+    SphereSet<T, 3> spheres;
+    for (const auto& p : cloud.points) spheres.spheres.push_back({p, radius > 0 ? radius : T(1)});
+    return spheres;
+}
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,217 @@
+/// What `draw` writes: well-formed pictures with as many cells as there are, and tables that tell the truth.
+#include <algorithm>
+#include <vector>
+
+#include <expat.h>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/io/image.h>
+#include <hedgerow/scenes/generate.h>
+
+#include "tool.h"
+
+namespace {
+
+using namespace hedgerow;
+using Draw = ToolTest;
+
+/// How many elements of an XML document have a class that begins so. Fails the test if it is not well formed.
+std::size_t elements_with_class(const std::string& xml, const std::string& begins) {
+    struct Seen {
+        std::string begins;
+        std::size_t count = 0;
+    } seen{begins};
+    const auto parser = XML_ParserCreate(nullptr);
+    XML_SetUserData(parser, &seen);
+    XML_SetStartElementHandler(parser, [](void* data, const XML_Char*, const XML_Char** attributes) {
+        auto& s = *static_cast<Seen*>(data);
+        for (; *attributes != nullptr; attributes += 2)
+            s.count +=
+                std::string(attributes[0]) == "class" && std::string(attributes[1]).starts_with(s.begins);
+    });
+    const auto status = XML_Parse(parser, xml.data(), static_cast<int>(xml.size()), 1);
+    EXPECT_EQ(status, XML_STATUS_OK) << XML_ErrorString(XML_GetErrorCode(parser)) << " in line "
+                                     << XML_GetCurrentLineNumber(parser);
+    XML_ParserFree(parser);
+    return seen.count;
+}
+
+std::size_t cells_of(const std::string& scene, const std::string& spec) {
+    return std::visit([&](const auto& set) { return build_any(spec, set)->outline().size(); },
+                      generate<float>(parse_scene_spec(scene)));
+}
+
+TEST_F(Draw, FlatScenesShowEveryCell) {
+    for (const char* scene : {"gen:clusters2d:120", "gen:segments2d:80"})
+        for (const char* spec :
+             {"quadtree:leaf_size=3", "kdtree", "grid", "two-level-grid", "bsp", "bvh", "brute-force"}) {
+            SCOPED_TRACE(std::string(scene) + " " + spec);
+            const auto r =
+                run(std::string("draw ") + scene + " --structure " + spec + " -o " + file("cells.svg"));
+            ASSERT_EQ(r.code, 0) << r.output;
+            const auto svg = bytes_of(file("cells.svg"));
+            EXPECT_EQ(elements_with_class(svg, "cell"), cells_of(scene, spec));
+            const auto primitives = elements_with_class(svg, "dot") + elements_with_class(svg, "line");
+            EXPECT_EQ(primitives, std::string(scene).find("clusters") != std::string::npos ? 120u : 80u);
+        }
+}
+
+TEST_F(Draw, SlicesShowWhatThePlaneCuts) {
+    for (const char* spec : {"octree", "kdtree", "grid", "two-level-grid", "bsp", "bvh"}) {
+        SCOPED_TRACE(spec);
+        const auto r = run(std::string("draw gen:teapot:300 --slice z=0.4 --structure ") + spec + " -o " +
+                           file("slice.svg"));
+        ASSERT_EQ(r.code, 0) << r.output;
+        const auto svg = bytes_of(file("slice.svg"));
+        const auto set = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:teapot:300")));
+        const auto index = build_any(spec, set);
+        const double low = static_cast<double>(index->bounds().low[2]);
+        const double z = low + 0.4 * (static_cast<double>(index->bounds().high[2]) - low);
+        OutlineLimits<3> limits;
+        limits.within.low[2] = limits.within.high[2] = z;
+        std::size_t cut = 0, crossed = 0;
+        for (const auto& c : index->outline(limits)) cut += c.box.low[2] < z && z < c.box.high[2];
+        for (std::size_t i = 0; i < set.size(); ++i) {
+            const auto b = set.view().bounds(i);
+            crossed += static_cast<double>(b.low[2]) < z && z < static_cast<double>(b.high[2]);
+        }
+        EXPECT_EQ(elements_with_class(svg, "cell"), cut);
+        EXPECT_EQ(elements_with_class(svg, "line"), crossed);
+    }
+    // A position is as good as a fraction.
+    ASSERT_EQ(run("draw gen:cube:300 --quiet --slice x=0.75 -o " + file("a.svg")).code, 0);
+    ASSERT_EQ(run("draw gen:cube:300 --quiet --slice x=@0.5 -o " + file("b.svg")).code, 0);
+    EXPECT_EQ(elements_with_class(bytes_of(file("a.svg")), "cell"),
+              elements_with_class(bytes_of(file("b.svg")), "cell"));
+}
+
+TEST_F(Draw, DepthLimitsTheLevels) {
+    const auto cells = [&](const std::string& depth) {
+        EXPECT_EQ(
+            run("draw gen:points2d:200 --quiet --structure kdtree --depth " + depth + " -o " + file("d.svg"))
+                .code,
+            0);
+        return elements_with_class(bytes_of(file("d.svg")), "cell");
+    };
+    EXPECT_EQ(cells("1"), 1u);
+    EXPECT_EQ(cells("3"), 7u);
+    EXPECT_LT(cells("4"), cells("0"));
+}
+
+TEST_F(Draw, TwoBuildersShowWhatSiblingsShare) {
+    const auto r = run("draw gen:segments2d:200 --json --structure bvh:builder=midpoint --beside kdtree -o " +
+                       file("two.svg"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const auto svg = bytes_of(file("two.svg"));
+    EXPECT_EQ(elements_with_class(svg, "cell"), cells_of("gen:segments2d:200", "bvh:builder=midpoint") +
+                                                    cells_of("gen:segments2d:200", "kdtree"));
+    EXPECT_GT(elements_with_class(svg, "shared"), 1u);
+    EXPECT_NE(r.output.find("\"sibling_overlap\": 0.0"), std::string::npos)
+        << "a partition's siblings share nothing";
+}
+
+TEST_F(Draw, ARaysTableIsItsTrace) {
+    const std::string ray = " --ray=-0.2,0.31,1,0.35";
+    for (const char* spec : {"quadtree", "kdtree", "grid", "two-level-grid", "bsp", "bvh"}) {
+        SCOPED_TRACE(spec);
+        const auto set = std::get<SegmentSet<float>>(generate<float>(parse_scene_spec("gen:segments2d:80")));
+        const auto trace = build_any(spec, set)->trace({{-0.2f, 0.31f}, {1, 0.35f}});
+        const auto r =
+            run("draw gen:segments2d:80 --structure " + std::string(spec) + ray + " -o " + file("ray.svg"));
+        ASSERT_EQ(r.code, 0) << r.output;
+        EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "cell visited"), trace.steps.size());
+        EXPECT_EQ(static_cast<std::size_t>(std::count(r.output.begin(), r.output.end(), '\n')),
+                  trace.steps.size() + 2)
+            << "a head, a line a step, and the sum";
+        ASSERT_TRUE(trace.hit);
+        EXPECT_NE(r.output.find("hits primitive " + std::to_string(trace.hit->element)), std::string::npos);
+        const auto json = run("draw gen:segments2d:80 --json --structure " + std::string(spec) + ray +
+                              " -o " + file("ray.svg"));
+        EXPECT_NE(json.output.find("\"primitives\": " + std::to_string(trace.visits.primitives)),
+                  std::string::npos);
+    }
+    ASSERT_EQ(run("draw gen:segments2d:80 --quiet --frames" + ray + " -o " + file("ray.html")).code, 0);
+    auto page = bytes_of(file("ray.html"));
+    const auto begin = page.find("<svg"), end = page.find("</svg>") + 6;
+    ASSERT_LT(begin, end);
+    EXPECT_GT(elements_with_class(page.substr(begin, end - begin), "step"), 2u);
+    const auto space =
+        run("draw gen:teapot:400 --structure octree --ray=-5,0.1,1,1,0,0.05 -o " + file("space.svg"));
+    EXPECT_EQ(space.code, 0) << space.output;
+    EXPECT_GT(elements_with_class(bytes_of(file("space.svg")), "cell visited"), 3u);
+}
+
+TEST_F(Draw, BoxesAreDrawnOverAPictureOfTheMesh) {
+    std::vector<Image> pictures;
+    for (const char* depth : {"1", "2", "5"}) {
+        const auto r =
+            run("draw gen:teapot:500 --size 160x120 --depth " + std::string(depth) + " -o " + file("b.png"));
+        ASSERT_EQ(r.code, 0) << r.output;
+        pictures.push_back(load_png(file("b.png")));
+    }
+    const auto differing = [](const Image& a, const Image& b) {
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) n += a.pixels[i] != b.pixels[i];
+        return n;
+    };
+    EXPECT_GT(differing(pictures[0], pictures[1]), 100u);
+    EXPECT_GT(differing(pictures[0], pictures[2]), differing(pictures[0], pictures[1]));
+    ASSERT_EQ(
+        run("draw gen:points:300 --quiet --size 160x120 --structure octree --beside bsp -o " + file("b.png"))
+            .code,
+        0);
+    EXPECT_EQ(load_png(file("b.png")).width, 160);
+}
+
+/// Two pictures to one scale have the same bar, whatever they show.
+TEST_F(Draw, HeatMapsCompareByAFixedScale) {
+    const auto map = [&](const std::string& more) {
+        const auto r = run("draw gen:teapot:500 --size 320x240 " + more + " -o " + file("h.png"));
+        EXPECT_EQ(r.code, 0) << r.output;
+        return load_png(file("h.png"));
+    };
+    const auto bar = [](const Image& i) {
+        std::vector<Image::Pixel> strip;
+        for (int y = i.height / 5; y < i.height; ++y)  // below the title
+            for (int x = i.width - 8; x < i.width; ++x) strip.push_back(i.at(x, y));
+        return strip;
+    };
+    const auto one = map("--heat tests"), other = map("--heat tests --structure bvh:max_leaf_size=1"),
+               wider = map("--heat tests --scale 1000");
+    EXPECT_EQ(bar(one), bar(other));
+    EXPECT_NE(one, other);
+    EXPECT_NE(bar(one), bar(wider));
+    EXPECT_EQ(map("--heat steps --scale 100").width, 320);
+    EXPECT_EQ(map("--heat time").width, 320);
+    EXPECT_NE(run("draw gen:teapot:500 --size 64x48 --heat tests --scale 1 --json -o " + file("h.png"))
+                  .output.find("\"share_beyond_scale\""),
+              std::string::npos);
+}
+
+TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {
+    const std::string svg = " -o " + file("x.svg"), png = " -o " + file("x.png");
+    EXPECT_EQ(run("draw gen:cube").code, 2);
+    EXPECT_EQ(run("draw gen:cube --frames" + svg).code, 2);
+    EXPECT_EQ(run("draw gen:cube --heat colour" + png).code, 2);
+    EXPECT_EQ(run("draw gen:cube --scale 5" + png).code, 2);
+    EXPECT_EQ(run("draw gen:cube --heat steps --slice z=0.5" + png).code, 2);
+    EXPECT_EQ(run("draw gen:cube --depth -1" + png).code, 2);
+    expect_bad("draw gen:points2d:20" + png, ".svg");
+    expect_bad("draw gen:cube" + svg, ".png");
+    expect_bad("draw gen:cube --slice z=0.5" + png, ".svg");
+    for (const char* slice : {"w=0.5", "z=2", "z", "z=", "z=@", "z=0.5x", "z=nan"})
+        expect_bad("draw gen:cube --slice " + std::string(slice) + svg, "--slice");
+    expect_bad("draw gen:points2d:20 --slice x=0.5" + svg, "flat");
+    expect_bad("draw gen:points2d:20 --heat steps" + png, "flat");
+    expect_bad("draw gen:points2d:20 --ray 1,2,3,4,5,6" + svg, "4 are needed");
+    expect_bad("draw gen:cube --ray 1,2,3,4" + svg, "6 are needed");
+    expect_bad("draw gen:cube --ray 1,2,3,0,0,0" + svg, "direction");
+    expect_bad("draw gen:cube --ray 1,2,3,0,0,1 --frames" + svg, ".html");
+    expect_bad("draw gen:cube --structure kdtre" + png, "did you mean 'kdtree'");
+    expect_bad("draw gen:cube --structure bvh --beside octre --slice x=0.5" + svg, "did you mean 'octree'");
+    expect_bad("draw gen:points2d:300k" + svg, "too many");
+    expect_bad("draw gen:cube --size 0x0" + png, "--size");
+    expect_bad("draw gen:cube -o " + file("no/such/folder/x.png"), "no folder");
+}
+
+}  // namespace

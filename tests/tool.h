@@ -1,0 +1,53 @@
+/// Runs the tool as its user does.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+namespace hedgerow {
+
+struct ToolResult {
+    int code;
+    std::string output;  // both streams
+};
+
+inline ToolResult run(const std::string& arguments) {
+    const std::string command = std::string(HEDGEROW_TOOL_PATH) + " " + arguments + " 2>&1";
+    FILE* pipe = popen(command.c_str(), "r");
+    ToolResult result{-1, {}};
+    char buffer[4096];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) result.output.append(buffer, n);
+    result.code = WEXITSTATUS(pclose(pipe));
+    return result;
+}
+
+inline std::string bytes_of(const std::filesystem::path& path) {
+    std::ostringstream all;
+    all << std::ifstream(path, std::ios::binary).rdbuf();
+    return all.str();
+}
+
+/// A test with a folder of its own.
+class ToolTest : public testing::Test {
+protected:
+    std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("hedgerow-cli-" + std::to_string(getpid()));
+    void SetUp() override { std::filesystem::create_directories(folder); }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+    std::string file(const std::string& name) const { return (folder / name).string(); }
+    void expect_bad(const std::string& arguments, const std::string& said) const {
+        const auto r = run(arguments);
+        EXPECT_EQ(r.code, 3) << arguments << "\n" << r.output;
+        EXPECT_NE(r.output.find(said), std::string::npos) << r.output;
+    }
+};
+
+}  // namespace hedgerow
