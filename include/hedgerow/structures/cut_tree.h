@@ -51,20 +51,20 @@ struct GrowingCutTree {
     /// enters fewer lines than in depth-first order (as the treelets of Yoon and Manocha, 2006). O(n).
     CutTree<Node> packed() && {
         constexpr std::size_t pairs_together = 64 / (2 * sizeof(Node)) > 1 ? 64 / (2 * sizeof(Node)) : 1;
-        struct Place {
+        struct Copied {
             std::uint32_t grown, packed;
         };
         CutTree<Node> tree;
         tree.nodes.reserve(nodes.size() + 1);
         tree.nodes.push_back(nodes[0]);
         tree.nodes.push_back(Node::leaf(0, 0));
-        std::vector<Place> waiting = {{0, 0}}, near;
+        std::vector<Copied> waiting = {{0, 0}}, near;
         while (!waiting.empty()) {
             near.assign(1, waiting.back());
             waiting.pop_back();
             std::size_t next = 0;
             for (; next < near.size() && next < pairs_together; ++next) {
-                const Place at = near[next];
+                const Copied at = near[next];
                 if (nodes[at.grown].is_leaf()) continue;
                 const auto pair = static_cast<std::uint32_t>(tree.nodes.size());
                 tree.nodes[at.packed].set_link(pair);
