@@ -34,6 +34,12 @@ constexpr Verb verbs[] = {
      "Examples:\n  hedgerow render gen:teapot -o teapot.png --size 640x480\n"
      "  hedgerow render gen:teapot-in-stadium --shading steps -o steps.png\n\na picture, by rays",
      add_render},
+    {"compare",
+     "Examples:\n  hedgerow compare dragon.ply\n  hedgerow compare gen:grass:20000 --html grass.html\n"
+     "  hedgerow compare gen:soup:50000 --sweep grid:resolution=8..256\n"
+     "  hedgerow compare gen:terrain --scale --structures grid,kdtree,bvh\n\n"
+     "every structure, every query: what each costs, and which to use",
+     add_compare},
     {"info",
      "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n\n"
      "what is in a scene, and what is wrong with it",

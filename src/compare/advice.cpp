@@ -30,7 +30,7 @@ std::string times(double count, double seconds) {
 
 std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOptions& options) {
     if (c.structures.empty()) return {};
-    const auto query = [&](const StructureCost& s) { return query_seconds(s, ask); };
+    const auto query = [&](const StructureCost& s) { return query_mean(s, ask); };
     double fastest = std::numeric_limits<double>::infinity();
     for (const StructureCost& s : c.structures) fastest = std::min(fastest, query(s));
     const double frame = static_cast<double>(c.size);

@@ -2,10 +2,10 @@
 
 namespace hedgerow::compare {
 
-double query_seconds(const StructureCost& structure, Ask ask) {
+double query_mean(const StructureCost& structure, Ask ask, double QueryCost::*figure) {
     double sum = 0, kinds = 0;
     for (const QueryCost& q : structure.queries)
-        if (q.ask == ask) sum += q.seconds, ++kinds;
+        if (q.ask == ask) sum += q.*figure, ++kinds;
     return kinds > 0 ? sum / kinds : 0;
 }
 

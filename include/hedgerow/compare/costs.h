@@ -56,8 +56,8 @@ struct Comparison {
     bool finished = true;  ///< false: it was stopped, and holds the structures that were done
 };
 
-/// Seconds that a query of a kind takes, the mean over the sets of rays.
-double query_seconds(const StructureCost& structure, Ask ask);
+/// A figure of a kind of query, the mean over its sets of rays; 0 where it was not asked.
+double query_mean(const StructureCost& structure, Ask ask, double QueryCost::*figure = &QueryCost::seconds);
 /// What is asked of most scenes of a kind: the closest hit, or the nearest points where rays meet nothing.
 Ask usual_ask(const Comparison& comparison);
 
