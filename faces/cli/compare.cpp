@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hedgerow/any_index.h>
 #include <hedgerow/compare/measure.h>
 #include <hedgerow/error.h>
 
