@@ -23,7 +23,7 @@ struct CompareArguments : Common {
     bool scale = false;
     unsigned threads = 1;
     std::size_t queries = 10'000;
-    double seconds = 0.25;
+    double seconds = 0.1;
 };
 
 compare::MeasureOptions measure_options(const CompareArguments& a, bool all) {

@@ -18,7 +18,7 @@ struct MeasureOptions {
     /// Of each kind; a structure that is too slow for its time is asked every second, third, ... of them.
     std::size_t queries = 10'000;
     /// Time for each structure and kind of query, over all rounds. At least one query is asked a round.
-    double seconds = 0.25;
+    double seconds = 0.1;
     int rounds = 5;
     /// A structure is built `rounds` times, or as often as begins within this time.
     double build_seconds = 1;
