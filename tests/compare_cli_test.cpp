@@ -37,8 +37,11 @@ protected:
 
     /// Few queries and little time: figures do not matter here.
     Result run(const std::string& arguments) const {
-        const std::string command = std::string(HEDGEROW_TOOL_PATH) + " compare --queries 50 --time 0.002 " +
-                                    arguments + " 2>" + file("errors");
+        const bool timed = arguments.find("--time") != std::string::npos;
+        const std::string command =
+            std::string(HEDGEROW_TOOL_PATH) + " compare " + (timed ? "" : "--time 0.002 ") +
+            (arguments.find("--queries") != std::string::npos ? "" : "--queries 50 ") + arguments + " 2>" +
+            file("errors");
         FILE* pipe = popen(command.c_str(), "r");
         Result result{-1, {}, {}};
         char buffer[4096];

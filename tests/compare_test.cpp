@@ -129,8 +129,9 @@ TEST(Growth, FindsTheLawOfEachFigure) {
     const auto all = growth_of(by_size, Ask::closest_hit);
     ASSERT_EQ(all.size(), 3u) << "it tested no primitive, so that figure has no law";
     EXPECT_EQ(all[0].fits.front().law, Law::n_log_n);
-    EXPECT_NEAR(all[1].fits.front().b, 1.0 / 3, 0.4);
-    EXPECT_LT(all[1].fits.front().residual, 1e-9);
+    for (const Fit& f : all[1].fits) {
+        EXPECT_EQ(f.residual < 1e-9, f.law == Law::power || f.law == Law::root) << name_of(f.law);
+    }
     EXPECT_EQ(all[2].fits.front().law, Law::logarithm);
     EXPECT_TRUE(growth_of(std::span(by_size).first(2), Ask::closest_hit).empty());
 }

@@ -211,7 +211,7 @@ Run add_compare(CLI::App& verb) {
                     "which, as grid,bvh:builder=sweep,bins=8,kdtree; brute force is always among them");
     verb.add_option("--sweep", a->sweeps,
                     "STRUCTURE:option=FROM..TO, or a list of values: what an option does")
-        ->expected(1);
+        ->allow_extra_args(false);
     verb.add_flag("--scale", a->scale, "how costs grow with a generated scene, and which laws fit");
     verb.add_option("--sizes", a->sizes, "of --scale: FROM..TO or a list; 1000 to 64000 if not given")
         ->needs("--scale");
