@@ -158,8 +158,9 @@ TEST_F(Compare, FitsLawsOfGrowth) {
         if (g["structure"] != "brute-force" || g["figure"] != "primitives a query") continue;
         seen = true;
         for (const auto& f : g["fits"])
-            if (f["law"] == "power")
+            if (f["law"] == "power") {
                 EXPECT_NEAR(f["b"].get<double>(), 1, 1e-9) << "brute force tests them all";
+            }
     }
     EXPECT_TRUE(seen);
 }

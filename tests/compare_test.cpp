@@ -143,6 +143,9 @@ TEST(Quantities, HaveThreeDigitsAndAUnit) {
     EXPECT_EQ(seconds_text(123.4), "123 s");
     EXPECT_EQ(seconds_text(0), "0 ns");
     EXPECT_EQ(bytes_text(1.72e6), "1.72 MB");
+    EXPECT_EQ(count_text(121), "121");
+    EXPECT_EQ(count_text(5993), "5.99k");
+    EXPECT_EQ(count_text(1'200'000), "1.20M");
     EXPECT_EQ(number_text(0.01234), "0.0123");
     EXPECT_EQ(number_text(12345.6), "12,346");
     EXPECT_EQ(number_text(1234567), "1,234,567");

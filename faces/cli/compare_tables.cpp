@@ -17,7 +17,8 @@ namespace {
 
 /// "1.00" for the best.
 std::string against(double value, double best) {
-    return best > 0 ? fmt::format("{:.2f}", value / best) : "";
+    if (!(best > 0)) return "";
+    return value / best < 100 ? fmt::format("{:.2f}", value / best) : count_text(std::round(value / best));
 }
 template <class F>
 double least(const std::vector<StructureCost>& all, F figure) {
@@ -86,11 +87,11 @@ std::string text_of(const BreakEven& b) {
         case BreakEven::When::never:
             return "never";
         case BreakEven::When::from:
-            return "> " + number_text(std::ceil(b.queries));
+            return "> " + count_text(std::ceil(b.queries));
         case BreakEven::When::until:
             break;
     }
-    return "< " + number_text(std::floor(b.queries));
+    return "< " + count_text(std::floor(b.queries));
 }
 
 Table break_even_table(const Comparison& c, Ask ask) {

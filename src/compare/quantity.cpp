@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace hedgerow::compare {
 namespace {
@@ -44,6 +45,11 @@ std::string number_text(double value) {
     return exponent > 2 ? grouped(text) : text;
 }
 
+std::string count_text(double count) {
+    for (const auto& [least, name] : {std::pair{1e9, "G"}, {1e6, "M"}, {1e3, "k"}})
+        if (count >= 0.9995 * least && std::isfinite(count)) return number_text(count / least) + name;
+    return number_text(count);
+}
 std::string seconds_text(double seconds) {
     return in_units(seconds, {{1, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}});
 }

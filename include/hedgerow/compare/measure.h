@@ -43,6 +43,9 @@ public:
 /// `executor`, queries on one thread. When the progress is cancelled, those that were measured in full are
 /// returned. Throws InputError for unknown names and options, and for a set without primitives.
 ///
+/// Times are the thread's own, where the system tells it: what else runs does not count. Only builds on
+/// several threads are measured by the clock on the wall.
+///
 /// Coherent rays are a picture's; incoherent ones leave what those hit, spread as from a matte surface;
 /// random ones join two random points of the scene's box. Points are random in that box; boxes, 1/100 of its
 /// diagonal wide, stand around random primitives. What moves is bent by a tenth of the scene.
