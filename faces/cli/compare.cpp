@@ -94,13 +94,14 @@ public:
     }
 
     const CompareReport& report() {
-        note(fmt::format(
-            "built on {}, asked on one thread; times are medians of {} rounds, and the counts beside them "
-            "are the same on every machine",
-            a_.threads == 1   ? "one thread"
-            : a_.threads == 0 ? "all cores"
-                              : fmt::format("{} threads", a_.threads),
-            compare::MeasureOptions().rounds));
+        note(
+            fmt::format("built on {}, asked on one thread; times are medians of {} rounds; the counts beside "
+                        "them are the "
+                        "same on every machine where all queries were asked",
+                        a_.threads == 1   ? "one thread"
+                        : a_.threads == 0 ? "all cores"
+                                          : fmt::format("{} threads", a_.threads),
+                        compare::MeasureOptions().rounds));
         note(fmt::format(
             "{} queries of each kind; where 'asked' is less, it was a sample of them, evenly taken, that "
             "fits into {} s",
