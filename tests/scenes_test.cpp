@@ -153,7 +153,8 @@ TEST(Scenes, HaveTheSameBitsTwiceAndAnotherSeedOthers) {
     for (const SceneInfo& info : scene_list()) {
         const SceneSpec spec{std::string(info.name), 3000, 5};
         EXPECT_EQ(hash_of(spec), hash_of(spec)) << info.name;
-        const bool random = info.yields != "triangles" || info.name == "terrain" || info.name == "soup";
+        const bool random = info.yields != "triangles" || info.name == "terrain" || info.name == "grass" ||
+                            info.name == "hairball" || info.name == "soup";
         EXPECT_EQ(hash_of(spec) != hash_of({spec.name, 3000, 6}), random) << info.name;
     }
 }
@@ -165,7 +166,8 @@ TEST(Scenes, HaveTheBitsTheyAlwaysHad) {
         {"cornell-box", 0x7bad3b1adca37542}, {"cube", 0x3ff1bbeb8cf7f725},
         {"spheres", 0xa7b8fbac8cdab736},     {"points", 0xbe25505ea67a5056},
         {"points2d", 0xe3dcdc158aeb987a},    {"clusters2d", 0x9052bdd410191d66},
-        {"segments2d", 0x0e079425abdea6d3},
+        {"segments2d", 0x0e079425abdea6d3},  {"turned-stadium", 0x19bc07f5a57c7359},
+        {"grass", 0xbacafbd0405bd287},       {"hairball", 0x197857a0ed444a36},
     };
     for (const SceneInfo& info : scene_list()) {
         const std::uint64_t size = std::min<std::uint64_t>(info.default_size, 10'000);
@@ -321,6 +323,61 @@ TEST(Stadium, HasSeatsThatFaceTheFieldAndTheSky) {
             EXPECT_EQ(dot(n, Vec3d(tri.a[0], tri.a[1], 0)) > 0, outer_wall);
         }
     }
+}
+
+TEST(TurnedStadium, IsTheStadiumWithNothingAlongAnAxis) {
+    const auto straight = teapot_in_stadium<double>(5000), turned = turned_stadium<double>(5000);
+    ASSERT_EQ(turned.triangles, straight.triangles);
+    for (std::size_t i = 1; i < turned.vertices.size(); ++i)  // a rotation keeps lengths
+        ASSERT_NEAR(length(turned.vertices[i] - turned.vertices[i - 1]),
+                    length(straight.vertices[i] - straight.vertices[i - 1]), 1e-9);
+    for (std::size_t i = 0; i < 4000; ++i) {
+        const Vec3d n = abs(normalized(triangle(turned, turned.triangles[i]).normal()));
+        ASSERT_LT(max_component(n), 0.99999) << i;
+    }
+    EXPECT_GT(bounds(turned).extent()[2], 2 * bounds(straight).extent()[2]);
+}
+
+TEST(Grass, IsThinBladesThatStandOnTheGround) {
+    const auto mesh = grass<double>(100'000, 3);
+    const auto ground = terrain<double>(100'000 / 8, 3);
+    ASSERT_EQ((mesh.size() - ground.size()) % 3, 0u);
+    EXPECT_TRUE(std::equal(ground.triangles.begin(), ground.triangles.end(), mesh.triangles.begin()));
+    double thinnest = 1, lowest = 1, highest = 0;
+    for (std::size_t i = ground.size(); i < mesh.size(); i += 3) {
+        const Vec3d left = mesh.vertices[mesh.triangles[i][0]], right = mesh.vertices[mesh.triangles[i][1]],
+                    tip = mesh.vertices[mesh.triangles[i + 2][2]];
+        const double height = tip[2] - left[2];
+        thinnest = std::min(thinnest, length(right - left) / height);
+        lowest = std::min(lowest, height), highest = std::max(highest, height);
+        ASSERT_TRUE(left[2] > 0 && left[2] < 0.25);
+    }
+    EXPECT_LT(thinnest, 0.1);
+    EXPECT_NEAR(lowest, 0.02, 1e-4);
+    EXPECT_NEAR(highest, 0.05, 1e-4);
+}
+
+TEST(Hairball, IsLongStrandsBetweenTwoRadii) {
+    const auto mesh = hairball<double>(32'000);
+    EXPECT_EQ(mesh.size(), 32'000u);
+    EXPECT_EQ(open_edges(mesh), 1000u * (2 * 16 + 2));
+    Vec3d sum;
+    for (const Vec3d& p : mesh.vertices) {
+        ASSERT_TRUE(length(p) > 0.49 && length(p) < 1.01);
+        sum = sum + p / static_cast<double>(mesh.vertices.size());
+    }
+    EXPECT_LT(length(sum), 0.05) << "all around";
+    double longest = 0;
+    for (std::size_t strand = 0; strand < 1000; ++strand) {
+        double along = 0, across = 0;
+        for (std::size_t i = strand * 34 + 2; i < strand * 34 + 34; i += 2) {
+            along += length(mesh.vertices[i] - mesh.vertices[i - 2]);
+            across = std::max(across, length(mesh.vertices[i] - mesh.vertices[i + 1]));
+        }
+        ASSERT_GT(along, 50 * across);
+        longest = std::max(longest, along);
+    }
+    EXPECT_GT(longest, 1.8);
 }
 
 TEST(Cube, IsClosed) {

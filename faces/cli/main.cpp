@@ -44,6 +44,12 @@ constexpr Verb verbs[] = {
      "  hedgerow draw gen:teapot-in-stadium --heat tests --scale 60 -o heat.png\n\n"
      "what a structure looks like, and where rays spend their steps",
      add_draw},
+    {"compare",
+     "Examples:\n  hedgerow compare dragon.ply\n  hedgerow compare gen:grass:20000 --html grass.html\n"
+     "  hedgerow compare gen:soup:50000 --sweep grid:resolution=8..256\n"
+     "  hedgerow compare gen:terrain --scale --structures grid,kdtree,bvh\n\n"
+     "every structure, every query: what each costs, and which to use",
+     add_compare},
     {"info",
      "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n\n"
      "what is in a scene, and what is wrong with it",

@@ -13,6 +13,7 @@ using Run = std::function<int()>;
 
 Run add_render(CLI::App& verb);
 Run add_draw(CLI::App& verb);
+Run add_compare(CLI::App& verb);
 Run add_info(CLI::App& verb);
 Run add_generate(CLI::App& verb);
 

@@ -54,6 +54,14 @@ public:
     virtual std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits = {}) const = 0;
     /// What `closest_hits` does with a ray, step by step (trace.h).
     virtual Trace<T, D> trace(const Ray<T, D>& ray) const = 0;
+    /// Whether primitives can be inserted and erased, and whether it can be fitted to ones that moved. What
+    /// can do neither is built again, and throws InputError when asked.
+    virtual bool changes_one_by_one() const = 0;
+    virtual bool refittable() const = 0;
+    /// As the functions of Index, for the borrowed primitives where they lie.
+    virtual bool insert(PrimitiveId id) = 0;
+    virtual bool erase(PrimitiveId id) = 0;
+    virtual double refit(Executor& executor = serial_executor()) = 0;
 };
 
 /// An option of a structure, for help and for messages.

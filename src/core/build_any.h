@@ -86,7 +86,37 @@ public:
     }
     Trace<T, D> trace(const Ray<T, D>& ray) const override { return hedgerow::trace(index_, ray); }
 
+    bool changes_one_by_one() const override { return one_by_one; }
+    bool refittable() const override { return fits_again; }
+    bool insert(PrimitiveId id) override {
+        if constexpr (one_by_one)
+            return index_.insert(index_.primitives(), id);
+        else
+            refuse("insert " + std::to_string(id));
+    }
+    bool erase(PrimitiveId id) override {
+        if constexpr (one_by_one)
+            return index_.erase(index_.primitives(), id);
+        else
+            refuse("erase " + std::to_string(id));
+    }
+    double refit(Executor& executor) override {
+        if constexpr (fits_again) {
+            return index_.refit(executor);
+        } else {
+            static_cast<void>(executor);
+            refuse("refit");
+        }
+    }
+
 private:
+    // Leaves that are packed in the order of the items have no room for one more.
+    static constexpr bool one_by_one = ChangesOneByOne<S, P> && !S::exclusive;
+    static constexpr bool fits_again = Refittable<S, P>;
+    [[noreturn]] void refuse(const std::string& wanted) const {
+        throw InputError("structure '" + name_ + "' cannot " + wanted + ": build it again");
+    }
+
     std::string name_;
     Index<S, P> index_;
 };

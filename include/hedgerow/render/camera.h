@@ -33,6 +33,15 @@ inline Camera automatic_camera(const Box3f& box) {
 inline std::optional<Camera> camera_for(std::string_view scene) {
     if (scene == "teapot-in-stadium")  // from a few paces away, the stands behind it: from afar it is a dot
         return Camera{{7, -12, 5.5f}, {0, 0, 2.4f}, {0, 0, 1}, 45};
+    if (scene == "turned-stadium") {  // the same view, turned as the scene is
+        const auto turned = [](const Vec3f& p) {
+            const float c = 0.8660254f, s = 0.5f, y = c * p[1] - s * p[2], z = s * p[1] + c * p[2];
+            return Vec3f(c * p[0] + s * z, y, c * z - s * p[0]);
+        };
+        Camera c = *camera_for("teapot-in-stadium");
+        c.eye = turned(c.eye), c.target = turned(c.target), c.up = turned(c.up);
+        return c;
+    }
     if (scene == "cornell-box")  // through its open side, as it was photographed (Goral et al. 1984)
         return Camera{{278, 273, -800}, {278, 273, 0}, {0, 1, 0}, 39.3f, {0.3f, 0.25f, -1}};
     return std::nullopt;

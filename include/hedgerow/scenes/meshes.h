@@ -28,11 +28,28 @@ TriangleMesh<T> teapot(std::uint64_t size);
 template <class T>
 TriangleMesh<T> teapot_in_stadium(std::uint64_t size);
 
+/// The stadium of `teapot_in_stadium`, turned by 30° about x and then about y: nothing in it lies along an
+/// axis, so every box around its large triangles holds mostly air.
+template <class T>
+TriangleMesh<T> turned_stadium(std::uint64_t size);
+
 /// A fractal landscape over the unit square, heights in about [0, 0.25]: eleven octaves of value noise (after
 /// Fournier, Fussell and Carpenter 1982; Musgrave 1989), each turned by the 3-4-5 triangle's angle to hide
 /// the lattice. One regular grid, rows along x. A larger size samples the same land more finely.
 template <class T>
 TriangleMesh<T> terrain(std::uint64_t size, std::uint64_t seed = 0);
+
+/// Grass on uneven ground: an eighth of the triangles is `terrain`, the rest blades on it, three thin
+/// triangles each, 0.02 to 0.05 high, bent over to any side. The more blades, the thinner. Heights as
+/// terrain's, and the blades; those near the sides lean out of the unit square.
+template <class T>
+TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed = 0);
+
+/// A ball of hair, the hard case of Laine and Karras (Efficient sparse voxel octrees, 2010): thin curved
+/// strands about the origin, strips of 32 triangles each, between the radii 1/2 and 1. The more strands, the
+/// thinner. Each is an open sheet of its own.
+template <class T>
+TriangleMesh<T> hairball(std::uint64_t size, std::uint64_t seed = 0);
 
 /// `size` separate triangles in the unit cube, evenly spread and evenly turned, each on a circumscribed
 /// sphere of radius size^(-1/3)/2. Throws InputError beyond 2^32/3 triangles, when indices no longer fit.

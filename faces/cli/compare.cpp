@@ -1,0 +1,238 @@
+/// hedgerow compare: every structure, every query; what each costs, and which to use.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/compare/measure.h>
+#include <hedgerow/error.h>
+
+#include "compare_report.h"
+#include "verbs.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+struct CompareArguments : Common {
+    std::string structures, html, sizes, ask;
+    std::vector<std::string> sweeps;
+    bool scale = false;
+    unsigned threads = 1;
+    std::size_t queries = 10'000;
+    double seconds = 0.1;
+};
+
+compare::MeasureOptions measure_options(const CompareArguments& a, bool all) {
+    compare::MeasureOptions o;
+    o.queries = a.queries, o.seconds = a.seconds, o.seed = a.seed;
+    o.camera = camera_for(generated_name(a));
+    o.updates = all;
+    return o;
+}
+
+/// The names and options are right: one primitive is enough to see that, before a long run.
+void check_structures(const std::vector<std::string>& structures, int dimension) {
+    for (const std::string& s : structures) {
+        if (dimension == 3)
+            build_any(s, PointCloud<float, 3>{{{0, 0, 0}}});
+        else
+            build_any(s, PointCloud<float, 2>{{{0, 0}}});
+    }
+}
+
+class Comparing {
+public:
+    explicit Comparing(const CompareArguments& a)
+        : a_(a), limit_(a.threads), executor_(a.threads == 1 ? serial_executor() : default_executor()) {
+        report_.scene = a.scene;
+        for (const std::string& s : a.sweeps) report_.sweeps.push_back({compare::sweep_of(s), {}});
+    }
+
+    template <class P>
+    void compare_on(const P& primitives) {
+        for (auto& s : report_.sweeps) check_structures(s.sweep.structures, P::dimension);
+        const auto chosen = structures_for(P::dimension, primitives.size());
+        check_structures(chosen, P::dimension);
+        if (report_.sweeps.empty() && !a_.scale) {
+            report_.comparison = measured(primitives, chosen, true, "comparing");
+            report_.ask = ask_for(*report_.comparison);
+        }
+        for (auto& s : report_.sweeps) {
+            if (interrupted) break;
+            s.comparison = measured(primitives, s.sweep.structures, false, "sweeping " + s.sweep.option);
+            report_.ask = ask_for(s.comparison);
+        }
+    }
+    template <class P>
+    void scale_on(const P& primitives, const std::vector<std::string>& structures) {
+        check_structures(structures, P::dimension);
+        auto c = measured(primitives, structures, false, fmt::format("{} primitives", primitives.size()));
+        if (!c.finished) return;
+        report_.ask = ask_for(c);
+        report_.by_size.push_back(std::move(c));
+    }
+
+    /// Those that were asked for, or what is usual; brute force is always there to pay against.
+    std::vector<std::string> structures_for(int dimension, std::size_t size) {
+        if (a_.structures.empty()) {
+            std::vector<std::string> left_out;
+            auto usual = compare::usual_structures(dimension, size, left_out);
+            for (const auto& s : left_out)
+                note(fmt::format(
+                    "{} is left out: it takes long to build over {} primitives; name it in --structures", s,
+                    size));
+            return usual;
+        }
+        auto structures = compare::structures_of(a_.structures);
+        if (std::find(structures.begin(), structures.end(), "brute-force") == structures.end())
+            structures.insert(structures.begin(), "brute-force");
+        return structures;
+    }
+
+    const CompareReport& report() {
+        note(
+            fmt::format("built on {}, asked on one thread; times are medians of {} rounds; the counts beside "
+                        "them are the "
+                        "same on every machine where all queries were asked",
+                        a_.threads == 1   ? "one thread"
+                        : a_.threads == 0 ? "all cores"
+                                          : fmt::format("{} threads", a_.threads),
+                        compare::MeasureOptions().rounds));
+        note(fmt::format(
+            "{} queries of each kind; where 'asked' is less, it was a sample of them, evenly taken, that "
+            "fits into {} s",
+            a_.queries, a_.seconds));
+        if (interrupted) note("interrupted: only what was finished is here");
+        return report_;
+    }
+
+private:
+    void note(std::string text) {
+        if (std::find(report_.notes.begin(), report_.notes.end(), text) == report_.notes.end())
+            report_.notes.push_back(std::move(text));
+    }
+    template <class P>
+    compare::Comparison measured(const P& primitives, const std::vector<std::string>& structures, bool all,
+                                 const std::string& what) {
+        ProgressLine line(what, a_.quiet);
+        auto c =
+            compare::measure(primitives, structures, measure_options(a_, all), executor_, line.progress());
+        c.scene = a_.scene;
+        return c;
+    }
+    compare::Ask ask_for(const compare::Comparison& c) const {
+        if (a_.ask.empty()) return compare::usual_ask(c);
+        const auto ask = static_cast<compare::Ask>(
+            std::find(std::begin(compare::ask_names), std::end(compare::ask_names), a_.ask) -
+            compare::ask_names);
+        if (!c.structures.empty() && compare::query_mean(c.structures.front(), ask) == 0)
+            throw InputError(
+                fmt::format("--for {}: {} cannot be asked that; try --for nearest", a_.ask, c.primitive));
+        return ask;
+    }
+
+    const CompareArguments& a_;
+    ThreadLimit limit_;
+    Executor& executor_;
+    CompareReport report_;
+};
+
+template <class T>
+void run_scale(const CompareArguments& a, Comparing& comparing) {
+    if (!a.scene.starts_with("gen:"))
+        throw InputError(a.scene + ": --scale needs a scene of any size, as gen:terrain");
+    SceneSpec spec = parse_scene_spec(a.scene);
+    spec.seed = a.seed;
+    const std::string standard =
+        fmt::format("1000..{}", std::max<std::uint64_t>(8000, spec.size.value_or(64'000)));
+    const auto sizes = compare::sizes_of(a.sizes.empty() ? standard : a.sizes);
+    if (sizes.size() < 3)
+        throw InputError("--sizes " + a.sizes + ": growth needs at least three sizes, as 1k,4k,16k");
+    std::vector<std::string> structures;
+    for (const std::uint64_t size : sizes) {
+        if (interrupted) return;
+        spec.size = size;
+        std::visit(
+            [&](const auto& set) {
+                // The same ones at each size: those that the largest allows.
+                if (structures.empty()) structures = comparing.structures_for(set.dimension, sizes.back());
+                comparing.scale_on(set, structures);
+            },
+            generate<T>(spec));
+    }
+}
+
+/// Beside the path first, so that what was there is lost only for something whole.
+void save_text(const std::string& path, const std::string& text) {
+    const std::string beside = path + ".part";
+    std::ofstream out(beside, std::ios::binary);
+    out << text;
+    out.close();
+    std::error_code failed;
+    if (out) std::filesystem::rename(beside, path, failed);
+    if (!out || failed) throw InputError(path + ": cannot be written; choose another output");
+}
+
+void show(const CompareArguments& a, const CompareReport& r) {
+    if (!a.html.empty()) save_text(a.html, page_of(r));
+    if (a.json) {
+        fmt::print("{}\n", json_of(r).dump(2));
+    } else if (!a.quiet) {
+        std::string text = r.scene;
+        if (r.comparison) text += fmt::format(": {} {}", r.comparison->size, r.comparison->primitive);
+        text += "\n\n";
+        for (const Table& t : tables_of(r)) text += text_of(t) + "\n";
+        for (const std::string& line : advice_lines(r)) text += "For " + line + "\n";
+        for (const std::string& n : r.notes) text += "Note: " + n + ".\n";
+        fmt::print("{}", text);
+        if (!a.html.empty()) fmt::print("{}\n", a.html);
+    }
+}
+
+template <class T>
+int compare_in(const CompareArguments& a) {
+    Comparing comparing(a);
+    if (a.scale) run_scale<T>(a, comparing);
+    if (!a.scale || !a.sweeps.empty())
+        std::visit([&](const auto& set) { comparing.compare_on(set); }, load<T>(a));
+    show(a, comparing.report());
+    return interrupted ? 130 : 0;
+}
+
+}  // namespace
+
+Run add_compare(CLI::App& verb) {
+    auto a = std::make_shared<CompareArguments>();
+    add_common(verb, *a, false);
+    verb.add_option("--structures", a->structures,
+                    "which, as grid,bvh:builder=sweep,bins=8,kdtree; brute force is always among them");
+    verb.add_option("--sweep", a->sweeps,
+                    "STRUCTURE:option=FROM..TO, or a list of values: what an option does")
+        ->allow_extra_args(false);
+    verb.add_flag("--scale", a->scale, "how costs grow with a generated scene, and which laws fit");
+    verb.add_option("--sizes", a->sizes, "of --scale: FROM..TO or a list; 1000 to 64000 if not given")
+        ->needs("--scale");
+    verb.add_option("--for", a->ask, "the query that break-even, advice and growth are about")
+        ->check(CLI::IsMember(
+            std::vector<std::string>(std::begin(compare::ask_names), std::end(compare::ask_names))));
+    verb.add_option("--html", a->html, "also write one page with plots, that needs no other file");
+    verb.add_option("--queries", a->queries, "of each kind")
+        ->capture_default_str()
+        ->check(CLI::Range(16, 10'000'000));
+    verb.add_option("--time", a->seconds, "seconds for each structure and kind of query")
+        ->capture_default_str()
+        ->check(CLI::Range(0.001, 3600.0));
+    verb.add_option("--threads", a->threads, "that build; 0: all cores")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
+    return [a] {
+        if (!a->html.empty()) check_writable(a->html);
+        return a->precision == "double" ? compare_in<double>(*a) : compare_in<float>(*a);
+    };
+}
+
+}  // namespace hedgerow::cli

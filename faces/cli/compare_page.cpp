@@ -1,0 +1,183 @@
+/// What `compare` found, as one page with plots. It is well-formed as XML too, and asks for no other file.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "compare_report.h"
+#include "plot.h"
+
+namespace hedgerow::cli {
+
+using namespace compare;
+
+namespace {
+
+constexpr const char* style =
+    R"(body { font: 15px/1.45 sans-serif; color: #222; max-width: 1000px; margin: 2em auto; padding: 0 1em }
+h1 { font-size: 1.5em } h2 { font-size: 1.2em; margin-top: 2em }
+table { border-collapse: collapse; font-size: 13px } div.wide { overflow-x: auto; margin: 1em 0 }
+th, td { padding: 2px 9px; text-align: right; white-space: nowrap; border-bottom: 1px solid #e4e4e4 }
+th:first-child, td:first-child { text-align: left } caption { text-align: left; padding: 4px 0; color: #555 }
+caption b { color: #222 } svg { max-width: 100%; height: auto; margin: 1em 0; display: block }
+li { margin: 0.5em 0 } p.note { color: #555; margin: 0.2em 0 })";
+
+std::string html_of(const Table& t) {
+    const auto cells = [](const std::vector<std::string>& all, const char* tag) {
+        std::string row = "<tr>";
+        for (const auto& c : all) row += fmt::format("<{0}>{1}</{0}>", tag, escaped(c));
+        return row + "</tr>\n";
+    };
+    std::string html = fmt::format(
+        "<div class=\"wide\"><table>\n<caption><b>{}</b>: {}</caption>\n<thead>{}</thead>\n<tbody>\n",
+        escaped(t.title), escaped(t.note), cells(t.columns, "th"));
+    for (const auto& row : t.rows) html += cells(row, "td");
+    return html + "</tbody></table></div>\n";
+}
+
+/// Build and queries together, over how many queries: where lines cross, one begins to pay against the other.
+std::string total_plot(const Comparison& c, Ask ask) {
+    LinePlot plot{
+        fmt::format("a build and then so many {} queries", name_of(ask)), "queries", Unit::seconds, {}, {}};
+    for (std::size_t i = 0; i < c.structures.size(); ++i) {
+        const auto& s = c.structures[i];
+        Series line{s.structure, i, {}};
+        for (int step = 0; step <= 32; ++step) {
+            const double queries = std::pow(10, step / 4.0);
+            line.points.emplace_back(queries, s.build_seconds + queries * query_mean(s, ask));
+        }
+        plot.series.push_back(std::move(line));
+    }
+    return svg_of(plot);
+}
+
+template <class F>
+std::string structures_plot(const Comparison& c, std::string title, Unit unit, F figure) {
+    DotPlot plot{std::move(title), unit, {}, {}};
+    for (const auto& s : c.structures) plot.rows.push_back({s.structure, {figure(s)}});
+    return svg_of(plot);
+}
+
+/// A row a structure, a dot for each kind of a query.
+std::string kinds_plot(const Comparison& c, Ask ask, std::string title, Unit unit,
+                       double QueryCost::*figure) {
+    DotPlot plot{std::move(title), unit, {}, {}};
+    for (const auto& s : c.structures) {
+        plot.rows.push_back({s.structure, {}});
+        for (const QueryCost& q : s.queries) {
+            if (q.ask != ask) continue;
+            plot.rows.back().values.push_back(q.*figure);
+            if (plot.rows.size() == 1) plot.series.push_back(q.kind);
+        }
+    }
+    return plot.series.empty() ? "" : svg_of(plot);
+}
+
+std::string comparison_plots(const Comparison& c, Ask ask) {
+    std::string html = total_plot(c, ask);
+    html += structures_plot(c, "build time", Unit::seconds, [](const auto& s) { return s.build_seconds; });
+    html += structures_plot(c, "memory beyond the primitives", Unit::bytes,
+                            [](const auto& s) { return double(s.bytes); });
+    html += structures_plot(c, "to follow primitives that all moved", Unit::seconds,
+                            [](const auto& s) { return s.update.all; });
+    for (std::size_t i = 0; i < std::size(ask_names); ++i)
+        html += kinds_plot(c, static_cast<Ask>(i), fmt::format("time a query: {}", ask_names[i]),
+                           Unit::seconds, &QueryCost::seconds);
+    html +=
+        kinds_plot(c, ask, fmt::format("nodes a query: {}", name_of(ask)), Unit::number, &QueryCost::nodes);
+    html += kinds_plot(c, ask, fmt::format("primitives tested a query: {}", name_of(ask)), Unit::number,
+                       &QueryCost::primitives);
+    return html;
+}
+
+/// A line for each of some figures, over the values of the option.
+std::string sweep_plots(const CompareReport::Swept& swept, Ask ask) {
+    const auto& all = swept.comparison.structures;
+    const auto number = [](const std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        return end == text.c_str() + text.size() && value > 0 ? value : 0;
+    };
+    const bool numbers = std::all_of(swept.sweep.values.begin(), swept.sweep.values.end(),
+                                     [&](const std::string& v) { return number(v) > 0; });
+    const auto plot = [&](const char* title, Unit unit, const auto& lines) {
+        LinePlot p{fmt::format("{}: {}", swept.sweep.structure, title),
+                   swept.sweep.option,
+                   unit,
+                   {},
+                   numbers ? std::vector<std::string>() : swept.sweep.values};
+        for (const auto& [name, figure] : lines) {
+            Series line{name, p.series.size(), {}};
+            for (std::size_t i = 0; i < all.size(); ++i)
+                line.points.emplace_back(numbers ? number(swept.sweep.values[i]) : double(i), figure(all[i]));
+            p.series.push_back(std::move(line));
+        }
+        return svg_of(p);
+    };
+    using Line = std::pair<std::string, std::function<double(const StructureCost&)>>;
+    std::vector<Line> times;
+    for (std::size_t q = 0; q < all.front().queries.size(); ++q)
+        if (all.front().queries[q].ask == ask)
+            times.emplace_back(all.front().queries[q].kind,
+                               [q](const auto& s) { return s.queries[q].seconds; });
+    const auto mean = [&](double QueryCost::*figure) {
+        return [figure, ask](const StructureCost& s) { return query_mean(s, ask, figure); };
+    };
+    return plot("time a query", Unit::seconds, times) +
+           plot("what a query looks at", Unit::number,
+                std::vector<Line>{{"nodes", mean(&QueryCost::nodes)},
+                                  {"leaves", mean(&QueryCost::leaves)},
+                                  {"primitives", mean(&QueryCost::primitives)}}) +
+           plot("build time", Unit::seconds,
+                std::vector<Line>{{"build", [](const StructureCost& s) { return s.build_seconds; }}}) +
+           plot("memory", Unit::bytes,
+                std::vector<Line>{{"memory", [](const StructureCost& s) { return double(s.bytes); }}});
+}
+
+std::string growth_plot(const CompareReport& r, std::string_view figure) {
+    LinePlot plot{"growth: " + std::string(figure),
+                  "primitives",
+                  figure.find("seconds") != figure.npos ? Unit::seconds : Unit::number,
+                  {},
+                  {}};
+    const auto& names = r.by_size.front().structures;
+    for (const Growth& g : growth_of(r.by_size, r.ask)) {
+        if (g.figure != figure) continue;
+        const auto at = std::find_if(names.begin(), names.end(),
+                                     [&](const auto& s) { return s.structure == g.structure; });
+        Series line{g.structure, static_cast<std::size_t>(at - names.begin()), {}};
+        for (std::size_t i = 0; i < g.sizes.size(); ++i) line.points.emplace_back(g.sizes[i], g.values[i]);
+        plot.series.push_back(std::move(line));
+    }
+    return plot.series.empty() ? "" : svg_of(plot);
+}
+
+}  // namespace
+
+std::string page_of(const CompareReport& r) {
+    const std::string title = "Structures over " + r.scene;
+    std::string html = fmt::format(
+        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head><meta "
+        "charset=\"utf-8\"/>\n"
+        "<title>{0}</title>\n<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n",
+        escaped(title), style);
+    if (r.comparison) html += fmt::format("<p>{} {}.</p>\n", r.comparison->size, r.comparison->primitive);
+    for (const auto& n : r.notes) html += fmt::format("<p class=\"note\">{}.</p>\n", escaped(n));
+    if (const auto lines = advice_lines(r); !lines.empty()) {
+        html += "<h2>What to use</h2>\n<ul>\n";
+        for (const auto& l : lines) html += fmt::format("<li>For {}</li>\n", escaped(l));
+        html += "</ul>\n";
+    }
+    html += "<h2>Plots</h2>\n";
+    if (r.comparison && !r.comparison->structures.empty()) html += comparison_plots(*r.comparison, r.ask);
+    for (const auto& s : r.sweeps)
+        if (!s.comparison.structures.empty()) html += sweep_plots(s, r.ask);
+    if (!r.by_size.empty())
+        for (const auto figure : growth_figures) html += growth_plot(r, figure);
+    html += "<h2>Tables</h2>\n";
+    for (const Table& t : tables_of(r)) html += html_of(t);
+    return html + "</body>\n</html>\n";
+}
+
+}  // namespace hedgerow::cli

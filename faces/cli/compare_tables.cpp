@@ -1,0 +1,231 @@
+/// What `compare` found, as tables.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <hedgerow/compare/break_even.h>
+#include <hedgerow/compare/quantity.h>
+
+#include "compare_report.h"
+
+namespace hedgerow::cli {
+
+using namespace compare;
+
+namespace {
+
+/// "1.00" for the best.
+std::string against(double value, double best) {
+    if (!(best > 0)) return "";
+    return value / best < 100 ? fmt::format("{:.2f}", value / best) : count_text(std::round(value / best));
+}
+template <class F>
+double least(const std::vector<StructureCost>& all, F figure) {
+    double best = figure(all.front());
+    for (const auto& s : all) best = std::min(best, figure(s));
+    return best;
+}
+
+Table structures_table(const Comparison& c) {
+    Table t{"structures",
+            "x: times the least",
+            {"structure", "build", "x", "memory", "x", "bytes/primitive", "depth", "items/primitive", "nodes",
+             "leaves"},
+            {}};
+    const auto n = static_cast<double>(c.size);
+    const double build = least(c.structures, [](const auto& s) { return s.build_seconds; });
+    const double bytes = least(c.structures, [](const auto& s) { return double(s.bytes); });
+    for (const auto& s : c.structures)
+        t.rows.push_back({s.structure, seconds_text(s.build_seconds), against(s.build_seconds, build),
+                          bytes_text(double(s.bytes)), against(double(s.bytes), bytes),
+                          fmt::format("{:.1f}", double(s.bytes) / n), std::to_string(s.depth),
+                          fmt::format("{:.2f}", double(s.items) / n), number_text(double(s.nodes)),
+                          number_text(double(s.leaves))});
+    return t;
+}
+
+Table kind_table(const Comparison& c, std::size_t kind) {
+    Table t{c.structures.front().queries[kind].kind,
+            "a query, on the mean; x: times the fastest",
+            {"structure", "time", "x", "spread", "nodes", "leaves", "primitives", "skipped", "asked"},
+            {}};
+    const double best = least(c.structures, [&](const auto& s) { return s.queries[kind].seconds; });
+    for (const auto& s : c.structures) {
+        const QueryCost& q = s.queries[kind];
+        t.rows.push_back({s.structure, seconds_text(q.seconds), against(q.seconds, best),
+                          fmt::format("{:.0f}%", 100 * q.spread), fmt::format("{:.2f}", q.nodes),
+                          fmt::format("{:.2f}", q.leaves), fmt::format("{:.2f}", q.primitives),
+                          fmt::format("{:.2f}", q.skipped), std::to_string(q.asked)});
+    }
+    return t;
+}
+
+Table update_table(const Comparison& c) {
+    Table t{"primitives that change",
+            "one, all: to follow one primitive that moved, and all; drift: SAH cost after a refit against "
+            "before; "
+            "slowdown: a query after a refit against one after a build",
+            {"structure", "how", "erase", "insert", "one", "all", "x", "drift", "slowdown"},
+            {}};
+    const double best = least(c.structures, [](const auto& s) { return s.update.all; });
+    for (const auto& s : c.structures) {
+        const UpdateCost& u = s.update;
+        const bool refit = u.how == "refit", single = u.how == "one by one";
+        t.rows.push_back({s.structure, std::string(u.how), single ? seconds_text(u.erase) : "",
+                          single ? seconds_text(u.insert) : "", seconds_text(u.one), seconds_text(u.all),
+                          against(u.all, best), refit ? fmt::format("{:.2f}", u.drift) : "",
+                          refit ? fmt::format("{:.2f}", u.slowdown) : ""});
+    }
+    return t;
+}
+
+std::string text_of(const BreakEven& b) {
+    switch (b.when) {
+        case BreakEven::When::always:
+            return "always";
+        case BreakEven::When::never:
+            return "never";
+        case BreakEven::When::from:
+            return "> " + count_text(std::ceil(b.queries));
+        case BreakEven::When::until:
+            break;
+    }
+    return "< " + count_text(std::floor(b.queries));
+}
+
+Table break_even_table(const Comparison& c, Ask ask) {
+    Table t{
+        "break-even",
+        fmt::format(
+            "for how many {} queries, with its build, the structure of the row costs less than that of the "
+            "column",
+            name_of(ask)),
+        {"structure"},
+        {}};
+    const auto cost = [&](const StructureCost& s) { return Cost{s.build_seconds, query_mean(s, ask)}; };
+    std::string letter = "a";
+    for (const auto& one : c.structures) {
+        t.columns.push_back(letter);
+        t.rows.push_back({letter + "  " + one.structure});
+        for (const auto& other : c.structures)
+            t.rows.back().push_back(&one == &other ? "" : text_of(break_even(cost(one), cost(other))));
+        letter = letter == "z" ? "aa" : letter.substr(0, letter.size() - 1) + char(letter.back() + 1);
+    }
+    return t;
+}
+
+Table sweep_table(const CompareReport::Swept& swept, Ask ask) {
+    Table t{fmt::format("{}: {}", swept.sweep.structure, swept.sweep.option),
+            fmt::format("a {} query, the mean over its sets of rays; x: times the least", name_of(ask)),
+            {swept.sweep.option, "build", "x", "memory", "items/primitive", "time", "x", "nodes", "leaves",
+             "primitives"},
+            {}};
+    const auto& all = swept.comparison.structures;
+    const double build = least(all, [](const auto& s) { return s.build_seconds; });
+    const double query = least(all, [&](const auto& s) { return query_mean(s, ask); });
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto& s = all[i];
+        const auto mean = [&](double QueryCost::*figure) { return query_mean(s, ask, figure); };
+        t.rows.push_back({swept.sweep.values[i], seconds_text(s.build_seconds),
+                          against(s.build_seconds, build), bytes_text(double(s.bytes)),
+                          fmt::format("{:.2f}", double(s.items) / double(swept.comparison.size)),
+                          seconds_text(mean(&QueryCost::seconds)), against(mean(&QueryCost::seconds), query),
+                          fmt::format("{:.2f}", mean(&QueryCost::nodes)),
+                          fmt::format("{:.2f}", mean(&QueryCost::leaves)),
+                          fmt::format("{:.2f}", mean(&QueryCost::primitives))});
+    }
+    return t;
+}
+
+/// A law with its parameters: "a + b log2 n" as numbers.
+std::string text_of(const Fit& f) {
+    switch (f.law) {
+        case Law::power:
+            return fmt::format("{:.3g} n^{:.2f}", f.a, f.b);
+        case Law::logarithm:
+            return fmt::format("{:.3g} + {:.3g} log2 n", f.a, f.b);
+        case Law::root:
+            return fmt::format("{:.3g} + {:.3g} n^(1/{})", f.a, f.b, f.dimension);
+        case Law::linear:
+            return fmt::format("{:.3g} + {:.3g} n", f.a, f.b);
+        case Law::n_log_n:
+            break;
+    }
+    return fmt::format("{:.3g} + {:.3g} n log2 n", f.a, f.b);
+}
+
+Table growth_table(const CompareReport& r, std::string_view figure) {
+    Table t{"growth: " + std::string(figure),
+            "power: its exponent; the laws: how far they miss, the root of the mean square, in per cent",
+            {"structure"},
+            {}};
+    for (const auto& c : r.by_size) t.columns.push_back(number_text(double(c.size)));
+    for (const char* law : {"exponent", "power", "log", "root", "linear", "n log n", "best law"})
+        t.columns.emplace_back(law);
+    for (const Growth& g : growth_of(r.by_size, r.ask)) {
+        if (g.figure != figure || g.sizes.size() != r.by_size.size()) continue;
+        t.rows.push_back({g.structure});
+        auto& row = t.rows.back();
+        for (const double v : g.values)
+            row.push_back(figure.find("seconds") != figure.npos ? seconds_text(v) : fmt::format("{:.2f}", v));
+        const auto by = [&](Law law) {
+            return *std::find_if(g.fits.begin(), g.fits.end(), [&](const Fit& f) { return f.law == law; });
+        };
+        row.push_back(fmt::format("{:.2f}", by(Law::power).b));
+        for (const Law law : {Law::power, Law::logarithm, Law::root, Law::linear, Law::n_log_n})
+            row.push_back(fmt::format("{:.1f}", 100 * by(law).residual));
+        row.push_back(text_of(g.fits.front()));
+    }
+    return t;
+}
+
+}  // namespace
+
+std::vector<Table> tables_of(const CompareReport& r) {
+    std::vector<Table> all;
+    if (r.comparison && !r.comparison->structures.empty()) {
+        const Comparison& c = *r.comparison;
+        all.push_back(structures_table(c));
+        for (std::size_t kind = 0; kind < c.structures.front().queries.size(); ++kind)
+            all.push_back(kind_table(c, kind));
+        all.push_back(update_table(c));
+        all.push_back(break_even_table(c, r.ask));
+    }
+    for (const auto& swept : r.sweeps)
+        if (!swept.comparison.structures.empty()) all.push_back(sweep_table(swept, r.ask));
+    if (!r.by_size.empty())
+        for (const auto figure : growth_figures) all.push_back(growth_table(r, figure));
+    return all;
+}
+
+std::vector<std::string> advice_lines(const CompareReport& r) {
+    std::vector<std::string> lines;
+    if (!r.comparison) return lines;
+    for (const Recommendation& a : advise(*r.comparison, r.ask)) {
+        std::string line = fmt::format("{}: {} ({})", a.need, a.ranking[0].structure, a.ranking[0].terms);
+        for (std::size_t i = 1; i < std::min<std::size_t>(3, a.ranking.size()); ++i)
+            line += fmt::format("; {} {} ({:.2f} x, {})", i == 1 ? "then" : "and", a.ranking[i].structure,
+                                a.ranking[i].figure / a.ranking[0].figure, a.ranking[i].terms);
+        lines.push_back(line + ". By " + a.rule + ".");
+    }
+    return lines;
+}
+
+std::string text_of(const Table& t) {
+    std::vector<std::size_t> width;
+    for (std::size_t k = 0; k < t.columns.size(); ++k) {
+        width.push_back(t.columns[k].size());
+        for (const auto& row : t.rows) width[k] = std::max(width[k], row[k].size());
+    }
+    const auto line = [&](const std::vector<std::string>& cells) {
+        std::string text = fmt::format("{:<{}}", cells[0], width[0]);
+        for (std::size_t k = 1; k < cells.size(); ++k) text += fmt::format("  {:>{}}", cells[k], width[k]);
+        return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+    };
+    std::string text = t.title + " (" + t.note + ")\n" + line(t.columns);
+    for (const auto& row : t.rows) text += line(row);
+    return text;
+}
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,19 @@
+#include <hedgerow/compare/costs.h>
+
+namespace hedgerow::compare {
+
+double query_mean(const StructureCost& structure, Ask ask, double QueryCost::*figure) {
+    double sum = 0, kinds = 0;
+    for (const QueryCost& q : structure.queries)
+        if (q.ask == ask) sum += q.*figure, ++kinds;
+    return kinds > 0 ? sum / kinds : 0;
+}
+
+Ask usual_ask(const Comparison& comparison) {
+    for (const StructureCost& s : comparison.structures)
+        for (const QueryCost& q : s.queries)
+            if (q.ask == Ask::closest_hit) return Ask::closest_hit;
+    return Ask::nearest;
+}
+
+}  // namespace hedgerow::compare

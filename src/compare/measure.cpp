@@ -1,0 +1,310 @@
+#include <hedgerow/compare/measure.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include <hedgerow/error.h>
+
+#include "motion.h"
+#include "scene_questions.h"
+
+namespace hedgerow::compare {
+
+double median(std::vector<double> all) {
+    std::sort(all.begin(), all.end());
+    const std::size_t middle = all.size() / 2;
+    return all.size() % 2 == 1 ? all[middle] : (all[middle - 1] + all[middle]) / 2;
+}
+
+namespace {
+
+/// Seconds on a clock that only goes forward, or that this thread has worked, where the system tells.
+enum class Clock { wall, own };
+double now(Clock clock) {
+#ifdef CLOCK_THREAD_CPUTIME_ID
+    timespec t{};
+    if (clock == Clock::own && clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t) == 0)
+        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+#else
+    static_cast<void>(clock);
+#endif
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+/// By this thread's own time: what else runs on the machine is not counted.
+template <class F>
+double seconds_of(F f, Clock clock = Clock::own) {
+    const double start = now(clock);
+    f();
+    return now(clock) - start;
+}
+
+template <class T>
+const char* noun(const TriangleMesh<T>&) {
+    return "triangles";
+}
+template <class T, int D>
+const char* noun(const SphereSet<T, D>&) {
+    return "spheres";
+}
+template <class T, int D>
+const char* noun(const PointCloud<T, D>&) {
+    return "points";
+}
+template <class T>
+const char* noun(const SegmentSet<T>&) {
+    return "segments";
+}
+
+template <class P>
+class Measuring {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+    using Any = AnyIndex<T, D>;
+    using Set = Questions<T, D>;
+
+    Measuring(const P& primitives, const MeasureOptions& options, Executor& executor,
+              const Progress& progress)
+        : primitives_(primitives),
+          o_(options),
+          executor_(executor),
+          building_(&executor == &serial_executor() ? Clock::own : Clock::wall),
+          progress_(progress) {
+        if (primitives.size() == 0)
+            throw InputError("there are no primitives, so there is nothing to compare");
+        oracle_ = build_any("bvh", primitives, executor);
+        questions_ = SceneQuestions<P>(primitives, *oracle_, options).all();
+        Visits ignored;
+        for (Set& q : questions_) answers_.push_back(q.answers(*oracle_, ignored));
+    }
+
+    Comparison run(std::span<const std::string> structures) {
+        Comparison c{{}, noun(primitives_), primitives_.size(), D, {}, true};
+        steps_ = structures.size() * (o_.rounds + 2u);
+        for (const std::string& s : structures) {
+            if (progress_.cancelled()) break;
+            contenders_.push_back(contender(s));
+            step();
+        }
+        for (int round = 0; round < o_.rounds; ++round)
+            for (Contender& contender : contenders_) {
+                if (progress_.cancelled()) break;
+                for (Trial& t : contender.trials)
+                    t.seconds.push_back(seconds_of([&] { t.questions->put_to(*contender.index); }));
+                step();
+            }
+        for (Contender& contender : contenders_) {
+            // One that has no round has nothing to say.
+            if (contender.trials.empty() || contender.trials.back().seconds.empty()) continue;
+            finish(contender);
+            c.structures.push_back(std::move(contender.cost));
+            step();
+        }
+        c.finished = c.structures.size() == structures.size() && !progress_.cancelled();
+        return c;
+    }
+
+private:
+    struct Trial {
+        std::shared_ptr<Set> questions;
+        QueryCost cost;
+        std::vector<double> seconds;  // of each round
+    };
+    struct Contender {
+        std::unique_ptr<Any> index;
+        StructureCost cost;
+        std::vector<Trial> trials;
+    };
+
+    void step() { progress_(++done_, steps_); }
+
+    Contender contender(const std::string& structure) {
+        Contender c;
+        std::vector<double> seconds;
+        double spent = 0;
+        do {
+            c.index.reset();
+            seconds.push_back(
+                seconds_of([&] { c.index = build_any(structure, primitives_, executor_); }, building_));
+            spent += seconds.back();
+        } while (static_cast<int>(seconds.size()) < o_.rounds && spent < o_.build_seconds);
+        const Any& index = *c.index;
+        c.cost = {structure,
+                  median(seconds),
+                  static_cast<int>(seconds.size()),
+                  index.bytes(),
+                  index.node_count(),
+                  index.leaf_count(),
+                  index.item_count(),
+                  index.depth(),
+                  {},
+                  {}};
+        for (std::size_t i = 0; i < questions_.size() && !progress_.cancelled(); ++i)
+            c.trials.push_back(trial(index, i));
+        return c;
+    }
+
+    /// As many of the questions as there is time for, asked once to see that the answers are right.
+    Trial trial(const Any& index, std::size_t i) {
+        Set& all = questions_[i];
+        const std::size_t step = step_for(index, all);
+        Trial t;
+        // Everyone who has time for all shares them.
+        t.questions = step == 1 ? std::shared_ptr<Set>(std::shared_ptr<void>(), &all)
+                                : std::make_shared<Set>(all.thinned(step));
+        Visits visits;
+        const auto answers = t.questions->answers(index, visits);
+        for (std::size_t k = 0; k < answers.size(); ++k)
+            if (answers[k] != answers_[i][k * step])
+                throw Disagreement("answers differ: " + std::string(index.structure()) + " and " +
+                                   std::string(oracle_->structure()) + " to query " +
+                                   std::to_string(k * step) + " of '" + all.kind() + "' (seed " +
+                                   std::to_string(o_.seed) + "): please report this scene");
+        const auto n = static_cast<double>(answers.size());
+        t.cost = {all.ask(),
+                  all.kind(),
+                  answers.size(),
+                  0,
+                  0,
+                  static_cast<double>(visits.nodes) / n,
+                  static_cast<double>(visits.leaves) / n,
+                  static_cast<double>(visits.primitives) / n,
+                  static_cast<double>(visits.skipped) / n};
+        return t;
+    }
+    /// So many that a round of every step-th question takes its share of the time: by a few of them, the
+    /// second time, when what they touch is in the cache.
+    std::size_t step_for(const Any& index, const Set& all) const {
+        const double share = o_.seconds / o_.rounds;
+        std::size_t asked = 1;
+        for (;;) {
+            Set some = all.thinned((all.size() + asked - 1) / asked);
+            const double first = seconds_of([&] { some.put_to(index); });
+            const double again =
+                first > share ? first : std::min(first, seconds_of([&] { some.put_to(index); }));
+            if (again < share / 16 && asked * 4 <= all.size()) {
+                asked *= 4;
+                continue;
+            }
+            const double whole = again / static_cast<double>(some.size()) * static_cast<double>(all.size());
+            const auto step = static_cast<std::size_t>(std::ceil(whole / share));
+            return std::clamp<std::size_t>(step, 1, all.size());
+        }
+    }
+
+    void finish(Contender& c) {
+        for (Trial& t : c.trials) {
+            const auto n = static_cast<double>(t.cost.asked);
+            const double middle = median(t.seconds);
+            const auto [least, most] = std::minmax_element(t.seconds.begin(), t.seconds.end());
+            t.cost.seconds = middle / n;
+            t.cost.spread = middle > 0 ? (*most - *least) / middle : 0;
+            c.cost.queries.push_back(t.cost);
+        }
+        c.cost.update.one = c.cost.update.all = c.cost.build_seconds;
+        if (!o_.updates || progress_.cancelled()) return;
+        if (c.index->changes_one_by_one()) change(c);
+        if (c.index->refittable()) refit(c);
+    }
+
+    /// Erases some primitives and inserts them again.
+    void change(Contender& c) {
+        const std::size_t n = primitives_.size(), some = std::min<std::size_t>(n, 1000);
+        const std::uint64_t first = scattered(o_.seed) % n;
+        std::vector<double> out, in;
+        for (int round = 0; round < o_.rounds; ++round) {
+            // Steps of n / some: all different.
+            const auto each = [&](auto f) {
+                for (std::size_t i = 0; i < some; ++i)
+                    f(static_cast<PrimitiveId>((first + i * (n / some)) % n));
+            };
+            bool held = true;
+            out.push_back(seconds_of([&] { each([&](PrimitiveId id) { held &= c.index->erase(id); }); }));
+            in.push_back(seconds_of([&] { each([&](PrimitiveId id) { held &= c.index->insert(id); }); }));
+            if (!held) throw Disagreement(c.cost.structure + ": lost a primitive, or had one twice");
+        }
+        expect_same(c, *c.index, *oracle_, "after changes");
+        UpdateCost& u = c.cost.update;
+        u.how = "one by one";
+        u.erase = median(out) / static_cast<double>(some), u.insert = median(in) / static_cast<double>(some);
+        u.one = u.erase + u.insert;
+        u.all = std::min(u.one * static_cast<double>(n), c.cost.build_seconds);
+    }
+
+    /// Moves a copy of the primitives under an index of its own, beside one that is built after the motion.
+    void refit(Contender& c) {
+        P moved = primitives_;
+        const auto fitted = build_any(c.cost.structure, moved, executor_);
+        Bend<T, D>(oracle_->bounds())(moved);
+        UpdateCost& u = c.cost.update;
+        std::vector<double> seconds, slowdown;
+        for (int round = 0; round < o_.rounds; ++round)
+            seconds.push_back(seconds_of([&] { u.drift = fitted->refit(executor_); }, building_));
+        const auto anew = build_any(c.cost.structure, moved, executor_);
+        expect_same(c, *fitted, *anew, "after a refit");
+        for (int round = 0; round < o_.rounds; ++round) {
+            double refitted = 0, rebuilt = 0;
+            for (const Trial& t : c.trials) {
+                if (t.cost.ask != c.trials.front().cost.ask) continue;
+                refitted += seconds_of([&] { t.questions->put_to(*fitted); });
+                rebuilt += seconds_of([&] { t.questions->put_to(*anew); });
+            }
+            slowdown.push_back(refitted / rebuilt);
+        }
+        u.how = "refit";
+        u.one = u.all = median(seconds);
+        u.slowdown = median(slowdown);
+    }
+
+    void expect_same(const Contender& c, const Any& one, const Any& other, const char* when) const {
+        Visits ignored;
+        for (const Trial& t : c.trials)
+            if (t.questions->answers(one, ignored) != t.questions->answers(other, ignored))
+                throw Disagreement(c.cost.structure + ": answers differ " + when + " to '" + t.cost.kind +
+                                   "' (seed " + std::to_string(o_.seed) + "): please report this scene");
+    }
+
+    const P& primitives_;
+    const MeasureOptions& o_;
+    Executor& executor_;
+    Clock building_;  // several threads have no time of their own
+    const Progress& progress_;
+    std::unique_ptr<Any> oracle_;
+    std::vector<Set> questions_;
+    std::vector<std::vector<std::uint64_t>> answers_;
+    std::vector<Contender> contenders_;
+    std::uint64_t done_ = 0, steps_ = 0;
+};
+
+}  // namespace
+
+template <class P>
+Comparison measure(const P& primitives, std::span<const std::string> structures,
+                   const MeasureOptions& options, Executor& executor, const Progress& progress) {
+    return Measuring<P>(primitives, options, executor, progress).run(structures);
+}
+
+#define HEDGEROW_MEASURE(P)                                                                               \
+    template Comparison measure(const P&, std::span<const std::string>, const MeasureOptions&, Executor&, \
+                                const Progress&);
+#define HEDGEROW_MEASURE_ALL(T)       \
+    HEDGEROW_MEASURE(TriangleMesh<T>) \
+    HEDGEROW_MEASURE(SegmentSet<T>)
+HEDGEROW_MEASURE_ALL(float)
+HEDGEROW_MEASURE_ALL(double)
+using Spheres3f = SphereSet<float, 3>;
+using Spheres3d = SphereSet<double, 3>;
+using Points2f = PointCloud<float, 2>;
+using Points2d = PointCloud<double, 2>;
+using Points3f = PointCloud<float, 3>;
+using Points3d = PointCloud<double, 3>;
+HEDGEROW_MEASURE(Spheres3f)
+HEDGEROW_MEASURE(Spheres3d)
+HEDGEROW_MEASURE(Points2f)
+HEDGEROW_MEASURE(Points2d)
+HEDGEROW_MEASURE(Points3f)
+HEDGEROW_MEASURE(Points3d)
+
+}  // namespace hedgerow::compare

@@ -1,0 +1,67 @@
+/// A meadow: blades of grass on uneven ground.
+#include <algorithm>
+#include <cmath>
+
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/random.h>
+
+#include "precision.h"
+
+namespace hedgerow {
+namespace {
+
+constexpr std::uint64_t triangles_a_blade = 3;
+constexpr double shortest = 0.02, longest = 0.05;
+constexpr double widest = 1.0 / 256;
+
+/// An even point of a triangle: of the parallelogram, folded over its diagonal.
+Vec3d point_of(const TriangleMesh<double>& mesh, const TriangleIndices& t, Random& random) {
+    double u = random.uniform(), v = random.uniform();
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const Vec3d a = mesh.vertices[t[0]];
+    return a + (mesh.vertices[t[1]] - a) * u + (mesh.vertices[t[2]] - a) * v;
+}
+
+/// A strip of two pieces that narrows to its tip and bends over, further up the more.
+void grow_blade(TriangleMesh<double>& mesh, const Vec3d& root, double width, Random& random) {
+    const double height = random.uniform(shortest, longest);
+    const Vec2d toward = random.direction<2>();
+    const Vec3d lean = Vec3d(toward[0], toward[1], 0) * product(height, random.uniform(0.2, 0.8));
+    const Vec3d side = Vec3d(-toward[1], toward[0], 0) * (width / 2);
+    const Vec3d middle = root + lean * 0.25 + Vec3d(0, 0, height * 0.625);
+    const Vec3d tip = root + lean + Vec3d(0, 0, height);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3d& p : {root - side, root + side, middle - side * 0.75, middle + side * 0.75, tip})
+        mesh.vertices.push_back(p);
+    mesh.triangles.push_back({first, first + 1, first + 3});
+    mesh.triangles.push_back({first, first + 3, first + 2});
+    mesh.triangles.push_back({first + 2, first + 3, first + 4});
+}
+
+TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
+    TriangleMesh<double> mesh = terrain<double>(size / 8, seed);
+    const std::size_t ground = mesh.triangles.size();
+    const std::uint64_t blades = size > ground ? (size - ground + 1) / triangles_a_blade : 0;
+    // As many blades as there are, a third of the ground is under their feet at most.
+    const double spacing = 1 / std::sqrt(static_cast<double>(std::max<std::uint64_t>(blades, 1)));
+    const double width = std::min(widest, spacing / 3);
+    mesh.vertices.reserve(mesh.vertices.size() + 5 * blades);
+    mesh.triangles.reserve(ground + triangles_a_blade * blades);
+    for (std::uint64_t i = 0; i < blades; ++i) {
+        Random random(~seed, i);
+        const TriangleIndices under = mesh.triangles[random.bits() % ground];
+        grow_blade(mesh, point_of(mesh, under, random), width, random);
+    }
+    return mesh;
+}
+
+}  // namespace
+
+template <class T>
+TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed) {
+    return detail::in_precision<T>([&] { return build(size, seed); });
+}
+template TriangleMesh<float> grass<float>(std::uint64_t, std::uint64_t);
+template TriangleMesh<double> grass<double>(std::uint64_t, std::uint64_t);
+
+}  // namespace hedgerow

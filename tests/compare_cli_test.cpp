@@ -1,0 +1,202 @@
+/// `hedgerow compare` as its user sees it: tables, JSON, the page, messages and exit codes.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct Result {
+    int code;
+    std::string output, errors;
+};
+
+std::string bytes_of(const fs::path& path) {
+    std::ostringstream all;
+    all << std::ifstream(path, std::ios::binary).rdbuf();
+    return all.str();
+}
+
+class Compare : public testing::Test {
+protected:
+    fs::path folder = fs::temp_directory_path() / ("hedgerow-compare-" + std::to_string(getpid()));
+    void SetUp() override { fs::create_directories(folder); }
+    void TearDown() override { fs::remove_all(folder); }
+    std::string file(const std::string& name) const { return (folder / name).string(); }
+
+    /// Few queries and little time: figures do not matter here.
+    Result run(const std::string& arguments) const {
+        const bool timed = arguments.find("--time") != std::string::npos;
+        const std::string command =
+            std::string(HEDGEROW_TOOL_PATH) + " compare " + (timed ? "" : "--time 0.002 ") +
+            (arguments.find("--queries") != std::string::npos ? "" : "--queries 50 ") + arguments + " 2>" +
+            file("errors");
+        FILE* pipe = popen(command.c_str(), "r");
+        Result result{-1, {}, {}};
+        char buffer[4096];
+        while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
+            result.output.append(buffer, n);
+        result.code = WEXITSTATUS(pclose(pipe));
+        result.errors = bytes_of(file("errors"));
+        return result;
+    }
+    json parsed(const std::string& arguments) const {
+        const auto r = run(arguments + " --json");
+        EXPECT_EQ(r.code, 0) << r.errors;
+        return json::parse(r.output);
+    }
+    void expect_refused(int code, const std::string& arguments, const std::string& said) const {
+        const auto r = run(arguments);
+        EXPECT_EQ(r.code, code) << arguments << "\n" << r.errors;
+        EXPECT_NE((r.output + r.errors).find(said), std::string::npos) << arguments << "\n" << r.errors;
+    }
+};
+
+/// What is wrong with a page as XML: tags that are not closed in their order, signs that are not escaped.
+std::string ill_formed(const std::string& page) {
+    std::vector<std::string> open;
+    for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at)) {
+        const std::size_t end = page.find('>', at);
+        if (end == std::string::npos) return "a tag without an end";
+        const std::string tag = page.substr(at + 1, end - at - 1);
+        const std::string name = tag.substr(0, tag.find_first_of(" \n/", 1));
+        if (tag.find('<') != std::string::npos) return "a '<' in a tag: " + tag;
+        if (tag[0] == '/') {
+            if (open.empty() || "/" + open.back() != tag) return "unexpected <" + tag + ">";
+            open.pop_back();
+        } else if (tag[0] != '!' && tag.back() != '/') {
+            open.push_back(name);
+        }
+        at = end;
+    }
+    for (std::size_t at = page.find('&'); at != std::string::npos; at = page.find('&', at + 1))
+        if (page.substr(at, 5).find(';') == std::string::npos && page.substr(at, 6) != "&quot;")
+            return "a bare '&'";
+    return open.empty() ? "" : "<" + open.back() + "> is not closed";
+}
+
+TEST_F(Compare, TellsWhatEachStructureCosts) {
+    const json j = parsed("gen:teapot:400 --structures bvh,kdtree,octree");
+    ASSERT_EQ(j["structures"].size(), 4u) << "brute force is always there";
+    EXPECT_EQ(j["structures"][0]["structure"], "brute-force");
+    EXPECT_EQ(j["primitive"], "triangles");
+    for (const auto& s : j["structures"]) {
+        EXPECT_EQ(s["queries"].size(), 12u);
+        EXPECT_GT(s["build_seconds"], 0);
+        for (const auto& q : s["queries"]) EXPECT_GT(q["primitives"], 0);
+    }
+    EXPECT_EQ(j["break_even"].size(), 4u * 3);
+    ASSERT_EQ(j["advice"].size(), 4u);
+    for (const auto& a : j["advice"]) {
+        EXPECT_EQ(a["structure"], a["ranking"][0]["structure"]);
+        EXPECT_FALSE(a["ranking"][0]["terms"].get<std::string>().empty());
+    }
+}
+TEST_F(Compare, HasTheSameCountsEachTime) {
+    const auto counts = [&] {
+        json all;
+        for (const auto& s :
+             parsed("gen:grass:300 --time 50 --structures grid,bvh:builder=sweep,bins=8")["structures"])
+            for (const auto& q : s["queries"])
+                all.push_back({q["asked"], q["nodes"], q["leaves"], q["primitives"]});
+        return all;
+    };
+    const json first = counts();
+    EXPECT_EQ(first.size(), 3u * 12);
+    EXPECT_EQ(first, counts());
+}
+TEST_F(Compare, PrintsTablesAndAdvice) {
+    const auto r = run("gen:segments2d:300");
+    ASSERT_EQ(r.code, 0) << r.errors;
+    for (const char* said :
+         {"quadtree", "bvh:builder=lbvh", "closest hit, random rays", "8 nearest", "box overlap",
+          "break-even", "one by one", "For a few queries", "For many queries", "For moving primitives",
+          "For little memory", "Note: built on one thread"})
+        EXPECT_NE(r.output.find(said), std::string::npos) << said << "\n" << r.output;
+    EXPECT_EQ(r.output.find("octree"), std::string::npos) << "which lives in space";
+    EXPECT_EQ(r.errors, "");
+    EXPECT_EQ(run("gen:cube --quiet").output, "");
+}
+TEST_F(Compare, IsAboutTheQueryThatIsAskedFor) {
+    const json j = parsed("gen:points:300 --structures kdtree --for overlap");
+    EXPECT_EQ(j["ask"], "overlap");
+    EXPECT_EQ(parsed("gen:points:300 --structures kdtree")["ask"], "nearest");
+    expect_refused(3, "gen:points:300 --structures kdtree --for any-hit", "cannot be asked that");
+}
+TEST_F(Compare, SweepsAnOption) {
+    const json j = parsed("gen:soup:300 --sweep grid:resolution=2..32 --sweep bvh:builder=binned,sweep");
+    ASSERT_EQ(j["sweeps"].size(), 2u);
+    const json& grid = j["sweeps"][0];
+    EXPECT_EQ(grid["values"], (json{"2", "4", "8", "16", "32"}));
+    ASSERT_EQ(grid["structures"].size(), 5u);
+    const auto figure = [&](std::size_t i, const char* name) {
+        return grid["structures"][i]["queries"][2][name].get<double>();
+    };
+    EXPECT_GT(figure(0, "primitives"), figure(4, "primitives")) << "too few cells: long lists";
+    EXPECT_LT(figure(0, "nodes"), figure(4, "nodes")) << "too many cells: many steps";
+    EXPECT_FALSE(j.contains("structures"));
+}
+TEST_F(Compare, FitsLawsOfGrowth) {
+    const json j = parsed("gen:soup --scale --sizes 200,800,3200 --structures bvh,grid");
+    ASSERT_EQ(j["scale"]["scenes"].size(), 3u);
+    EXPECT_EQ(j["scale"]["scenes"][2]["size"], 3200);
+    bool seen = false;
+    for (const auto& g : j["scale"]["growth"]) {
+        EXPECT_EQ(g["values"].size(), 3u);
+        EXPECT_EQ(g["fits"].size(), 5u);
+        if (g["structure"] != "brute-force" || g["figure"] != "primitives a query") continue;
+        seen = true;
+        for (const auto& f : g["fits"])
+            if (f["law"] == "power") {
+                EXPECT_NEAR(f["b"].get<double>(), 1, 1e-9) << "brute force tests them all";
+            }
+    }
+    EXPECT_TRUE(seen);
+}
+TEST_F(Compare, WritesOnePageThatNeedsNoOther) {
+    for (const char* arguments :
+         {"gen:teapot:300", "gen:soup:200 --sweep kdtree:builder=median,sah --sweep octree:leaf_size=1..8",
+          "gen:soup --scale --sizes 100,200,400 --structures bvh,kdtree"}) {
+        const auto r = run(std::string(arguments) + " --html " + file("page.html"));
+        ASSERT_EQ(r.code, 0) << r.errors;
+        const std::string page = bytes_of(file("page.html"));
+        EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
+        EXPECT_EQ(ill_formed(page), "") << arguments;
+        EXPECT_NE(page.find("<polyline"), std::string::npos) << arguments;
+        EXPECT_NE(page.find("<table>"), std::string::npos);
+        for (const char* outside : {"<script", "<link", "<img", "src=", "href=", "@import", "url("})
+            EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+        EXPECT_EQ(page.find("nan"), std::string::npos) << arguments;
+        EXPECT_EQ(page.find("inf,"), std::string::npos) << arguments;
+        EXPECT_FALSE(fs::exists(file("page.html.part")));
+    }
+}
+TEST_F(Compare, RefusesWhatIsWrong) {
+    expect_refused(2, "", "scene");
+    expect_refused(2, "gen:cube --for nonsense", "nonsense");
+    expect_refused(2, "gen:cube --sizes 1,2,3", "--scale");
+    expect_refused(2, "gen:cube --queries 1", "1");
+    expect_refused(3, "gen:cube --structures kdtre", "did you mean 'kdtree'");
+    expect_refused(3, "gen:cube --structures bins=8", "option without a structure");
+    expect_refused(3, "gen:cube --structures quadtree", "in space use 'octree'");
+    expect_refused(3, "gen:cube --sweep grid:resolution=8", "no option has several values");
+    expect_refused(3, "gen:cube --sweep grid:resolutoin=8..16", "did you mean 'resolution'");
+    expect_refused(3, "gen:cube --sweep grid:resolution=9..8", "no range");
+    expect_refused(3, "gen:cube --scale --sizes 10,20", "at least three");
+    expect_refused(3, "gen:soup:0 --structures bvh", "no primitives");
+    expect_refused(3, file("mesh.ply") + " --scale", "gen:terrain");
+    expect_refused(3, "gen:cube --html " + file("no/folder/page.html"), "no folder");
+}
+
+}  // namespace

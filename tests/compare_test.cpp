@@ -1,0 +1,359 @@
+/// Comparing structures: break-even, laws of growth, advice, lists; and measuring, whose counts are the same
+/// everywhere.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/compare/advice.h>
+#include <hedgerow/compare/break_even.h>
+#include <hedgerow/compare/growth.h>
+#include <hedgerow/compare/lists.h>
+#include <hedgerow/compare/measure.h>
+#include <hedgerow/compare/quantity.h>
+#include <hedgerow/compare/questions.h>
+#include <hedgerow/error.h>
+#include <hedgerow/scenes/generate.h>
+
+namespace hedgerow::compare {
+namespace {
+
+using When = BreakEven::When;
+
+TEST(BreakEven, IsWhereTheCostsCross) {
+    EXPECT_EQ(break_even({8, 1}, {0, 3}), (BreakEven{When::from, 4}));
+    EXPECT_EQ(break_even({0, 3}, {8, 1}), (BreakEven{When::until, 4}));
+    EXPECT_EQ(break_even({1, 1}, {2, 2}), (BreakEven{When::always, 0}));
+    EXPECT_EQ(break_even({1, 1}, {1, 2}), (BreakEven{When::always, 0}));
+    EXPECT_EQ(break_even({2, 2}, {1, 1}), (BreakEven{When::never, 0}));
+    EXPECT_EQ(break_even({1, 1}, {1, 1}), (BreakEven{When::never, 0}));
+    const Cost slow{5, 0.25}, quick{1, 0.75};
+    const auto b = break_even(slow, quick);
+    EXPECT_EQ(slow.after(b.queries), quick.after(b.queries));
+    EXPECT_LT(slow.after(b.queries + 1), quick.after(b.queries + 1));
+}
+
+constexpr double sizes[] = {1000, 3000, 10'000, 50'000, 200'000};
+
+TEST(Fits, FindTheParametersOfExactLaws) {
+    for (const Law law : {Law::power, Law::logarithm, Law::root, Law::linear, Law::n_log_n})
+        for (const int dimension : {2, 3}) {
+            const Fit exact{law, dimension, 3.5, law == Law::power ? 0.7 : 1.25, 0};
+            std::vector<double> values;
+            for (const double n : sizes) values.push_back(exact(n));
+            const Fit found = fit(law, sizes, values, dimension);
+            // An offset of 3.5 beside millions keeps fewer digits.
+            EXPECT_NEAR(found.a, exact.a, 1e-6) << name_of(law);
+            EXPECT_NEAR(found.b, exact.b, 1e-9) << name_of(law);
+            EXPECT_LT(found.residual, 1e-10);
+            EXPECT_EQ(fits(sizes, values, dimension).front().law, law) << name_of(law);
+        }
+}
+TEST(Fits, MeanWhatTheySay) {
+    EXPECT_DOUBLE_EQ((Fit{Law::power, 3, 2, 0.5, 0})(100), 20);
+    EXPECT_DOUBLE_EQ((Fit{Law::logarithm, 3, 1, 2, 0})(1024), 21);
+    EXPECT_DOUBLE_EQ((Fit{Law::root, 3, 1, 2, 0})(1000), 21);
+    EXPECT_DOUBLE_EQ((Fit{Law::root, 2, 1, 2, 0})(100), 21);
+    EXPECT_DOUBLE_EQ((Fit{Law::linear, 3, 1, 2, 0})(10), 21);
+    EXPECT_DOUBLE_EQ((Fit{Law::n_log_n, 3, 1, 2, 0})(8), 49);
+}
+TEST(Fits, SayHowFarTheyMiss) {
+    const std::vector<double> at = {1, 2, 3, 4}, values = {1.1, 0.9, 1.1, 0.9};
+    const Fit f = fit(Law::linear, at, values);
+    double sum = 0;
+    for (std::size_t i = 0; i < at.size(); ++i) sum += std::pow(f(at[i]) / values[i] - 1, 2);
+    EXPECT_DOUBLE_EQ(f.residual, std::sqrt(sum / 4));
+    EXPECT_NEAR(f.residual, 0.1, 0.02);
+}
+
+/// Figures made up: build and query seconds, bytes, how it follows motion.
+StructureCost costing(std::string name, double build, double query, std::size_t bytes, double all,
+                      double slowdown = 1) {
+    StructureCost s;
+    s.structure = std::move(name), s.build_seconds = build, s.bytes = bytes;
+    s.queries = {{Ask::closest_hit, "closest hit, coherent rays", 10, query * 0.5},
+                 {Ask::closest_hit, "closest hit, random rays", 10, query * 1.5},
+                 {Ask::nearest, "8 nearest", 10, 1 / query}};
+    s.update.one = s.update.all = all, s.update.slowdown = slowdown;
+    return s;
+}
+const Comparison made_up{"made up",
+                         "triangles",
+                         1'000'000,
+                         3,
+                         {costing("none", 0, 1e-3, 10, 0), costing("quick", 0.1, 2e-6, 5000, 0.1),
+                          costing("best", 9, 1e-6, 9000, 9), costing("lean", 0.5, 2.9e-6, 100, 0.5),
+                          costing("supple", 0.6, 1.5e-6, 8000, 0.01, 1.2)},
+                         true};
+
+TEST(Advice, RestsOnTheFigures) {
+    const auto all = advise(made_up, Ask::closest_hit);
+    ASSERT_EQ(all.size(), 4u);
+    EXPECT_EQ(all[0].need, "a few queries");
+    EXPECT_EQ(all[0].ranking[0].structure, "quick");
+    EXPECT_DOUBLE_EQ(all[0].ranking[0].figure, 0.1 + 1000 * 2e-6);
+    EXPECT_EQ(all[1].ranking[0].structure, "best");
+    EXPECT_DOUBLE_EQ(all[1].ranking[0].figure, 1e-6);
+    EXPECT_EQ(all[2].ranking[0].structure, "supple");
+    EXPECT_DOUBLE_EQ(all[2].ranking[0].figure, 0.01 + 1e6 * 1.5e-6 * 1.2);
+    EXPECT_EQ(all[3].ranking[0].structure, "lean");
+    EXPECT_EQ(all[3].ranking.size(), 4u) << "what is too slow is not among them";
+    for (const auto& r : all) {
+        EXPECT_TRUE(std::is_sorted(r.ranking.begin(), r.ranking.end(),
+                                   [](const auto& a, const auto& b) { return a.figure < b.figure; }));
+        EXPECT_FALSE(r.ranking[0].terms.empty());
+    }
+}
+TEST(Advice, IsForTheQueryThatIsAsked) {
+    EXPECT_EQ(advise(made_up, Ask::nearest)[1].ranking[0].structure, "none");
+    EXPECT_EQ(advise(made_up, Ask::closest_hit, {.few = 1})[0].ranking[0].structure, "none");
+    EXPECT_EQ(advise(made_up, Ask::closest_hit, {.slack = 1.1})[3].ranking[0].structure, "best");
+    EXPECT_TRUE(advise({}, Ask::nearest).empty());
+    EXPECT_EQ(usual_ask(made_up), Ask::closest_hit);
+    EXPECT_EQ(usual_ask({}), Ask::nearest);
+}
+
+TEST(Growth, FindsTheLawOfEachFigure) {
+    std::vector<Comparison> by_size;
+    for (const double n : sizes) {
+        Comparison c;
+        c.size = static_cast<std::size_t>(n);
+        StructureCost s;
+        s.structure = "s", s.build_seconds = 1e-9 * n * std::log2(n);
+        s.queries = {{Ask::closest_hit, "", 1, 1e-7 * std::cbrt(n), 0, 2 + std::log2(n)}};
+        c.structures = {s};
+        by_size.push_back(c);
+    }
+    const auto all = growth_of(by_size, Ask::closest_hit);
+    ASSERT_EQ(all.size(), 3u) << "it tested no primitive, so that figure has no law";
+    EXPECT_EQ(all[0].fits.front().law, Law::n_log_n);
+    for (const Fit& f : all[1].fits) {
+        EXPECT_EQ(f.residual < 1e-9, f.law == Law::power || f.law == Law::root) << name_of(f.law);
+    }
+    EXPECT_EQ(all[2].fits.front().law, Law::logarithm);
+    EXPECT_TRUE(growth_of(std::span(by_size).first(2), Ask::closest_hit).empty());
+}
+
+TEST(Quantities, HaveThreeDigitsAndAUnit) {
+    EXPECT_EQ(seconds_text(1.5e-3), "1.50 ms");
+    EXPECT_EQ(seconds_text(812.4e-9), "812 ns");
+    EXPECT_EQ(seconds_text(0.9999e-6), "1.00 us");
+    EXPECT_EQ(seconds_text(123.4), "123 s");
+    EXPECT_EQ(seconds_text(0), "0 ns");
+    EXPECT_EQ(bytes_text(1.72e6), "1.72 MB");
+    EXPECT_EQ(count_text(121), "121");
+    EXPECT_EQ(count_text(5993), "5.99k");
+    EXPECT_EQ(count_text(1'200'000), "1.20M");
+    EXPECT_EQ(number_text(0.01234), "0.0123");
+    EXPECT_EQ(number_text(12345.6), "12,346");
+    EXPECT_EQ(number_text(1234567), "1,234,567");
+    EXPECT_EQ(number_text(-4.5), "-4.50");
+    EXPECT_EQ(number_text(1.5e-9), "1.50e-09");
+}
+
+using Strings = std::vector<std::string>;
+
+TEST(Lists, AreTakenApartWhereStructuresBegin) {
+    EXPECT_EQ(structures_of("grid,bvh:builder=sweep,bins=8,kdtree"),
+              (Strings{"grid", "bvh:builder=sweep,bins=8", "kdtree"}));
+    EXPECT_EQ(structures_of("bvh,bins=8"), Strings{"bvh:bins=8"});
+    EXPECT_THROW(structures_of("grid,,bvh"), InputError);
+    EXPECT_THROW(structures_of(""), InputError);
+    EXPECT_THROW(structures_of("bins=8"), InputError);
+}
+TEST(Lists, SweepOneOption) {
+    const Sweep range = sweep_of("grid:resolution=8..256");
+    EXPECT_EQ(range.structure, "grid");
+    EXPECT_EQ(range.option, "resolution");
+    EXPECT_EQ(range.values, (Strings{"8", "16", "32", "64", "128", "256"}));
+    EXPECT_EQ(range.structures[1], "grid:resolution=16");
+    const Sweep list = sweep_of("bvh:bins=8,builder=binned,sweep,reinsertion=1");
+    EXPECT_EQ(list.structure, "bvh:bins=8,reinsertion=1");
+    EXPECT_EQ(list.values, (Strings{"binned", "sweep"}));
+    EXPECT_EQ(list.structures[1], "bvh:bins=8,reinsertion=1,builder=sweep");
+    EXPECT_EQ(sweep_of("grid:density=0.5..4").values, (Strings{"0.5", "1", "2", "4"}));
+    for (const char* bad :
+         {"grid", "grid:", "grid:resolution=8", "grid:8..16", "grid:resolution=16..8", "grid:resolution=a..b",
+          "grid:resolution=1,2,density=1,2", "grid:=1,2", "grid:resolution=1,,2"})
+        EXPECT_THROW(sweep_of(bad), InputError) << bad;
+}
+TEST(Lists, HaveRangesWithBothEnds) {
+    EXPECT_EQ(range_of("0..4"), (std::vector<double>{0, 1, 2, 3, 4}));
+    EXPECT_EQ(range_of("1..1k").back(), 1000);
+    EXPECT_EQ(range_of("3..100"), (std::vector<double>{3, 6, 12, 24, 48, 100}));
+    EXPECT_EQ(range_of("0..0.8").size(), 9u);
+    EXPECT_EQ(sizes_of("1k,4000,2M"), (std::vector<std::uint64_t>{1000, 4000, 2'000'000}));
+    EXPECT_EQ(sizes_of("1000..8000"), (std::vector<std::uint64_t>{1000, 2000, 4000, 8000}));
+    for (const char* bad : {"", "5,4", "1.5,2", "0,1", "x", "1,2,", "8..1"})
+        EXPECT_THROW(sizes_of(bad), InputError) << bad;
+}
+TEST(Lists, NameStructuresThatCanBeBuilt) {
+    for (const int dimension : {2, 3})
+        for (const std::size_t size : {std::size_t{10}, std::size_t{100'000'000}}) {
+            Strings left_out, usual = usual_structures(dimension, size, left_out);
+            EXPECT_EQ(left_out.empty(), size == 10);
+            usual.insert(usual.end(), left_out.begin(), left_out.end());
+            for (const auto& info : structure_list())
+                EXPECT_EQ(std::count(usual.begin(), usual.end(), info.name),
+                          info.dimension == 0 || info.dimension == dimension)
+                    << info.name;
+            for (const auto& s : usual) {
+                if (dimension == 2)
+                    EXPECT_EQ(build_any(s, PointCloud<float, 2>{{{0, 0}, {1, 0}}})->size(), 2u) << s;
+                else
+                    EXPECT_EQ(build_any(s, PointCloud<float, 3>{{{0, 0, 0}, {1, 0, 0}}})->size(), 2u) << s;
+            }
+        }
+}
+
+TEST(Fingerprint, TellsAnswersApart) {
+    const auto print = [](const auto& answer) {
+        Fingerprint f;
+        f.add(answer);
+        return f.value();
+    };
+    Hit<float> hit;
+    hit.t = 0.f;
+    const auto first = print(hit);
+    hit.t = -0.f;
+    EXPECT_EQ(print(hit), first);
+    hit.primitive = 7;
+    EXPECT_NE(print(hit), first);
+    hit = {};
+    hit.t = std::nextafter(0.f, 1.f);
+    EXPECT_NE(print(hit), first);
+    EXPECT_NE(print(true), print(false));
+    EXPECT_NE(print(std::vector<PrimitiveId>{1}), print(std::vector<PrimitiveId>{1, 1}));
+}
+
+MeasureOptions quick_options() {
+    MeasureOptions o;
+    o.queries = 64, o.rounds = 3, o.build_seconds = 0;
+    o.seconds = 100;  // so that everyone is asked everything
+    return o;
+}
+const StructureCost& named(const Comparison& c, std::string_view name) {
+    return *std::find_if(c.structures.begin(), c.structures.end(),
+                         [&](const auto& s) { return s.structure == name; });
+}
+
+TEST(Measure, CountsWhatIsVisited) {
+    const auto mesh = teapot<float>(600);
+    const Strings structures = {"brute-force", "bvh", "octree", "grid"};
+    const Comparison c = measure(mesh, structures, quick_options());
+    EXPECT_TRUE(c.finished);
+    EXPECT_EQ(c.primitive, "triangles");
+    EXPECT_EQ(c.size, mesh.size());
+    ASSERT_EQ(c.structures.size(), 4u);
+    for (const auto& s : c.structures) {
+        const auto index = build_any(s.structure, mesh);
+        EXPECT_EQ(s.bytes, index->bytes());
+        EXPECT_EQ(s.items, index->item_count());
+        EXPECT_EQ(s.depth, index->depth());
+        EXPECT_EQ(s.builds, 1);
+        ASSERT_EQ(s.queries.size(), 12u);
+        for (const auto& q : s.queries) {
+            EXPECT_EQ(q.asked, 64u) << q.kind;
+            EXPECT_GT(q.seconds, 0) << q.kind;
+            EXPECT_GE(q.spread, 0);
+            if (s.structure == "brute-force") {
+                EXPECT_EQ(q.nodes, 0);
+                EXPECT_EQ(q.leaves, 1);
+                EXPECT_EQ(q.primitives, static_cast<double>(mesh.size()));
+            } else {
+                EXPECT_GT(q.nodes, 0) << q.kind;
+                EXPECT_LT(q.primitives, static_cast<double>(mesh.size()) / 2) << q.kind;
+            }
+        }
+    }
+    EXPECT_EQ(named(c, "brute-force").update.how, "rebuild");
+    EXPECT_EQ(named(c, "bvh").update.how, "refit");
+    EXPECT_GT(named(c, "bvh").update.drift, 0.5);
+    EXPECT_GT(named(c, "bvh").update.slowdown, 0);
+    EXPECT_EQ(named(c, "octree").update.how, "one by one");
+    EXPECT_GT(named(c, "octree").update.insert, 0);
+
+    const Comparison again = measure(mesh, structures, quick_options());
+    for (std::size_t i = 0; i < c.structures.size(); ++i)
+        for (std::size_t k = 0; k < 12; ++k) {
+            EXPECT_EQ(c.structures[i].queries[k].nodes, again.structures[i].queries[k].nodes);
+            EXPECT_EQ(c.structures[i].queries[k].primitives, again.structures[i].queries[k].primitives);
+        }
+}
+TEST(Measure, TakesEveryKindOfPrimitives) {
+    const auto kinds = [](const auto& set, const char* tree) {
+        const Strings structures = {"kdtree", tree};
+        const Comparison c = measure(set, structures, quick_options());
+        EXPECT_EQ(c.structures.size(), 2u);
+        return c.structures.at(0).queries.size();
+    };
+    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 12u);
+    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 12u);
+    EXPECT_EQ(kinds(points<float>(200), "octree"), 3u) << "rays pass between points";
+    EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 3u);
+}
+TEST(Measure, AsksWhatIsSlowLess) {
+    MeasureOptions o = quick_options();
+    o.queries = 10'000, o.seconds = 0.003, o.asks = {Ask::nearest}, o.updates = false;
+    const Strings structures = {"brute-force", "kdtree"};
+    const auto cloud = points<float>(50'000);
+    const Comparison c = measure(cloud, structures, o);
+    const QueryCost& q = c.structures[0].queries.at(0);
+    EXPECT_GE(q.asked, 1u);
+    EXPECT_LT(q.asked, 10'000u);
+    EXPECT_EQ(q.primitives, 50'000);
+}
+TEST(Measure, RefusesWhatIsNotThere) {
+    const Strings structures = {"bvh"};
+    EXPECT_THROW(measure(TriangleMesh<float>{}, structures), InputError);
+    const Strings unknown = {"bvhh"};
+    EXPECT_THROW(measure(points<float>(10), unknown), InputError);
+}
+TEST(Measure, StopsWhenItIsTold) {
+    std::atomic<bool> cancel{false};
+    Progress progress;
+    progress.cancel = &cancel;
+    progress.report = [&](std::uint64_t done, std::uint64_t) { cancel = done >= 1; };
+    const Strings structures = {"bvh", "kdtree", "grid"};
+    const Comparison c =
+        measure(points<float>(1000), structures, quick_options(), serial_executor(), progress);
+    EXPECT_FALSE(c.finished);
+    EXPECT_LT(c.structures.size(), 3u);
+}
+
+TEST(AnyIndexChanges, AreOfferedWhereTheStructureHasThem) {
+    auto cloud = points<float>(500);
+    const auto tree = build_any("octree", cloud);
+    ASSERT_TRUE(tree->changes_one_by_one());
+    EXPECT_FALSE(tree->refittable());
+    EXPECT_TRUE(tree->erase(7));
+    EXPECT_FALSE(tree->erase(7));
+    cloud.points[7] = {0.5f, 0.5f, 0.5f};
+    EXPECT_TRUE(tree->insert(7));
+    const Vec3f p(0.5f, 0.5f, 0.5f);
+    Near<float, 3> near;
+    tree->closest_points({&p, 1}, {&near, 1});
+    EXPECT_EQ(near.element, 7u);
+    EXPECT_THROW(tree->refit(), InputError);
+
+    const auto bvh = build_any("bvh", cloud);
+    ASSERT_TRUE(bvh->refittable());
+    cloud.points[9] = {2, 2, 2};
+    EXPECT_GT(bvh->refit(), 0);
+    EXPECT_EQ(bvh->validate(), "");
+    const Vec3f q(2, 2, 2);
+    bvh->closest_points({&q, 1}, {&near, 1});
+    EXPECT_EQ(near.element, 9u);
+
+    const auto grid = build_any("grid", cloud);
+    EXPECT_FALSE(grid->changes_one_by_one());
+    EXPECT_FALSE(grid->refittable());
+    EXPECT_THROW(grid->insert(0), InputError);
+    EXPECT_THROW(grid->erase(0), InputError);
+    EXPECT_THROW(grid->refit(), InputError);
+}
+
+}  // namespace
+}  // namespace hedgerow::compare
