@@ -28,7 +28,8 @@ public:
     static constexpr int dimension = D;
     using State = Interval<T>;
 
-    RayProbe(const Ray<T, D>& ray, const Box<T, D>& scene) : ray_(ray) {
+    /// `more` is added to e, for primitives that err by more than their own test does.
+    RayProbe(const Ray<T, D>& ray, const Box<T, D>& scene, T more = T(0)) : ray_(ray) {
         using L = Lanes<T>;
         using limits = std::numeric_limits<T>;
         const L o = L::of(ray.origin), d = L::of(ray.direction).normal_or_zero();
@@ -40,7 +41,7 @@ public:
         usable_ = sound == 15u && longest > 0 && ray_.t_min <= ray_.t_max && !scene.empty();
         if (!usable_) return;
 
-        slack_ = error_over(scene, 16 * unit_roundoff<T>);
+        slack_ = error_over(scene, 16 * unit_roundoff<T>) + more;
         const L outward = copysign(L::all(slack_), d);
         (o + outward).store(near_origin_);
         (o - outward).store(far_origin_);
