@@ -52,6 +52,7 @@ struct Questions {
     std::vector<Vec<T, D>> points;
     std::vector<Box<T, D>> boxes;
 
+    Questions() = default;
     Questions(const Box<T, D>& world, const std::vector<Vec<T, D>>& targets, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
             rays.push_back(matrix::ray_of(world, targets, i));
@@ -115,7 +116,7 @@ struct Case {
     std::vector<P> sets;
     std::vector<Transform<D>> transforms;
     bool regions = true;
-    Questions<T, D> questions{{}, {}, 0};
+    Questions<T, D> questions;
     Answers<T, D> want;
 
     Case(std::vector<P> s, std::vector<Transform<D>> t, bool r, std::size_t rays)
