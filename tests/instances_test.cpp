@@ -148,14 +148,17 @@ struct Case {
         expect<Bvh, Grid>("grid in bvh");
         expect<KdTree, Bvh>("bvh in kdtree");
     }
+    /// Every structure outside and inside, in float, which spares the compiler some minutes.
     void expect_all() const {
         expect_some();
-        expect<BruteForce, Bvh>("bvh in brute force");
-        expect<Bvh, BruteForce>("brute force in bvh");
-        expect<KdTree, KdTree>("kdtree in kdtree");
-        expect<Grid, Bvh>("bvh in grid");
-        expect<Orthtree, Grid>("grid in octree");
-        expect<BspTree, KdTree>("kdtree in bsp");
+        if constexpr (std::is_same_v<T, float>) {
+            expect<BruteForce, Bvh>("bvh in brute force");
+            expect<Bvh, BruteForce>("brute force in bvh");
+            expect<KdTree, KdTree>("kdtree in kdtree");
+            expect<Grid, Bvh>("bvh in grid");
+            expect<Orthtree, Grid>("grid in octree");
+            expect<BspTree, KdTree>("kdtree in bsp");
+        }
     }
 };
 
