@@ -41,13 +41,29 @@ inline constexpr const char* structures[] = {"bvh",
                                              "octree:leaf_size=1",
                                              "bsp:samples=4,intersection_cost=20,plane_cost=1",
                                              "octree:max_depth=3,mailbox=off",
-                                             "brute-force:box=on"};
+                                             "brute-force:box=on",
+                                             "bvh:volume=sphere",
+                                             "bvh:volume=obb,max_leaf_size=1",
+                                             "bvh:volume=kdop6",
+                                             "bvh:volume=kdop14,builder=ploc",
+                                             "bvh:volume=kdop18,ordered=off",
+                                             "bvh:volume=kdop26,culling=off",
+                                             "bvh:volume=cylinder",
+                                             "bvh:volume=hull,builder=agglomerative"};
 inline constexpr std::size_t fast_structures = 15;
 
-/// What is called that in space, among sets of P.
+/// What is called that in space, or stands for it in the plane, among sets of P.
 template <class P>
 std::string named_for(std::string spec) {
-    if (P::dimension == 2 && spec.starts_with("octree")) spec.replace(0, 6, "quadtree");
+    if (P::dimension == 3) return spec;
+    for (const auto& [space, plane] : {std::pair<std::string, std::string>{"octree", "quadtree"},
+                                       {"kdop6", "kdop4"},
+                                       {"kdop14", "kdop8"},
+                                       {"kdop18", "kdop8"},
+                                       {"kdop26", "kdop8"},
+                                       {"cylinder", "sphere"},
+                                       {"hull", "obb"}})
+        if (const auto at = spec.find(space); at != std::string::npos) spec.replace(at, space.size(), plane);
     return spec;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <hedgerow/index.h>
+#include <hedgerow/primitives/instance_set.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>

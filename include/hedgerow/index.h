@@ -256,7 +256,7 @@ std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
                       const Filter& filter = {}, Count& count = no_visits) {
-    if (index.structure().exclusive()) {
+    if (offers_once<P> && index.structure().exclusive()) {
         return index.template answer<HitCount<P, Filter>>(count, ray, filter);
     } else {
         static thread_local std::vector<Hit<typename P::Scalar>> hits;
@@ -279,10 +279,10 @@ std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::d
                     Count& count = no_visits) {
     return index.template answer<Nearest<P>>(count, point, k, max_distance2, found);
 }
-/// The primitives that overlap a box, ascending, into `found`.
+/// The primitives that overlap a box, ascending, into `found`: their positions, among instances PlacedIds.
 template <class S, class P, class Count = const NoVisits>
 std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, P::dimension>& box,
-                        std::vector<PrimitiveId>& found, Count& count = no_visits) {
+                        std::vector<IdOf<P>>& found, Count& count = no_visits) {
     return index.template answer<Overlapping<P>>(count, box, found);
 }
 

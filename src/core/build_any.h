@@ -126,6 +126,9 @@ constexpr std::string_view orthtree_name(int dimension) {
     return dimension == 3 ? "octree" : "quadtree";
 }
 
+/// A BVH of other volumes than boxes is a type of its own behind the same name.
+inline constexpr std::string_view bvh_of_volumes = "bvh:volume";
+
 /// The one list of structures: its names are what the tool, the tests and the bindings know.
 template <int D, class F>
 void for_each_structure(F f) {
@@ -137,6 +140,7 @@ void for_each_structure(F f) {
     f.template operator()<Orthtree>(orthtree_name(D));
     f.template operator()<BspTree>("bsp");
     f.template operator()<Bvh>("bvh");
+    f.template operator()<VolumeBvh>(bvh_of_volumes);
 }
 
 }  // namespace detail
@@ -151,11 +155,12 @@ std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(std::strin
     const std::string_view wanted = spec.substr(0, colon);
     detail::OptionReader in(wanted,
                             colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1));
+    const auto type = wanted == "bvh" && in.differs("volume", "box") ? detail::bvh_of_volumes : wanted;
     std::unique_ptr<AnyIndex<T, D>> built;
     std::vector<std::string_view> known;
     detail::for_each_structure<D>([&]<template <class, int> class S>(std::string_view name) {
-        known.push_back(name);
-        if (name != wanted) return;
+        if (name != detail::bvh_of_volumes) known.push_back(name);
+        if (name != type) return;
         typename S<T, D>::Options options;
         detail::read_options(in, options, std::type_identity<S<T, D>>());
         in.finish();

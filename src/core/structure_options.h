@@ -62,6 +62,11 @@ public:
     }
     void flag(const char* name, bool& value) { choice<bool>(name, value, {{"on", true}, {"off", false}}); }
 
+    /// Whether an option is given, and as something else than its standard. It is left to be taken.
+    bool differs(const std::string& name, std::string_view standard) const {
+        const auto found = given_.find(name);
+        return found != given_.end() && found->second != standard;
+    }
     void finish() const {
         for (const auto& [name, value] : given_)
             throw InputError("structure '" + structure_ + "' has no option '" + name + "'" +
@@ -151,7 +156,8 @@ void read_options(OptionReader& in, typename BspTree<T, D>::Options& o, std::typ
     in.flag("mailbox", o.mailbox);
 }
 template <class T, int D>
-void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_identity<Bvh<T, D>>) {
+void read_bvh_options(OptionReader& in, BvhOptions& o, Volume& volume) {
+    in.choice<Volume>("volume", volume, {std::begin(volume_names), std::end(volume_names)});
     in.choice<BvhBuilder>("builder", o.builder,
                           {{"binned", BvhBuilder::binned},
                            {"sweep", BvhBuilder::sweep},
@@ -171,6 +177,16 @@ void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_id
     in.number<std::uint32_t>("max_leaf_size", o.max_leaf_size, 1, 1u << 20);
     in.flag("culling", o.culling);
     in.flag("ordered", o.ordered);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_identity<Bvh<T, D>>) {
+    Volume box = Volume::box;
+    read_bvh_options<T, D>(in, o, box);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename VolumeBvh<T, D>::Options& o,
+                  std::type_identity<VolumeBvh<T, D>>) {
+    read_bvh_options<T, D>(in, o, o.volume);
 }
 
 }  // namespace hedgerow::detail

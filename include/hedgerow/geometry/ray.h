@@ -19,6 +19,14 @@ struct Ray {
     constexpr Vec<T, D> at(T t) const { return origin + direction * t; }
 };
 
+/// A ray's line in double: the points origin + s·direction, and whatever lies within `thickness` of one along
+/// every axis. The largest component of the direction is about 1; t is s times `unit`.
+template <int D>
+struct ThickLine {
+    Vec<double, D> origin, direction;
+    double thickness, unit;
+};
+
 using Ray2f = Ray<float, 2>;
 using Ray2d = Ray<double, 2>;
 using Ray3f = Ray<float, 3>;

@@ -52,6 +52,17 @@ inline constexpr T unit_roundoff = std::numeric_limits<T>::epsilon() / 2;
 template <std::floating_point T>
 inline constexpr T largest_coordinate = std::is_same_v<T, float> ? T(0x1p60) : T(0x1p480L);
 
+/// The nearest T that is not above x, and the nearest that is not below it.
+template <std::floating_point T>
+T rounded_down(double x) {
+    const T near = static_cast<T>(x);
+    return static_cast<double>(near) > x ? std::nextafter(near, -std::numeric_limits<T>::infinity()) : near;
+}
+template <std::floating_point T>
+T rounded_up(double x) {
+    return -rounded_down<T>(-x);
+}
+
 /// An unevaluated sum high + low, with |low| <= u·|high|.
 template <std::floating_point T>
 struct TwoSum {

@@ -47,11 +47,13 @@ concept OverlapsBoxes = PrimitiveSet<P> &&
 template <class P>
 concept HitsLieOnPrimitives = OverlapsBoxes<P> && P::hits_lie_on_primitives;
 
-/// What a ray query is offered.
+/// What a ray query is offered. `instance` names the placed index that the element is in; 0 where there are
+/// no instances.
 template <std::floating_point T>
 struct RayCandidate {
     T t, u, v;
     PrimitiveId element;
+    std::uint32_t instance = 0;
 };
 /// What a distance query is offered.
 template <std::floating_point T, int D>
@@ -59,12 +61,62 @@ struct PointCandidate {
     T distance2;
     PrimitiveId element;
     Vec<T, D> point;
+    std::uint32_t instance = 0;
 };
 /// What a region query is offered.
 struct OverlapCandidate {
     PrimitiveId element;
+    std::uint32_t instance = 0;
 };
 
+/// The order that equal answers go by, and what they are told apart by: (instance, element).
+template <class A, class B>
+constexpr bool comes_before(const A& a, const B& b) {
+    return a.instance != b.instance ? a.instance < b.instance : a.element < b.element;
+}
+template <class A, class B>
+constexpr bool same_primitive(const A& a, const B& b) {
+    return a.instance == b.instance && a.element == b.element;
+}
+
+/// A primitive of an instance.
+struct PlacedId {
+    std::uint32_t instance;
+    PrimitiveId element;
+    friend auto operator<=>(const PlacedId&, const PlacedId&) = default;
+};
+/// Primitives that are whole indexes, placed (instance_set.h): what they answer is named by two numbers.
+template <class P>
+concept Instanced = P::instanced;
+/// What a region query names primitives of P by.
+template <class P>
+struct Identity {
+    using Type = PrimitiveId;
+    static Type of(const OverlapCandidate& c) { return c.element; }
+};
+template <Instanced P>
+struct Identity<P> {
+    using Type = PlacedId;
+    static Type of(const OverlapCandidate& c) { return {c.instance, c.element}; }
+};
+template <class P>
+using IdOf = typename Identity<P>::Type;
+
+/// Whether a test of one primitive offers each candidate once.
+template <class P>
+inline constexpr bool offers_once = true;
+template <Instanced P>
+inline constexpr bool offers_once<P> = P::offers_once;
+
+/// How much farther than RayProbe knows of itself a hit may lie from its primitive's box: 0 but for
+/// instances.
+template <class P, class Ray>
+auto hit_error(const P& set, const Ray& ray) {
+    if constexpr (requires { set.hit_error(ray); })
+        return set.hit_error(ray);
+    else
+        return typename Ray::Scalar(0);
+}
 /// Where a packed copy of the primitives stands: in the order of the leaves, for structures that hold each
 /// about once, or by id.
 enum class PackedOrder { of_leaves, of_ids };
@@ -115,8 +167,10 @@ Flow test_leaf(const P& set, const Probe& probe, const Leaf& leaf, Query& query)
 
 /// The id that a hit reports for a primitive: its own, or what the set says (a triangle's face in its file).
 template <class P>
-std::uint32_t reported_id(const P& set, PrimitiveId i) {
-    if constexpr (requires { set.id(i); })
+std::uint32_t reported_id(const P& set, PrimitiveId i, std::uint32_t instance) {
+    if constexpr (Instanced<P>)
+        return set.id(i, instance);
+    else if constexpr (requires { set.id(i); })
         return set.id(i);
     else
         return i;

@@ -23,6 +23,13 @@ public:
         at = T(0);
         return overlap(box_, box);
     }
+    /// Any other volume (geometry/volumes.h).
+    template <class Volume>
+    requires requires(const Box<double, D>& b, const Volume& v) { may_overlap(b, v); }
+    bool enter(const Volume& volume, T, T& at) const {
+        at = T(0);
+        return may_overlap(Box<double, D>{Vec<double, D>(box_.low), Vec<double, D>(box_.high)}, volume);
+    }
     template <class Pack>
     requires(Pack::width > 0) unsigned enter(const Pack& pack, T limit, T* at) const {
         return enter_each(*this, pack, limit, at);

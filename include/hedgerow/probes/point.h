@@ -28,6 +28,16 @@ public:
         at = distance2(point_, box);
         return at <= limit;
     }
+    /// Any other volume (geometry/volumes.h), by a bound in double. It is lowered by more than the distance
+    /// to an answer may err by, and in T, where squares of tiny scenes underflow.
+    template <class Volume>
+    requires requires(const Vec<double, D>& p, const Volume& v) { least_distance2(p, v); }
+    bool enter(const Volume& volume, T limit, T& at) const {
+        const double least = least_distance2(Vec<double, D>(point_), volume) * (1 - 0x1p-20);
+        const double most = static_cast<double>(std::numeric_limits<T>::max());
+        at = static_cast<T>(std::min(least, most)) - 4 * std::numeric_limits<T>::denorm_min();
+        return at <= limit;
+    }
     template <class Pack>
     requires(Pack::width > 0) unsigned enter(const Pack& pack, T limit, T* at) const {
         return enter_each(*this, pack, limit, at);

@@ -30,10 +30,9 @@ public:
         return Flow::go_on;
     }
     std::size_t answer() {
-        std::sort(hits_.begin(), hits_.end(), [](const auto& a, const auto& b) {
-            return a.t != b.t ? a.t < b.t : a.element < b.element;
-        });
-        const auto same = [](const auto& a, const auto& b) { return a.element == b.element; };
+        std::sort(hits_.begin(), hits_.end(),
+                  [](const auto& a, const auto& b) { return a.t != b.t ? a.t < b.t : comes_before(a, b); });
+        const auto same = [](const auto& a, const auto& b) { return same_primitive(a, b); };
         hits_.erase(std::unique(hits_.begin(), hits_.end(), same), hits_.end());
         return hits_.size();
     }

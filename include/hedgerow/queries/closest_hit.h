@@ -1,4 +1,4 @@
-/// The hit of least t; equal t goes to the lowest primitive.
+/// The hit of least t; equal t goes to the lowest (instance, primitive).
 #pragma once
 
 #include <optional>
@@ -17,11 +17,11 @@ public:
 
     template <class Index, class Ray>
     ClosestHit(const Index& index, const Ray& ray, const Filter& filter = {})
-        : Base(index, ray, filter), best_{Base::first_limit(), 0, 0, Hit<Scalar>::none} {}
+        : Base(index, ray, filter), best_{Base::first_limit(), 0, 0, Hit<Scalar>::none, Hit<Scalar>::none} {}
 
     Scalar limit() const { return best_.t; }
     Flow offer(const RayCandidate<Scalar>& c) {
-        if (c.t <= best_.t && (c.t < best_.t || c.element < best_.element) && this->counts(c)) best_ = c;
+        if (c.t <= best_.t && (c.t < best_.t || comes_before(c, best_)) && this->counts(c)) best_ = c;
         return Flow::go_on;
     }
     std::optional<Hit<Scalar>> answer() const {

@@ -7,12 +7,13 @@
 
 namespace hedgerow {
 
-/// distance2 is squared. Of equal distances the lowest primitive's.
+/// distance2 is squared. Of equal distances the lowest (instance, primitive).
 template <std::floating_point T, int D>
 struct Near {
     T distance2 = std::numeric_limits<T>::infinity();
     std::uint32_t primitive = 0xFFFFFFFFu, element = 0xFFFFFFFFu;
     Vec<T, D> point;
+    std::uint32_t instance = 0;
 
     friend bool operator==(const Near&, const Near&) = default;
 };
@@ -30,19 +31,20 @@ public:
     ClosestPoint(const Index& index, const Vec<Scalar, dimension>& p, Scalar max_distance2)
         : probe_(p), set_(index.primitives()) {
         best_.distance2 = max_distance2;
+        best_.instance = best_.element;  // none: whatever comes is before it
     }
 
     const Probe& probe() const { return probe_; }
     Scalar limit() const { return best_.distance2; }
     Flow offer(const PointCandidate<Scalar, dimension>& c) {
-        if (c.distance2 < best_.distance2 || (c.distance2 == best_.distance2 && c.element < best_.element))
-            best_ = {c.distance2, 0, c.element, c.point};
+        if (c.distance2 < best_.distance2 || (c.distance2 == best_.distance2 && comes_before(c, best_)))
+            best_ = {c.distance2, 0, c.element, c.point, c.instance};
         return Flow::go_on;
     }
     std::optional<Near<Scalar, dimension>> answer() const {
         if (best_.element == Near<Scalar, dimension>{}.element) return std::nullopt;
         auto found = best_;
-        found.primitive = reported_id(set_, best_.element);
+        found.primitive = reported_id(set_, best_.element, best_.instance);
         return found;
     }
 

@@ -8,7 +8,7 @@ namespace hedgerow {
 
 /// A hit: t in units of the ray's direction, the surface's own coordinates u and v (see Meeting), and what
 /// was hit. `element` is the position in the primitive set; `primitive` its id, which differs where a polygon
-/// of a file became several triangles.
+/// of a file became several triangles. Among instances both are of the index that `instance` places.
 template <std::floating_point T>
 struct Hit {
     T t = std::numeric_limits<T>::infinity();
@@ -28,12 +28,13 @@ struct KeepAll {
         return true;
     }
 };
-/// Refuses one element: the surface that the ray starts on.
+/// Refuses one element (of one instance): the surface that the ray starts on.
 struct Except {
     PrimitiveId element;
+    std::uint32_t instance = 0;
     template <class H>
     bool operator()(const H& h) const {
-        return h.element != element;
+        return h.element != element || h.instance != instance;
     }
 };
 /// Refuses triangles seen from behind (their normal along the ray) and those seen edge-on.

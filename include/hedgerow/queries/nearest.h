@@ -31,11 +31,11 @@ public:
         return k_ == 0 ? Scalar(-1) : (found_.size() < k_ ? max_ : found_.front().distance2);
     }
     Flow offer(const PointCandidate<Scalar, dimension>& c) {
-        const Found f{c.distance2, reported_id(set_, c.element), c.element, c.point};
+        const Found f{c.distance2, reported_id(set_, c.element, c.instance), c.element, c.point, c.instance};
         if (k_ == 0 || !(c.distance2 <= max_)) return Flow::go_on;
         if (found_.size() == k_ && !nearer(f, found_.front())) return Flow::go_on;
         for (const Found& g : found_)
-            if (g.element == c.element) return Flow::go_on;
+            if (same_primitive(g, c)) return Flow::go_on;
         if (found_.size() == k_) {
             std::pop_heap(found_.begin(), found_.end(), nearer);
             found_.pop_back();
@@ -51,7 +51,7 @@ public:
 
 private:
     static bool nearer(const Found& a, const Found& b) {
-        return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.element < b.element;
+        return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : comes_before(a, b);
     }
 
     Probe probe_;

@@ -17,7 +17,7 @@ public:
     static constexpr Order order = Order::none;
 
     template <class Index>
-    Overlapping(const Index&, const Box<Scalar, Set::dimension>& box, std::vector<PrimitiveId>& found)
+    Overlapping(const Index&, const Box<Scalar, Set::dimension>& box, std::vector<IdOf<Set>>& found)
         : probe_(box), found_(found) {
         found_.clear();
     }
@@ -25,7 +25,7 @@ public:
     const Probe& probe() const { return probe_; }
     Scalar limit() const { return std::numeric_limits<Scalar>::max(); }
     Flow offer(const OverlapCandidate& c) {
-        found_.push_back(c.element);
+        found_.push_back(Identity<Set>::of(c));
         return Flow::go_on;
     }
     std::size_t answer() {
@@ -36,7 +36,7 @@ public:
 
 private:
     Probe probe_;
-    std::vector<PrimitiveId>& found_;
+    std::vector<IdOf<Set>>& found_;
 };
 
 }  // namespace hedgerow

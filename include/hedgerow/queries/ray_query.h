@@ -15,7 +15,9 @@ public:
 
     template <class Index, class Ray>
     RayQuery(const Index& index, const Ray& ray, const Filter& filter)
-        : probe_(ray, index.bounds()), set_(index.primitives()), filter_(filter) {}
+        : probe_(ray, index.bounds(), hit_error(index.primitives(), ray)),
+          set_(index.primitives()),
+          filter_(filter) {}
 
     const Probe& probe() const { return probe_; }
 
@@ -32,7 +34,7 @@ protected:
             return filter_(hit(c));
     }
     Hit<Scalar> hit(const RayCandidate<Scalar>& c) const {
-        return {c.t, c.u, c.v, reported_id(set_, c.element), 0, 0, c.element};
+        return {c.t, c.u, c.v, reported_id(set_, c.element, c.instance), 0, c.instance, c.element};
     }
 
 private:

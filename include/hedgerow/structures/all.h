@@ -4,6 +4,7 @@
 #include <hedgerow/structures/brute_force.h>
 #include <hedgerow/structures/bsp/bsp_tree.h>
 #include <hedgerow/structures/bvh/bvh.h>
+#include <hedgerow/structures/bvh/volume_bvh.h>
 #include <hedgerow/structures/fold.h>
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/grid/two_level_grid.h>

@@ -7,6 +7,7 @@
 #include <hedgerow/geometry/lattice.h>
 #include <hedgerow/geometry/overlap.h>
 #include <hedgerow/geometry/polytope.h>
+#include <hedgerow/structures/bvh/volumes/region.h>
 #include <hedgerow/structures/walk_orthants.h>
 #include <hedgerow/structures/walk_planes.h>
 #include <hedgerow/structures/walk_volumes.h>
@@ -71,9 +72,16 @@ template <class T, int D>
 Box<double, D> box_in_double(const Box<T, D>& b) {
     return {Vec<double, D>(b.low), Vec<double, D>(b.high)};
 }
-template <class V>
-auto box_in_double(const V& volume) {
-    return box_in_double(volume.bounds());
+/// The region of what is bounded by a volume, in a scene that it may reach out of.
+template <class V, class T, int D>
+void bound(OutlineCell<D>& cell, const V& volume, const Box<T, D>& scene) {
+    const Box<double, D> whole = box_in_double(scene);
+    if constexpr (std::same_as<V, Box<T, D>>) {
+        cell.box = box_in_double(volume);
+    } else {
+        cell.shape = region_in(volume, {whole.low - whole.extent(), whole.high + whole.extent()});
+        cell.box = cell.shape.empty() ? whole : cell.shape.bounds();
+    }
 }
 
 /// Lists a cell, if it is wanted, and says whether its children are.
@@ -93,7 +101,7 @@ void outline_from(const S& tree, NodeRef node, OutlineCell<D> cell, Outliner<D, 
         const NodeRef below = tree.child(node, i);
         if (below.empty()) continue;
         auto child = cell.child(S::child_id(node, i), below.place());
-        child.box = box_in_double(tree.volumes(node)[i]);
+        bound(child, tree.volumes(node)[i], tree.bounds());
         outline_from(tree, below, std::move(child), list);
     }
 }

@@ -1,0 +1,109 @@
+/// What a BVH's bounding volume costs and brings: bytes, time a test, tests and time a ray. All but the first
+/// row are the study structure (structures/bvh/volume_bvh.h), whose tree is that of the first; kdop6 is the
+/// same box by its way.
+///
+///   volumes_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:100000; a mesh file is a scene
+#include "ray_sets.h"
+
+#include <hedgerow/structures/bvh/volume_bvh.h>
+
+using namespace hedgerow;
+using namespace hedgerow::benchmark;
+
+namespace {
+
+constexpr int repeats = 3;
+
+/// Rays and nodes, both in arbitrary order, against each other: nanoseconds a test. At the end the answers
+/// are counted, so that no test is left out.
+template <class Index>
+double test_time(const Index& index, const std::vector<Ray3f>& rays) {
+    const auto& tree = index.structure();
+    const std::size_t nodes = tree.leaf_count() - 1;
+    if (nodes == 0) return 0;
+    std::vector<RayProbe<float, 3>> probes;
+    for (std::size_t i = 0; i < std::min<std::size_t>(rays.size(), 1000); ++i)
+        probes.emplace_back(rays[i * 7919 % rays.size()], index.bounds());
+    std::vector<double> times;
+    std::size_t entered = 0, tests = 0;
+    for (int r = 0; r < repeats; ++r) {
+        const double start = seconds();
+        tests = 0;
+        for (std::size_t k = 0; k < 64; ++k) {  // few nodes, so that it is not the memory that is measured
+            const auto volumes = tree.volumes({static_cast<std::uint32_t>(k * nodes / 64), 0});
+            for (const auto& probe : probes) {
+                float at[4];
+                entered += probe.enter(volumes, probe.ray().t_max, at);
+                tests += 2;
+            }
+        }
+        times.push_back(seconds() - start);
+    }
+    asm volatile("" : : "r"(entered));
+    return median(times) / static_cast<double>(tests) * 1e9;
+}
+
+template <class Index>
+void row(const char* name, const Index& index, const RaySet& set, double built) {
+    Visits visits;
+    for (const auto& ray : set.rays) closest_hit(index, ray, KeepAll{}, visits);
+    std::vector<double> times;
+    std::size_t hits = 0;
+    for (int r = 0; r < repeats; ++r) {
+        const double start = seconds();
+        hits = 0;
+        for (const auto& ray : set.rays) hits += closest_hit(index, ray).has_value();
+        times.push_back(seconds() - start);
+    }
+    const double n = static_cast<double>(set.rays.size());
+    const double items = static_cast<double>(index.size()) * sizeof(PrimitiveId);
+    const double inner = static_cast<double>(index.structure().leaf_count() - 1);
+    const double bytes = static_cast<double>(index.structure().bytes());
+    std::printf("| %-9s | %-8s | %8.0f | %8.1f | %8.1f | %7.1f | %8.2f | %8.2f | %9.0f | %5.1f |\n", name,
+                set.name.c_str(), built * 1e3, (bytes - items) / inner,
+                bytes / static_cast<double>(index.size()), test_time(index, set.rays),
+                2 * static_cast<double>(visits.nodes) / n, static_cast<double>(visits.primitives) / n,
+                median(times) / n * 1e9, static_cast<double>(hits) / n * 100);
+}
+
+void table(const TriangleMesh<float>& mesh) {
+    Box3f box;
+    for (const auto& v : mesh.vertices) box.expand(v);
+    const auto sets = ray_sets(mesh, box, 128, 1 << 14);
+    std::printf(
+        "| volume    | rays     | build ms | B a node | B a prim | ns/test | volumes  | prims    | ns a ray  "
+        "| %% hit "
+        "|\n|-----------|----------|----------|----------|----------|---------|----------|----------|--------"
+        "---|-------"
+        "|\n");
+    const auto measure = [&](const char* name, auto build_index) {
+        const double start = seconds();
+        const auto index = build_index();
+        const double built = seconds() - start;
+        for (const auto& set : sets) row(name, index, set, built);
+    };
+    measure("(default)", [&] { return build<Bvh>(mesh); });
+    for (const auto& [name, volume] : volume_names) {
+        if (volume == Volume::box || volume == Volume::kdop4 || volume == Volume::kdop8) continue;
+        VolumeBvhOptions options;
+        options.volume = volume;
+        measure(std::string(name).c_str(), [&] { return build<VolumeBvh>(mesh, options); });
+    }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) try {
+    std::printf("%s, g++ %d.%d, one thread, medians of %d\n", processor().c_str(), __GNUC__, __GNUC_MINOR__,
+                repeats);
+    std::vector<std::string> names(arguments + 1, arguments + count);
+    if (names.empty()) names = {"gen:teapot-in-stadium", "gen:soup:100000"};
+    for (const auto& name : names) {
+        const auto mesh = scene(name);
+        std::printf("\n%s, %zu triangles\n\n", name.substr(name.rfind('/') + 1).c_str(), mesh.size());
+        table(mesh);
+    }
+} catch (const InputError& error) {
+    std::fprintf(stderr, "volumes_benchmark: %s\n", error.what());
+    return 3;
+}

@@ -1,0 +1,182 @@
+/// Affine maps of space, with their inverses.
+#pragma once
+
+#include <initializer_list>
+
+#include <hedgerow/error.h>
+#include <hedgerow/geometry/box.h>
+#include <hedgerow/geometry/eigen.h>
+#include <hedgerow/geometry/shapes.h>
+
+namespace hedgerow {
+
+/// x ↦ linear·x + shift, one way.
+template <int D>
+struct Affine {
+    Rows<D> linear{};
+    Vec<double, D> shift;
+
+    Vec<double, D> vector(const Vec<double, D>& v) const {
+        Vec<double, D> r;
+        for (int k = 0; k < D; ++k) r[k] = dot(linear[static_cast<std::size_t>(k)], v);
+        return r;
+    }
+    Vec<double, D> point(const Vec<double, D>& p) const { return vector(p) + shift; }
+    /// The box of a box (Arvo 1990). Its sums are those of `point` in the same order, and rounding is
+    /// monotone: the computed point of what is in the box is in the computed box.
+    Box<double, D> box(const Box<double, D>& b) const {
+        Box<double, D> r{Vec<double, D>(), Vec<double, D>()};
+        for (int k = 0; k < D; ++k) {
+            const auto& row = linear[static_cast<std::size_t>(k)];
+            for (int j = 0; j < D; ++j) {
+                const double x = product(row[j], b.low[j]), y = product(row[j], b.high[j]);
+                r.low[k] += std::min(x, y), r.high[k] += std::max(x, y);
+            }
+            r.low[k] += shift[k], r.high[k] += shift[k];
+        }
+        return r;
+    }
+    /// How far the largest component of a vector may grow at most.
+    double reach() const {
+        double most = 0;
+        for (const auto& row : linear) {
+            double sum = 0;
+            for (int k = 0; k < D; ++k) sum += std::abs(row[k]);
+            most = std::max(most, sum);
+        }
+        return most;
+    }
+    /// Singular values: how vectors are stretched along the axes of an ellipsoid.
+    Vec<double, D> stretches() const {
+        Rows<D> squared{};
+        const double unit = reach() > 0 ? 1 / reach() : 0;
+        for (std::size_t i = 0; i < squared.size(); ++i)
+            for (std::size_t j = 0; j < squared.size(); ++j)
+                for (const auto& row : linear)
+                    squared[i][static_cast<int>(j)] +=
+                        product(row[static_cast<int>(i)] * unit, row[static_cast<int>(j)] * unit);
+        return map(eigen_of_symmetric(squared).values,
+                   [&](double x) { return std::sqrt(std::max(0.0, x)) / unit; });
+    }
+    bool operator==(const Affine&) const = default;
+};
+
+/// An affine map and its inverse, in double. What it takes to turn a ray back is worked out once.
+template <int D>
+class Transform {
+public:
+    using Vector = Vec<double, D>;
+
+    /// Leaves everything as it is.
+    Transform() : Transform(identity(), Vector()) {}
+    /// By the rows of its linear part, and where it takes 0. Throws InputError if an entry is NaN or
+    /// infinite, or if the map is singular or so nearly that its inverse would not undo it to one part in a
+    /// million.
+    Transform(const Rows<D>& linear, const Vector& shift) : there_{linear, shift} { invert(); }
+
+    static Transform translation(const Vector& by) { return {identity(), by}; }
+    static Transform scaling(const Vector& by) {
+        Rows<D> m{};
+        for (int k = 0; k < D; ++k) m[static_cast<std::size_t>(k)][k] = by[k];
+        return {m, Vector()};
+    }
+    static Transform scaling(double by) { return scaling(Vector::all(by)); }
+    /// Counterclockwise, in radians.
+    static Transform rotation(double angle) requires(D == 2) {
+        const double c = std::cos(angle), s = std::sin(angle);
+        return {{Vector(c, -s), Vector(s, c)}, Vector()};
+    }
+    /// About an axis of any length but 0, counterclockwise seen against it, in radians (Rodrigues 1840).
+    static Transform rotation(const Vector& axis, double angle) requires(D == 3) {
+        const Vector a = normalized(axis);
+        const double c = std::cos(angle), s = std::sin(angle);
+        Rows<3> m{};
+        for (int k = 0; k < 3; ++k) {
+            const int i = (k + 1) % 3, j = (k + 2) % 3;
+            Vector& row = m[static_cast<std::size_t>(k)];
+            row[k] = c + a[k] * a[k] * (1 - c);
+            row[i] = a[k] * a[i] * (1 - c) - s * a[j];
+            row[j] = a[k] * a[j] * (1 - c) + s * a[i];
+        }
+        return {m, Vector()};
+    }
+
+    const Affine<D>& there() const { return there_; }
+    const Affine<D>& back() const { return back_; }
+    /// A bound of |there·back − 1|: how far going there and back may miss, as a part of the way.
+    double residual() const { return residual_; }
+
+    /// First b, then a.
+    friend Transform operator*(const Transform& a, const Transform& b) {
+        Rows<D> m{};
+        for (std::size_t i = 0; i < m.size(); ++i)
+            for (std::size_t j = 0; j < m.size(); ++j)
+                m[i] = m[i] + b.there_.linear[j] * a.there_.linear[i][static_cast<int>(j)];
+        return {m, a.there_.point(b.there_.shift)};
+    }
+    friend bool operator==(const Transform&, const Transform&) = default;
+
+private:
+    static Rows<D> identity() {
+        Rows<D> m{};
+        for (int k = 0; k < D; ++k) m[static_cast<std::size_t>(k)][k] = 1;
+        return m;
+    }
+    /// Gauss and Jordan, with the largest pivot of each column.
+    void invert() {
+        Rows<D> m = there_.linear, inverse = identity();
+        bool good = finite(there_.shift);
+        for (const auto& row : m) good = good && finite(row);
+        for (int k = 0; k < D && good; ++k) {
+            const auto at = static_cast<std::size_t>(k);
+            std::size_t pivot = at;
+            for (std::size_t i = at; i < m.size(); ++i)
+                if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
+            if (m[pivot][k] == 0) good = false;
+            if (!good) break;
+            std::swap(m[at], m[pivot]);
+            std::swap(inverse[at], inverse[pivot]);
+            inverse[at] = inverse[at] / m[at][k];
+            m[at] = m[at] / m[at][k];
+            for (std::size_t i = 0; i < m.size(); ++i) {
+                if (i == at) continue;
+                const double by = m[i][k];
+                inverse[i] = inverse[i] - inverse[at] * by;
+                m[i] = m[i] - m[at] * by;
+            }
+        }
+        back_ = {inverse, Vector()};
+        back_.shift = -back_.vector(there_.shift);
+        residual_ = good ? residual() + 16 * unit_roundoff<double> * there_.reach() * back_.reach() : 1;
+        for (std::size_t i = 0; i < m.size() && good; ++i)
+            for (std::size_t j = 0; j < m.size(); ++j) {
+                double x = i == j ? -1 : 0;
+                for (std::size_t k = 0; k < m.size(); ++k)
+                    x += product(there_.linear[i][static_cast<int>(k)], inverse[k][static_cast<int>(j)]);
+                residual_ += std::abs(x);
+            }
+        if (!(residual_ < 1e-6) || !finite(back_.shift))
+            throw InputError(
+                "a transform is singular, nearly singular or not finite: it has to be invertible, "
+                "so scale by nothing that is 0 or as good as 0 beside the rest");
+    }
+
+    Affine<D> there_, back_;
+    double residual_ = 0;
+};
+
+/// Shapes under a transform, with their corners rounded to T.
+template <class T, int D>
+Vec<T, D> transformed(const Affine<D>& f, const Vec<T, D>& p) {
+    return Vec<T, D>(f.point(Vec<double, D>(p)));
+}
+template <class T, int D>
+Triangle<T, D> transformed(const Affine<D>& f, const Triangle<T, D>& t) {
+    return {transformed(f, t.a), transformed(f, t.b), transformed(f, t.c)};
+}
+template <class T, int D>
+Segment<T, D> transformed(const Affine<D>& f, const Segment<T, D>& s) {
+    return {transformed(f, s.a), transformed(f, s.b)};
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,169 @@
+/// What probes ask of a volume that bounds something: the part of a line in it, a distance that nothing in it
+/// falls short of, and whether it may overlap a box. All of it in double, and never a no that is wrong.
+///
+/// Volumes are built dilated (bvh/volumes/fit.h); what is added here is what computing errs by. A volume is
+/// what slabs share (oriented boxes, k-DOPs, hulls), a ball, or both (cylinders).
+#pragma once
+
+#include <algorithm>
+
+#include <hedgerow/geometry/cylinder.h>
+#include <hedgerow/geometry/distance.h>
+#include <hedgerow/geometry/entry.h>
+#include <hedgerow/geometry/hull.h>
+#include <hedgerow/geometry/kdop.h>
+#include <hedgerow/geometry/obb.h>
+
+namespace hedgerow {
+
+namespace detail {
+/// Squares of less may underflow; it is added to radii and taken from distances.
+inline constexpr double negligible = 0x1p-500;
+
+inline constexpr Interval<double> whole_line{-std::numeric_limits<double>::infinity(),
+                                             std::numeric_limits<double>::infinity()};
+
+/// Clips a line to a slab (Kay and Kajiya 1986). The line's thickness is the error in heights; a line along
+/// the slab has slope 0, whose reciprocal's infinity says in or out.
+template <int D>
+Interval<double> clipped(const Interval<double>& in, const ThickLine<D>& line, const Slab<D>& s) {
+    const double at = dot(s.normal, line.origin), thick = product(line.thickness, s.reach());
+    const double low = (s.low - thick) - at, high = (s.high + thick) - at;
+    const double slope = dot(s.normal, line.direction) + 0.0, inverse = 1 / slope;  // −0 becomes 0
+    const double near = (slope >= 0 ? low : high) * inverse, far = (slope >= 0 ? high : low) * inverse;
+    return {near > in.entry ? near : in.entry, far < in.exit ? far : in.exit};
+}
+
+/// The part of origin + s·direction that lies within a radius of 0 (as meet_line of a sphere). A direction so
+/// short that it leads nowhere says in or out.
+template <int D>
+Interval<double> part_within(double radius, const Vec<double, D>& origin, const Vec<double, D>& direction) {
+    constexpr Interval<double> none{1, -1};
+    const double a = length2(direction), b = -dot(origin, direction);
+    if (a < 0x1p-1000) return length2(origin) > product(radius, radius) ? none : whole_line;
+    const Vec<double, D> nearest = origin + direction * (b / a);
+    const double room = product(radius, radius) - length2(nearest);
+    if (room < 0) return none;
+    const double half = std::sqrt(room / a);
+    return {b / a - half, b / a + half};
+}
+inline Interval<double> intersection(const Interval<double>& a, const Interval<double>& b) {
+    return {std::max(a.entry, b.entry), std::min(a.exit, b.exit)};
+}
+/// The radius of a ball that the line's points need to be in. In a ball of R instead of r they are for
+/// (R − r)/|direction| longer at both ends, which covers what `part_within` errs by: twice the thickness is
+/// 8e, of which hits and the rounding of the vectors take up less than half.
+template <int D>
+double thick_radius(double radius, const ThickLine<D>& line) {
+    return radius + 2 * line.thickness + negligible;
+}
+
+/// How far p lies outside of a slab, at least.
+template <int D>
+double gap(const Vec<double, D>& p, const Slab<D>& s) {
+    const double at = dot(s.normal, p);
+    const double error = product(4 * unit_roundoff<double>, product(s.reach(), max_component(abs(p))));
+    return std::max(0.0, std::max(s.low - at, at - s.high) - error);
+}
+/// How far p lies outside of a ball around 0, at least.
+template <int D>
+double gap(const Vec<double, D>& p, double radius, double size) {
+    return std::max(0.0, length(p) - radius - product(8 * unit_roundoff<double>, size) - negligible);
+}
+
+/// Does what lies in the box along the slab's normal miss the slab? Unbounded boxes give NaN, which is no.
+template <int D>
+bool beside(const Box<double, D>& box, const Slab<D>& s) {
+    double low = 0, high = 0, size = 0;
+    for (int k = 0; k < D; ++k) {
+        const double a = product(s.normal[k], box.low[k]), b = product(s.normal[k], box.high[k]);
+        low += std::min(a, b), high += std::max(a, b);
+        size += std::max(std::abs(a), std::abs(b));
+    }
+    const double error = product(4 * unit_roundoff<double>, size) + negligible;
+    return low - error > s.high || high + error < s.low;
+}
+}  // namespace detail
+
+template <SlabVolume V>
+Interval<double> part_in(const ThickLine<V::dimension>& line, const V& volume) {
+    Interval<double> in = detail::whole_line;
+    for (int i = 0; i < volume.slab_count(); ++i) in = detail::clipped(in, line, volume.slab(i));
+    return in;
+}
+template <class T, int D>
+Interval<double> part_in(const ThickLine<D>& line, const Sphere<T, D>& s) {
+    return detail::part_within(detail::thick_radius(static_cast<double>(s.radius), line),
+                               line.origin - Vec<double, D>(s.center), line.direction);
+}
+template <class T>
+Interval<double> part_in(const ThickLine<3>& line, const Cylinder<T>& c) {
+    const double radius = detail::thick_radius(static_cast<double>(c.radius), line);
+    const auto round =
+        detail::part_within(radius, c.across(line.origin - Vec3d(c.point)), c.across(line.direction));
+    return detail::clipped(round, line, c.ends());
+}
+
+/// Distances across orthonormal slabs add up in squares; beside them the farthest slab counts. Axes rounded
+/// to float stretch a distance by less than 2^-20.
+template <SlabVolume V>
+double least_distance2(const Vec<double, V::dimension>& p, const V& volume) {
+    double sum = 0, most = 0;
+    for (int i = 0; i < volume.slab_count(); ++i) {
+        const auto slab = volume.slab(i);
+        const double gap = detail::gap(p, slab), gap2 = product(gap, gap);
+        if (i < V::orthonormal)
+            sum += gap2;
+        else
+            most = std::max(most, gap2 / length2(slab.normal));
+    }
+    return std::max(sum, most) * (1 - 0x1p-18);
+}
+template <class T, int D>
+double least_distance2(const Vec<double, D>& p, const Sphere<T, D>& s) {
+    const Vec<double, D> from = p - Vec<double, D>(s.center);
+    const double gap = detail::gap(from, static_cast<double>(s.radius), length(from));
+    return product(gap, gap) * (1 - 0x1p-18);
+}
+template <class T>
+double least_distance2(const Vec3d& p, const Cylinder<T>& c) {
+    const Vec3d from = p - Vec3d(c.point);
+    const double out = detail::gap(c.across(from), static_cast<double>(c.radius), length(from));
+    const double along = detail::gap(p, c.ends());
+    return (product(out, out) + product(along, along)) * (1 - 0x1p-18);
+}
+
+/// By the slabs' normals alone, without the box's own axes and the products of edges: it may say yes to what
+/// a full test of separating axes (Gottschalk 1996) would refuse.
+template <SlabVolume V>
+bool may_overlap(const Box<double, V::dimension>& box, const V& volume) {
+    for (int i = 0; i < volume.slab_count(); ++i)
+        if (detail::beside(box, volume.slab(i))) return false;
+    return true;
+}
+template <class T, int D>
+bool may_overlap(const Box<double, D>& box, const Sphere<T, D>& s) {
+    const double away = length(offset_outside(Vec<double, D>(s.center), box));
+    return !(away * (1 - 0x1p-40) > static_cast<double>(s.radius) + detail::negligible);
+}
+/// Between its ends, and within its own axis-aligned box.
+template <class T>
+bool may_overlap(const Box3d& box, const Cylinder<T>& c) {
+    if (detail::beside(box, c.ends())) return false;
+    const Vec3d a(c.axis), p(c.point);
+    const double a2 = length2(a), here = dot(a, p), r = static_cast<double>(c.radius);
+    const Vec3d first = p + a * ((static_cast<double>(c.low) - here) / a2);
+    const Vec3d last = p + a * ((static_cast<double>(c.high) - here) / a2);
+    const double error =
+        product(0x1p-48, max_component(max(abs(first), abs(last))) + max_component(abs(p)) + r);
+    for (int k = 0; k < 3; ++k) {
+        const double wide =
+            r * std::sqrt(std::max(0.0, 1 - product(a[k], a[k]) / a2)) * (1 + 0x1p-20) + error + r * 0x1p-20;
+        if (box.low[k] > std::max(first[k], last[k]) + wide ||
+            box.high[k] < std::min(first[k], last[k]) - wide)
+            return false;
+    }
+    return true;
+}
+
+}  // namespace hedgerow

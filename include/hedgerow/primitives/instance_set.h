@@ -1,0 +1,353 @@
+/// Two-level scenes: indexes, each placed by a transform, as the primitives of another index.
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include <hedgerow/error.h>
+#include <hedgerow/geometry/transform.h>
+#include <hedgerow/primitives/concepts.h>
+#include <hedgerow/primitives/placed.h>
+#include <hedgerow/queries/concepts.h>
+
+namespace hedgerow {
+
+/// An index, borrowed, and where it is placed: the transform takes its space to the world.
+template <class I>
+struct Instance {
+    const I* index;
+    Transform<I::dimension> transform;
+
+    Instance(const I& borrowed, const Transform<I::dimension>& placed = {})
+        : index(&borrowed), transform(placed) {}
+    Instance(const I&& gone, const Transform<I::dimension>& = {}) = delete;  // an index has to outlive it
+};
+
+/// An instance made ready, and how far what it answers may err.
+///
+/// Let A x + a be the way to the world and N x + n the way back, ‖·‖ the greatest sum of a row's magnitudes,
+/// R a bound of ‖A N − 1‖, L the largest coordinate of the object's box, W that of its world box, u the unit
+/// roundoff of T.
+///
+/// *Regions.* A corner of a primitive in the world, computed in double and rounded to T, errs by u·W and by 8
+/// roundings (of doubles) of ‖A‖L + |a|; a shape's closest point or its overlap adds 16u·W (cells.h), and
+/// what is fitted around the object's own box, like a ball, u‖A‖L. `margin` = u(64W + 32(‖A‖L + |a|)) covers
+/// all, and the world box is enlarged by it. A triangle's world corners are in it anyway (Affine::box).
+///
+/// *Rays.* The origin o goes to o' = N o + n, with an error of 2u|o'| + 8u(‖N‖|o| + |n|), and so does the
+/// direction: at a place in the object's box that makes 2u(L + |o'|) and 8u‖N‖ times the way. A hit lies
+/// within e' of its primitive's box there, 16u(L + |o'|) + 4u|o'| (RayProbe). With |o'| <= ‖N‖|o| + |n| all
+/// of it is less than 32u(L + |n|) + 64u‖N‖|o|; the world sees it ‖A‖ times as large, and R(W + |a|) more,
+/// since N is rounded. That is added to the error of the world's ray, which is then as good as any: t is the
+/// same number in both spaces, since the direction is not normalised.
+template <class I>
+class PlacedIndex {
+public:
+    using T = typename I::Scalar;
+    static constexpr int D = I::dimension;
+
+    PlacedIndex(const Instance<I>& instance) : index_(instance.index), transform_(instance.transform) {
+        const Box<double, D> own{Vec<double, D>(index_->bounds().low), Vec<double, D>(index_->bounds().high)};
+        const auto box = transform_.there().box(own);
+        const double object = largest(own), world = largest(box),
+                     moved = max_component(abs(transform_.there().shift));
+        const double u = static_cast<double>(unit_roundoff<T>), reach = transform_.there().reach();
+        const auto& back = transform_.back();
+        margin_ = u * (64 * world + 32 * (reach * object + moved)) +
+                  64 * static_cast<double>(std::numeric_limits<T>::denorm_min());
+        for (int k = 0; k < D; ++k) {
+            bounds_.low[k] = rounded_down<T>(box.low[k] - margin_);
+            bounds_.high[k] = rounded_up<T>(box.high[k] + margin_);
+        }
+        missed_ = transform_.residual() * (world + moved);
+        ray_error_ = missed_ + u * reach * 32 * (object + max_component(abs(back.shift)));
+        ray_error_by_origin_ = 64 * u * reach * back.reach();
+        shrinks_ = max_component(back.stretches()) * (1 + 0x1p-18);
+        const Vec<double, D> stretches = transform_.there().stretches();
+        const double most = max_component(stretches), least = -max_component(-stretches);
+        if (most - least <= 32 * u * most) scale_ = most;
+    }
+
+    const I& index() const { return *index_; }
+    const Box<T, D>& bounds() const { return bounds_; }
+    double ray_error() const { return ray_error_; }
+    double ray_error_by_origin() const { return ray_error_by_origin_; }
+    /// The object's primitives in the world.
+    auto primitives() const {
+        return Placed<typename I::Primitives>(index_->primitives(), transform_.there(), transform_.back(),
+                                              scale_);
+    }
+
+    /// The ray in the object's space: each component is computed in double and rounded once.
+    Ray<T, D> inside(const Ray<T, D>& ray) const {
+        const auto& back = transform_.back();
+        return {Vec<T, D>(back.point(Vec<double, D>(ray.origin))),
+                Vec<T, D>(back.vector(Vec<double, D>(ray.direction))), ray.t_min, ray.t_max};
+    }
+
+    /// A point in the object's space, and how far from it there may lie what is within a distance of the
+    /// point in the world.
+    class Ball {
+    public:
+        Ball(const PlacedIndex& placed, const Vec<T, D>& p) {
+            const auto& back = placed.transform_.back();
+            const double u = static_cast<double>(unit_roundoff<T>), wide = 2;  // > √D
+            const double at = max_component(abs(Vec<double, D>(p)));
+            const Vec<double, D> inside = back.point(Vec<double, D>(p));
+            const double there = max_component(abs(inside));
+            // Beyond what T's squares hold nothing is told apart by distance: everything is looked at.
+            known_ = there < static_cast<double>(largest_coordinate<T>);
+            center_ = known_ ? Vec<T, D>(inside) : placed.index_->bounds().low;
+            shrinks_ = placed.shrinks_;
+            world_error_ =
+                wide * (2 * placed.margin_ + 2 * (placed.missed_ + placed.transform_.residual() * at));
+            error_ = wide * u * (2 * there + 8 * (back.reach() * at + max_component(abs(back.shift)))) +
+                     64 * static_cast<double>(std::numeric_limits<T>::denorm_min());
+        }
+        const Vec<T, D>& center() const { return center_; }
+        T radius2(T world_distance2) const {
+            constexpr double most = static_cast<double>(std::numeric_limits<T>::max());
+            if (!known_) return std::numeric_limits<T>::max();
+            const double far = std::sqrt(static_cast<double>(world_distance2)) * (1 + 0x1p-20) + world_error_;
+            const double here = far * shrinks_ + error_;
+            return rounded_up<T>(std::min(most, product(here, here) * (1 + 0x1p-18)));
+        }
+
+    private:
+        Vec<T, D> center_;
+        double shrinks_, world_error_, error_;
+        bool known_;
+    };
+
+    /// A box in the object's space around all that may overlap one in the world. Empty, where nothing does.
+    Box<T, D> inside(const Box<T, D>& world) const {
+        const Box<T, D> part = intersection(world, bounds_);
+        if (part.empty()) return {};
+        const Box<double, D> wide{Vec<double, D>(part.low), Vec<double, D>(part.high)};
+        const auto& back = transform_.back();
+        const auto box = back.box(wide);
+        const double u = static_cast<double>(unit_roundoff<T>);
+        const double error = back.reach() * (4 * margin_ + 2 * missed_) +
+                             16 * u * (back.reach() * largest(wide) + max_component(abs(back.shift)));
+        Box<T, D> object;
+        for (int k = 0; k < D; ++k) {
+            object.low[k] = rounded_down<T>(box.low[k] - error);
+            object.high[k] = rounded_up<T>(box.high[k] + error);
+        }
+        return object;
+    }
+
+private:
+    static double largest(const Box<double, D>& b) {
+        return std::max(max_component(abs(b.low)), max_component(abs(b.high)));
+    }
+
+    const I* index_;
+    Transform<D> transform_;
+    Box<T, D> bounds_;
+    double margin_ = 0, missed_ = 0, ray_error_ = 0, ray_error_by_origin_ = 0;
+    double shrinks_ = 0;  // the most that vectors are stretched on the way back
+    double scale_ = 0;    // what all are stretched by on the way there, in a similarity
+};
+
+namespace detail {
+/// What a query of the world asks of an object: it passes candidates on, with the instance's name.
+template <class I, class Q>
+class RayInside {
+public:
+    using Probe = RayProbe<typename I::Scalar, I::dimension>;
+    static constexpr Order order = Q::order;
+
+    RayInside(const PlacedIndex<I>& placed, std::uint32_t instance, const typename Q::Probe& asked, Q& query)
+        : probe_(placed.inside(asked.ray()), placed.index().bounds()), query_(query), instance_(instance) {}
+
+    const Probe& probe() const { return probe_; }
+    typename I::Scalar limit() const { return probe_.usable() ? query_.limit() : typename I::Scalar(-1); }
+    Flow offer(RayCandidate<typename I::Scalar> c) {
+        c.instance = instance_;
+        return flow_ = query_.offer(c);
+    }
+    Flow flow() const { return flow_; }
+
+private:
+    Probe probe_;
+    Q& query_;
+    std::uint32_t instance_;
+    Flow flow_ = Flow::go_on;
+};
+
+/// The same for regions, where the object's structure only finds the primitives, and the world's shapes are
+/// tested.
+template <class I, class Q, class InnerProbe>
+class RegionInside {
+public:
+    using Probe = InnerProbe;
+    using T = typename I::Scalar;
+    static constexpr Order order = Q::order;
+
+    RegionInside(const Probe& probe, std::uint32_t instance, Q& query)
+        : probe_(probe), query_(query), instance_(instance) {}
+
+    const Probe& probe() const { return probe_; }
+    const typename Q::Probe& world() const { return std::as_const(query_).probe(); }
+    T limit() const { return query_.limit(); }
+    template <class Candidate>
+    Flow offer(Candidate c) {
+        c.instance = instance_;
+        return flow_ = query_.offer(c);
+    }
+    Flow flow() const { return flow_; }
+
+protected:
+    Probe probe_;
+    Q& query_;
+    std::uint32_t instance_;
+    Flow flow_ = Flow::go_on;
+};
+template <class I, class Q>
+class PointInside : public RegionInside<I, Q, PointProbe<typename I::Scalar, I::dimension>> {
+public:
+    using T = typename I::Scalar;
+    using Base = RegionInside<I, Q, PointProbe<T, I::dimension>>;
+    using Ball = typename PlacedIndex<I>::Ball;
+
+    PointInside(const Ball& ball, std::uint32_t instance, Q& query)
+        : Base(PointProbe<T, I::dimension>(ball.center()), instance, query), ball_(ball) {}
+
+    /// Worked out anew when the world's limit has shrunk.
+    T limit() const {
+        if (const T world = this->query_.limit(); world != world_limit_) {
+            world_limit_ = world;
+            limit_ = world < 0 ? world : ball_.radius2(world);
+        }
+        return limit_;
+    }
+
+private:
+    Ball ball_;
+    mutable T world_limit_ = std::numeric_limits<T>::quiet_NaN(), limit_ = T(0);
+};
+}  // namespace detail
+
+/// The same over an InstanceSet, copied nowhere.
+template <class I>
+class InstanceSetView {
+public:
+    using Scalar = typename I::Scalar;
+    static constexpr int dimension = I::dimension;
+    static constexpr bool instanced = true;
+    /// An object's structure that holds primitives in several cells offers them several times.
+    static constexpr bool offers_once = I::Structure::exclusive;
+    using T = Scalar;
+    static constexpr int D = dimension;
+
+    InstanceSetView(std::span<const PlacedIndex<I>> all, double error, double error_by_origin)
+        : all_(all), error_(error), error_by_origin_(error_by_origin) {}
+
+    std::size_t size() const { return all_.size(); }
+    Box<T, D> bounds(std::size_t i) const { return all_[i].bounds(); }
+    const PlacedIndex<I>& operator[](std::size_t i) const { return all_[i]; }
+    /// What a hit on an element of an instance reports as its primitive.
+    std::uint32_t id(PrimitiveId element, std::uint32_t instance) const {
+        return reported_id(all_[instance].index().primitives(), element, 0);
+    }
+    /// The greatest of all instances' (PlacedIndex).
+    T hit_error(const Ray<T, D>& ray) const {
+        const double origin = max_component(abs(Vec<double, D>(ray.origin)));
+        const double direction = max_component(abs(Vec<double, D>(ray.direction)));
+        const double steps = 64 * static_cast<double>(std::numeric_limits<T>::denorm_min());
+        const double by_origin =
+            error_by_origin_ * (origin + (steps / static_cast<double>(unit_roundoff<T>)) * (1 + direction));
+        return static_cast<T>(
+            std::min((error_ + by_origin) * (1 + 0x1p-20), static_cast<double>(largest_coordinate<T>)));
+    }
+
+    template <class Q>
+    Flow test_leaf(const RayProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            detail::RayInside<I, Q> inside(all_[leaf.ids[i]], leaf.ids[i], probe, query);
+            all_[leaf.ids[i]].index().ask(inside);
+            if (inside.flow() == Flow::stop) return Flow::stop;
+        }
+        return Flow::go_on;
+    }
+    template <class Q>
+    Flow test_leaf(const PointProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            const PlacedIndex<I>& placed = all_[leaf.ids[i]];
+            const typename PlacedIndex<I>::Ball ball(placed, probe.point());
+            if (walk(placed, detail::PointInside<I, Q>(ball, leaf.ids[i], query)) == Flow::stop)
+                return Flow::stop;
+        }
+        return Flow::go_on;
+    }
+    template <class Q>
+    Flow test_leaf(const BoxProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
+        using Inside = detail::RegionInside<I, Q, BoxProbe<T, D>>;
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+            const PlacedIndex<I>& placed = all_[leaf.ids[i]];
+            const Box<T, D> box = placed.inside(probe.box());
+            if (box.empty()) continue;
+            if (walk(placed, Inside(BoxProbe<T, D>(box), leaf.ids[i], query)) == Flow::stop)
+                return Flow::stop;
+        }
+        return Flow::go_on;
+    }
+
+private:
+    template <class Inside>
+    static Flow walk(const PlacedIndex<I>& placed, Inside inside) {
+        placed.index().structure().walk(placed.primitives(), inside, uncounted);
+        return inside.flow();
+    }
+    static constexpr NoVisits uncounted{};
+
+    std::span<const PlacedIndex<I>> all_;
+    double error_, error_by_origin_;
+};
+
+/// Instances as primitives: `build<Bvh>(InstanceSet{...})` is a BVH whose leaves are grids, if the indexes
+/// are grids. Any structure may hold any; all indexes of one set are of one type.
+///
+///   const auto grid = build<Grid>(mesh);
+///   const InstanceSet scene{Instance(grid), Instance(grid, Transform<3>::translation({4, 0, 0}))};
+///   const auto index = build<Bvh>(scene);
+///
+/// A hit is the test of the ray in the object's space; it names the instance and the element of its index,
+/// and equal t goes to the lowest (instance, element). Closest points and overlaps are those of the
+/// primitives' shapes in the world, corners transformed and rounded to T; so they are right under any
+/// transform. Spheres and types of one's own have such shapes only under similarities (placed.h). Visits
+/// count the instances, not what is looked at inside.
+///
+/// Memory: about 600 bytes an instance in space.
+template <class I>
+class InstanceSet {
+public:
+    using Scalar = typename I::Scalar;
+    static constexpr int dimension = I::dimension;
+    static_assert(!Instanced<typename I::Primitives>, "two levels: an instance is of an index of primitives");
+
+    /// Throws InputError for an index that holds nothing.
+    explicit InstanceSet(std::span<const Instance<I>> instances) {
+        for (const auto& instance : instances) {
+            if (instance.index->bounds().empty())
+                throw InputError("instance " + std::to_string(placed_.size()) +
+                                 " is of an index that holds no primitives: leave it out");
+            placed_.emplace_back(instance);
+            error_ = std::max(error_, placed_.back().ray_error());
+            error_by_origin_ = std::max(error_by_origin_, placed_.back().ray_error_by_origin());
+        }
+    }
+    explicit InstanceSet(const std::vector<Instance<I>>& instances) : InstanceSet(std::span(instances)) {}
+    InstanceSet(std::initializer_list<Instance<I>> instances)
+        : InstanceSet(std::span(instances.begin(), instances.size())) {}
+
+    std::size_t size() const { return placed_.size(); }
+    InstanceSetView<I> view() const { return {placed_, error_, error_by_origin_}; }
+
+private:
+    std::vector<PlacedIndex<I>> placed_;
+    double error_ = 0, error_by_origin_ = 0;
+};
+
+}  // namespace hedgerow

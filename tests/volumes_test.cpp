@@ -1,0 +1,312 @@
+/// Bounding volumes hold what they are fitted around, and no probe passes by what is in them.
+#include <hedgerow/any_index.h>
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/scenes/sets.h>
+
+#include "exact.h"
+
+using namespace hedgerow;
+using exact::Real;
+using exact::real;
+using exact::Real3;
+
+namespace {
+
+// Whether a volume holds a point, in long double and by the shapes' definitions.
+
+template <SlabVolume V>
+bool holds(const V& volume, const Real3& p) {
+    for (int i = 0; i < volume.slab_count(); ++i) {
+        const auto s = volume.slab(i);
+        const Real height = exact::dot(real(s.normal), p);
+        if (!(height >= Real(s.low) && height <= Real(s.high))) return false;
+    }
+    return true;
+}
+template <class T, int D>
+bool holds(const Sphere<T, D>& s, const Real3& p) {
+    return exact::size(p - real(s.center)) <= Real(s.radius);
+}
+template <class T>
+bool holds(const Cylinder<T>& c, const Real3& p) {
+    const Real3 a = real(c.axis), from = p - real(c.point);
+    const Real height = exact::dot(a, p);
+    const Real3 across = from - a * (exact::dot(a, from) / exact::dot(a, a));
+    return exact::size(across) <= Real(c.radius) && height >= Real(c.low) && height <= Real(c.high);
+}
+
+/// Points of some arrangement, of coordinates in T.
+template <class T, int D>
+using Points = std::vector<Vec<T, D>>;
+template <class T, int D>
+struct Arrangement {
+    const char* name;
+    Points<T, D> points;
+};
+
+template <class T, int D>
+std::vector<Arrangement<T, D>> arrangements() {
+    using V = Vec<T, D>;
+    std::vector<Arrangement<T, D>> all = {{"one point", {V::all(T(0.3))}},
+                                          {"one point many times", Points<T, D>(7, V::all(T(-2)))}};
+    const auto some = [&](const char* name, auto point) {
+        Points<T, D> points;
+        for (std::uint64_t i = 0; i < 40; ++i) {
+            Random random(4, i);
+            points.push_back(V(point(random)));
+        }
+        all.push_back({name, points});
+    };
+    using W = Vec<double, D>;
+    Random directions(6);
+    const W along = directions.direction<D>(), other = directions.direction<D>();
+    some("in a cube", [](Random& r) { return r.in_cube<D>(); });
+    some("on a sphere", [](Random& r) { return r.direction<D>(); });
+    some("long and askew", [&](Random& r) { return along * r.uniform(-50, 50) + r.in_cube<D>(); });
+    some("on a line", [&](Random& r) { return along * r.uniform(); });
+    some("on an axis", [](Random& r) {
+        W p;
+        p[0] = r.uniform();
+        return p;
+    });
+    some("in a plane", [&](Random& r) { return along * r.uniform() + other * r.uniform(); });
+    some("in a plane across an axis", [](Random& r) {
+        W p = r.in_cube<D>();
+        p[D - 1] = 0.25;
+        return p;
+    });
+    some("far away", [&](Random& r) { return along * 1e6 + r.in_cube<D>(); });
+    some("tiny", [](Random& r) { return r.in_cube<D>() * (std::is_same_v<T, float> ? 1e-42 : 1e-300); });
+    some("huge", [](Random& r) {
+        return (r.in_cube<D>() - W::all(0.5)) * static_cast<double>(largest_coordinate<T>);
+    });
+    some("of small whole numbers", [](Random& r) { return exact::integers<double, D>(r, 1); });
+    return all;
+}
+
+/// Calls f(name, list) with each kind of volume, fitted around the points.
+template <class T, int D, class F>
+void with_each_volume(const Points<T, D>& points, F f) {
+    std::vector<Vec<double, D>> wide;
+    Box<T, D> box;
+    for (const auto& p : points) wide.push_back(Vec<double, D>(p)), box.expand(p);
+    int kinds = 0;
+    for (const auto& [name, kind] : volume_names) {
+        const bool of_space = kind == Volume::kdop6 || kind == Volume::kdop14 || kind == Volume::kdop18 ||
+                              kind == Volume::kdop26 || kind == Volume::cylinder || kind == Volume::hull;
+        const bool of_plane = kind == Volume::kdop4 || kind == Volume::kdop8;
+        if (kind == Volume::box || (D == 2 && of_space) || (D == 3 && of_plane)) {
+            EXPECT_THROW((list_of<T, D>(kind)), InputError) << name;
+            continue;
+        }
+        SCOPED_TRACE(name);
+        auto list = list_of<T, D>(kind);
+        std::visit(
+            [&](auto& volumes) {
+                volumes.resize(1);
+                volumes.fit(0, wide, static_cast<double>(cell_margin(box)));
+            },
+            list);
+        f(list);
+        ++kinds;
+    }
+    EXPECT_EQ(kinds, D == 3 ? 8 : 4);
+}
+
+/// A point of the points' hull: one of them, or a mean of some, rounded to T.
+template <class T, int D>
+Vec<T, D> point_of(const Points<T, D>& points, Random& random) {
+    const auto any = [&] { return Vec<double, D>(points[random.bits() % points.size()]); };
+    if (random.bits() % 3 == 0) return Vec<T, D>(any());
+    const double u = random.uniform(), v = random.uniform();
+    return Vec<T, D>((any() * u + any() * (1 - u)) * v + (any() * u + any() * (1 - u)) * (1 - v));
+}
+
+template <class T>
+class Volumes : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Volumes, Scalars);
+
+template <class T, int D>
+void expect_points_held() {
+    for (const auto& [name, points] : arrangements<T, D>()) {
+        SCOPED_TRACE(name);
+        with_each_volume(points, [&](const auto& list) {
+            std::visit(
+                [&](const auto& volumes) {
+                    for (const auto& p : points) EXPECT_TRUE(holds(volumes[0], real(p)));
+                },
+                list);
+        });
+    }
+}
+TYPED_TEST(Volumes, HoldWhatTheyAreFittedAround) {
+    expect_points_held<TypeParam, 2>();
+    expect_points_held<TypeParam, 3>();
+}
+
+/// Rays that meet a point of the hull at t = 1 or after, from near and far and from inside.
+template <class T, int D>
+void expect_rays_enter() {
+    for (const auto& [name, points] : arrangements<T, D>()) {
+        SCOPED_TRACE(name);
+        Box<T, D> box;
+        for (const auto& p : points) box.expand(p);
+        const double size = std::max(static_cast<double>(max_component(box.extent())),
+                                     static_cast<double>(std::numeric_limits<T>::min()));
+        with_each_volume(points, [&](const auto& list) {
+            const AnyVolume<T, D> volume{list, 0};
+            for (std::uint64_t i = 0; i < 600; ++i) {
+                Random random(7, i);
+                const Vec<T, D> x = point_of(points, random);
+                const double away = i % 5 == 0 ? 1e4 : (i % 5 == 1 ? 0.1 : 2);
+                Ray<T, D> ray;
+                ray.origin = Vec<T, D>(Vec<double, D>(x) + random.direction<D>() * (size * away));
+                if (max_component(abs(ray.origin)) > largest_coordinate<T>) continue;
+                ray.direction = x - ray.origin;
+                if (i % 7 == 3) ray.origin[0] = x[0], ray.direction[0] = T(-0.0);
+                T t = T(1);
+                if (i % 4 == 1) ray.direction = ray.direction * T(0x1p-30), t = T(0x1p30);
+                if (i % 4 == 2) ray.direction = ray.direction * T(0x1p20), t = T(0x1p-20);
+                const RayProbe<T, D> probe(ray, box);
+                // Only where t·direction is what it should be: directions of tiny scenes underflow.
+                if (!probe.usable() || probe.ray().at(t) != ray.origin + (x - ray.origin)) continue;
+                T at;
+                EXPECT_TRUE(probe.enter(volume, t, at)) << "ray " << i;
+                EXPECT_LE(at, t);
+            }
+        });
+    }
+}
+TYPED_TEST(Volumes, AreEnteredByEveryRayThatMeetsWhatTheyHold) {
+    expect_rays_enter<TypeParam, 2>();
+    expect_rays_enter<TypeParam, 3>();
+}
+
+template <class T, int D>
+void expect_regions_enter() {
+    for (const auto& [name, points] : arrangements<T, D>()) {
+        SCOPED_TRACE(name);
+        Box<T, D> box;
+        for (const auto& p : points) box.expand(p);
+        with_each_volume(points, [&](const auto& list) {
+            const AnyVolume<T, D> volume{list, 0};
+            for (std::uint64_t i = 0; i < 600; ++i) {
+                Random random(8, i);
+                const Vec<T, D> x = point_of(points, random);
+                Vec<T, D> p = point_of(points, random);
+                if (i % 3 != 0)
+                    p = Vec<T, D>(Vec<double, D>(p) +
+                                  random.direction<D>() *
+                                      (random.uniform() * static_cast<double>(max_component(box.extent())) *
+                                       (i % 3 == 1 ? 1 : 100)));
+                if (max_component(abs(p)) > largest_coordinate<T>) continue;
+                T at;
+                EXPECT_TRUE((PointProbe<T, D>(p).enter(volume, distance2(p, x), at))) << "point " << i;
+                const auto around = Box<T, D>().expand(x).expand(p);
+                EXPECT_TRUE((BoxProbe<T, D>(around).enter(volume, T(0), at))) << "box " << i;
+                EXPECT_TRUE((BoxProbe<T, D>({x, x}).enter(volume, T(0), at))) << "box " << i;
+                auto unbounded = around;
+                unbounded.high[0] = std::numeric_limits<T>::infinity();
+                EXPECT_TRUE((BoxProbe<T, D>(unbounded).enter(volume, T(0), at))) << "box " << i;
+            }
+        });
+    }
+}
+TYPED_TEST(Volumes, AreEnteredByPointsAndBoxes) {
+    expect_regions_enter<TypeParam, 2>();
+    expect_regions_enter<TypeParam, 3>();
+}
+
+/// They refuse what is plainly elsewhere, and their bounds of distances are worth something.
+template <class T, int D>
+void expect_rest_refused() {
+    Points<T, D> points;
+    for (std::uint64_t i = 0; i < 40; ++i) points.push_back(Vec<T, D>(Random(4, i).in_cube<D>()));
+    Box<T, D> box;
+    for (const auto& p : points) box.expand(p);
+    with_each_volume(points, [&](const auto& list) {
+        const AnyVolume<T, D> volume{list, 0};
+        for (std::uint64_t i = 0; i < 300; ++i) {
+            Random random(9, i);
+            const Vec<double, D> out = random.direction<D>() * 10.0 + Vec<double, D>::all(0.5);
+            const Vec<T, D> p(out);
+            T at;
+            // From out there a ray outward, one that is too short, and one across.
+            const Vec<double, D> outward = out - Vec<double, D>::all(0.5);
+            Vec<double, D> across;
+            across[0] = -outward[1], across[1] = outward[0];
+            const Ray<T, D> rays[] = {
+                {p, Vec<T, D>(outward)}, {p, -Vec<T, D>(outward), T(0), T(0.5)}, {p, Vec<T, D>(across)}};
+            for (const auto& ray : rays)
+                EXPECT_FALSE((RayProbe<T, D>(ray, box).enter(volume, ray.t_max, at)));
+            EXPECT_FALSE((PointProbe<T, D>(p).enter(volume, T(36), at)));
+            EXPECT_GT(at, T(36));
+            EXPECT_FALSE((BoxProbe<T, D>({p, p + Vec<T, D>::all(T(0.01))}).enter(volume, T(0), at)));
+        }
+    });
+}
+TYPED_TEST(Volumes, RefuseWhatIsElsewhere) {
+    expect_rest_refused<TypeParam, 2>();
+    expect_rest_refused<TypeParam, 3>();
+}
+
+/// Tight where a volume of that kind can be: half the axis-aligned box's surface or less.
+TEST(Fits, FollowWhatTheyHold) {
+    Random random(3);
+    const Vec3d along = normalized(Vec3d(1, 2, -1.5));
+    std::vector<Vec3d> rod, ball;
+    for (int i = 0; i < 200; ++i) {
+        rod.push_back(along * random.uniform(0, 10) + random.direction<3>() * 0.1);
+        ball.push_back(random.direction<3>());
+    }
+    const auto obb = Fit<Obb<float, 3>>::around(rod, 0);
+    EXPECT_LT((Box3f{obb.low, obb.high}.half_area()), 10 * 0.2f * 2 * 1.3f);
+    const auto cylinder = Fit<Cylinder<float>>::around(rod, 0);
+    EXPECT_LT(cylinder.radius, 0.13f);
+    EXPECT_LT(cylinder.high - cylinder.low, 10.3f);
+    EXPECT_LT((Fit<Sphere<float, 3>>::around(ball, 0).radius), 1.05f);
+    EXPECT_LT((Fit<Sphere<float, 3>>::around(rod, 0).radius), 5.3f);
+}
+
+TEST(Hulls, HaveTheFacesOfTheirPoints) {
+    std::vector<Vec3d> cube;
+    for (int i = 0; i < 8; ++i) cube.push_back(Vec3d(i & 1, i >> 1 & 1, i >> 2) * 100.0 + Vec3d(1e6, 0, 0));
+    cube.push_back(Vec3d(1e6 + 50, 50, 50));
+    const auto normals = hull_normals(cube);
+    EXPECT_EQ(normals.size(), 6u);
+    for (const auto& n : normals) {
+        EXPECT_NEAR(length(n), 1, 1e-12);
+        EXPECT_NEAR(max_component(abs(n)), 1, 1e-12);
+    }
+    for (const auto& [name, points] : arrangements<double, 3>()) {
+        const std::string of = name;
+        const bool flat = of.find("point") != of.npos || of.find("on a line") != of.npos ||
+                          of.find("axis") != of.npos || of.find("plane") != of.npos;
+        EXPECT_EQ(hull_normals(points).empty(), flat) << name;
+    }
+    EXPECT_TRUE(hull_normals({}).empty());
+}
+
+TEST(VolumeBvhs, AreNamedAndRefused) {
+    const auto cloud = points<float>(100);
+    EXPECT_EQ(build_any("bvh:volume=obb", cloud)->structure(), "bvh:volume=obb");
+    EXPECT_EQ(build_any("bvh:volume=hull,builder=sweep", cloud)->validate(), "");
+    EXPECT_EQ(build_any("bvh:volume=box", cloud)->bytes(), build_any("bvh", cloud)->bytes());
+    EXPECT_NE(build_any("bvh:volume=sphere", cloud)->bytes(), build_any("bvh", cloud)->bytes());
+    const auto said = [](auto f) -> std::string {
+        try {
+            f();
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "nothing";
+    };
+    EXPECT_NE(said([&] { build_any("bvh:volume=cone", cloud); }).find("one of box, sphere"),
+              std::string::npos);
+    const auto plane = points2d<float>(100);
+    EXPECT_NE(said([&] { build_any("bvh:volume=hull", plane); }).find("use one of sphere, obb, kdop4, kdop8"),
+              std::string::npos);
+}
+
+}  // namespace
