@@ -160,6 +160,8 @@ std::string svg_of(const LinePlot& plot) {
     }
     svg += line(left_edge, bottom, right, bottom, "#444");
     svg += text((left_edge + right) / 2, height - 6, "middle", plot.x_label);
+    const bool dotted = std::all_of(plot.series.begin(), plot.series.end(),
+                                    [](const Series& s) { return s.points.size() <= 24; });
     struct End {
         double x, y;
     };
@@ -172,7 +174,7 @@ std::string svg_of(const LinePlot& plot) {
             if (!(value > 0)) continue;
             end = {place(at), y.at(value)};
             points += fmt::format("{:.1f},{:.1f} ", end.x, end.y);
-            if (s.points.size() <= 24) dots += dot(end.x, end.y, 3, colour_of(s.colour));
+            if (dotted) dots += dot(end.x, end.y, 3, colour_of(s.colour));
         }
         svg += fmt::format("<polyline fill=\"none\" stroke-width=\"2\" stroke=\"{}\"{} points=\"{}\"/>\n",
                            colour_of(s.colour), dash_of(s.colour), points) +
