@@ -140,6 +140,7 @@ TEST(Quantities, HaveThreeDigitsAndAUnit) {
     EXPECT_EQ(seconds_text(1.5e-3), "1.50 ms");
     EXPECT_EQ(seconds_text(812.4e-9), "812 ns");
     EXPECT_EQ(seconds_text(0.9999e-6), "1.00 us");
+    EXPECT_EQ(seconds_text(1e-5), "10 us");
     EXPECT_EQ(seconds_text(123.4), "123 s");
     EXPECT_EQ(seconds_text(0), "0 ns");
     EXPECT_EQ(bytes_text(1.72e6), "1.72 MB");

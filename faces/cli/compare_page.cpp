@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <hedgerow/compare/break_even.h>
+
 #include "compare_report.h"
 #include "plot.h"
 
@@ -36,19 +38,30 @@ std::string html_of(const Table& t) {
     return html + "</tbody></table></div>\n";
 }
 
-/// Build and queries together, over how many queries: where lines cross, one begins to pay against the other.
+/// Build and queries together over how many queries, against the one that costs least by then: who is at 1
+/// is best there.
 std::string total_plot(const Comparison& c, Ask ask) {
+    constexpr double most = 30;
     LinePlot plot{
-        fmt::format("a build and then so many {} queries", name_of(ask)), "queries", Unit::seconds, {}, {}};
-    for (std::size_t i = 0; i < c.structures.size(); ++i) {
-        const auto& s = c.structures[i];
-        Series line{s.structure, i, {}};
-        for (int step = 0; step <= 32; ++step) {
-            const double queries = std::pow(10, step / 4.0);
-            line.points.emplace_back(queries, s.build_seconds + queries * query_mean(s, ask));
-        }
-        plot.series.push_back(std::move(line));
+        fmt::format("a build and so many {} queries, times the least (up to {})", name_of(ask), most),
+        "queries",
+        Unit::number,
+        {},
+        {}};
+    for (std::size_t i = 0; i < c.structures.size(); ++i)
+        plot.series.push_back({c.structures[i].structure, i, {}});
+    for (int step = 0; step <= 64; ++step) {
+        const double queries = std::pow(10, step / 8.0);
+        const auto total = [&](const StructureCost& s) {
+            return Cost{s.build_seconds, query_mean(s, ask)}.after(queries);
+        };
+        double best = total(c.structures.front());
+        for (const auto& s : c.structures) best = std::min(best, total(s));
+        for (std::size_t i = 0; i < c.structures.size(); ++i)
+            if (const double times = total(c.structures[i]) / best; times <= most)
+                plot.series[i].points.emplace_back(queries, times);
     }
+    std::erase_if(plot.series, [](const Series& s) { return s.points.empty(); });
     return svg_of(plot);
 }
 

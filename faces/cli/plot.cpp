@@ -142,6 +142,8 @@ std::string svg_of(const LinePlot& plot) {
         const double n = static_cast<double>(plot.x_names.size());
         return n > 0 ? left_edge + (at + 0.5) * (right - left_edge) / n : x.at(at);
     };
+    // Within the margin that the axis leaves, or the half place of a name.
+    const auto reaches_right = [&](double at) { return at > right - (right - left_edge) / 6; };
     std::string svg = opened(plot.title, height);
     for (const double v : y.ticks()) {
         svg += line(left_edge, y.at(v), right, y.at(v));
@@ -158,26 +160,39 @@ std::string svg_of(const LinePlot& plot) {
     }
     svg += line(left_edge, bottom, right, bottom, "#444");
     svg += text((left_edge + right) / 2, height - 6, "middle", plot.x_label);
-    std::vector<double> ends;
+    const bool dotted = std::all_of(plot.series.begin(), plot.series.end(),
+                                    [](const Series& s) { return s.points.size() <= 24; });
+    struct End {
+        double x, y;
+    };
+    std::vector<End> ends;
+    std::vector<double> at_right;  // the ends that are named beside the plot
     for (const Series& s : plot.series) {
         std::string points, dots;
-        double end = bottom;
+        End end{left_edge, bottom};
         for (const auto& [at, value] : s.points) {
             if (!(value > 0)) continue;
-            end = y.at(value);
-            points += fmt::format("{:.1f},{:.1f} ", place(at), end);
-            if (s.points.size() <= 24) dots += dot(place(at), end, 3, colour_of(s.colour));
+            end = {place(at), y.at(value)};
+            points += fmt::format("{:.1f},{:.1f} ", end.x, end.y);
+            if (dotted) dots += dot(end.x, end.y, 3, colour_of(s.colour));
         }
         svg += fmt::format("<polyline fill=\"none\" stroke-width=\"2\" stroke=\"{}\"{} points=\"{}\"/>\n",
                            colour_of(s.colour), dash_of(s.colour), points) +
                dots;
         ends.push_back(end);
+        if (reaches_right(end.x)) at_right.push_back(end.y);
     }
-    const auto labels = spread(ends, 14, top_edge, bottom);
+    const auto labels = spread(at_right, 14, top_edge, bottom);
+    auto label = labels.begin();
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
-        const char* colour = colour_of(plot.series[i].colour);
-        svg += line(right + 2, ends[i], right + 12, labels[i], colour);
-        svg += text(right + 16, labels[i] + 4, "start", plot.series[i].name, colour);
+        const Series& s = plot.series[i];
+        const char* colour = colour_of(s.colour);
+        if (reaches_right(ends[i].x)) {
+            svg += line(ends[i].x + 4, ends[i].y, right + 12, *label, colour);
+            svg += text(right + 16, *label++ + 4, "start", s.name, colour);
+        } else {
+            svg += text(ends[i].x + 6, ends[i].y + 4, "start", s.name, colour);
+        }
     }
     return svg + "</svg>\n";
 }

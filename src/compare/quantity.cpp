@@ -34,7 +34,8 @@ std::string number_text(double value) {
     if (!std::isfinite(value)) return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";
     if (value < 0) return "-" + number_text(-value);
     char text[64];
-    if (value == std::floor(value) && value < 1e15) {
+    // Whole but for rounding: 1e-5 s are 10 us.
+    if (std::fabs(value - std::round(value)) <= 1e-12 * value && value < 1e15) {
         std::snprintf(text, sizeof text, "%.0f", value);
         return grouped(text);
     }

@@ -147,13 +147,16 @@ private:
         }
         back_ = {inverse, Vector()};
         back_.shift = -back_.vector(there_.shift);
-        residual_ = good ? residual() + 16 * unit_roundoff<double> * there_.reach() * back_.reach() : 1;
+        residual_ = good ? 0 : 1;
         for (std::size_t i = 0; i < m.size() && good; ++i)
             for (std::size_t j = 0; j < m.size(); ++j) {
-                double x = i == j ? -1 : 0;
-                for (std::size_t k = 0; k < m.size(); ++k)
-                    x += product(there_.linear[i][static_cast<int>(k)], inverse[k][static_cast<int>(j)]);
-                residual_ += std::abs(x);
+                double x = i == j ? -1 : 0, size = 0;
+                for (std::size_t k = 0; k < m.size(); ++k) {
+                    const double part =
+                        product(there_.linear[i][static_cast<int>(k)], inverse[k][static_cast<int>(j)]);
+                    x += part, size += std::abs(part);
+                }
+                residual_ += std::abs(x) + 16 * unit_roundoff<double> * size;
             }
         if (!(residual_ < 1e-6) || !finite(back_.shift))
             throw InputError(
