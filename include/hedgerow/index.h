@@ -256,7 +256,7 @@ std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
                       const Filter& filter = {}, Count& count = no_visits) {
-    if (offers_once<P> && index.structure().exclusive()) {
+    if (index.structure().exclusive() && offers_once(index.primitives())) {
         return index.template answer<HitCount<P, Filter>>(count, ray, filter);
     } else {
         static thread_local std::vector<Hit<typename P::Scalar>> hits;

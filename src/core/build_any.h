@@ -110,8 +110,7 @@ public:
     }
 
 private:
-    // Leaves that are packed in the order of the items have no room for one more.
-    static constexpr bool one_by_one = ChangesOneByOne<S, P> && !S::exclusive;
+    static constexpr bool one_by_one = ChangesOneByOne<S, P>;
     static constexpr bool fits_again = Refittable<S, P>;
     [[noreturn]] void refuse(const std::string& wanted) const {
         throw InputError("structure '" + name_ + "' cannot " + wanted + ": build it again");

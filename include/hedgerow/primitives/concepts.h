@@ -104,9 +104,12 @@ using IdOf = typename Identity<P>::Type;
 
 /// Whether a test of one primitive offers each candidate once.
 template <class P>
-inline constexpr bool offers_once = true;
-template <Instanced P>
-inline constexpr bool offers_once<P> = P::offers_once;
+bool offers_once(const P& set) {
+    if constexpr (Instanced<P>)
+        return set.offers_once();
+    else
+        return true;
+}
 
 /// How much farther than RayProbe knows of itself a hit may lie from its primitive's box: 0 but for
 /// instances.

@@ -236,8 +236,6 @@ public:
     using Scalar = typename I::Scalar;
     static constexpr int dimension = I::dimension;
     static constexpr bool instanced = true;
-    /// An object's structure that holds primitives in several cells offers them several times.
-    static constexpr bool offers_once = I::Structure::exclusive;
     using T = Scalar;
     static constexpr int D = dimension;
 
@@ -247,6 +245,11 @@ public:
     std::size_t size() const { return all_.size(); }
     Box<T, D> bounds(std::size_t i) const { return all_[i].bounds(); }
     const PlacedIndex<I>& operator[](std::size_t i) const { return all_[i]; }
+    /// An object's structure that holds primitives in several cells offers them several times. O(instances).
+    bool offers_once() const {
+        return std::all_of(all_.begin(), all_.end(),
+                           [](const auto& placed) { return placed.index().structure().exclusive(); });
+    }
     /// What a hit on an element of an instance reports as its primitive.
     std::uint32_t id(PrimitiveId element, std::uint32_t instance) const {
         return reported_id(all_[instance].index().primitives(), element, 0);
