@@ -10,8 +10,8 @@ namespace hedgerow {
 /// A primitive stands in every leaf that its part reaches; nothing is cut but the parts by which that is
 /// decided (Fuchs, Kedem, Naylor 1980; for rays Ize, Wald, Parker, RT 2008). Planes can follow the geometry
 /// where it lies askew; each is dearer to find and to walk than a kd-tree's. Memory: 24 bytes a node (40 for
-/// double), 4 an item, and a packed triangle an item. Built in O(n log n) with a large constant: some dozens of candidates a primitive and
-/// level.
+/// double), 4 an item, and a packed triangle an item. Built in O(n log n) with a large constant: some dozens
+/// of candidates a primitive and level.
 template <std::floating_point T, int D>
 class BspTree {
 public:
