@@ -269,7 +269,7 @@ TEST(Measure, CountsWhatIsVisited) {
             }
         }
     }
-    EXPECT_EQ(named(c, "brute-force").update.how, "rebuild");
+    EXPECT_EQ(named(c, "brute-force").update.how, "one by one");
     EXPECT_EQ(named(c, "bvh").update.how, "refit");
     EXPECT_GT(named(c, "bvh").update.drift, 0.5);
     EXPECT_GT(named(c, "bvh").update.slowdown, 0);
