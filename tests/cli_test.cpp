@@ -53,7 +53,7 @@ protected:
 };
 
 TEST_F(Cli, HelpOpensWithExamples) {
-    for (const char* verb : {"", "render ", "info ", "generate "}) {
+    for (const char* verb : {"", "render ", "compare ", "info ", "generate "}) {
         const auto r = run(std::string(verb) + "--help");
         EXPECT_EQ(r.code, 0);
         EXPECT_EQ(r.output.rfind("Examples:", 0), 0u) << r.output;
