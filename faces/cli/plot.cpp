@@ -68,7 +68,11 @@ private:
     /// A little more than there is; of nothing, something.
     double least() const { return least_ <= most_ ? least_ / margin() : 1; }
     double most() const { return least_ <= most_ ? most_ * margin() : 10; }
-    double margin() const { return std::max(1.05, std::pow(most_ / least_, 0.03)); }
+    /// A factor of four at least is shown, so that what hardly differs looks so.
+    double margin() const {
+        const double range = most_ / least_;
+        return std::max({1.05, std::pow(range, 0.03), 2 / std::sqrt(range)});
+    }
 
     double from_, to_;
     double least_ = std::numeric_limits<double>::infinity(), most_ = 0;
