@@ -12,7 +12,7 @@ using namespace hedgerow;
 using Cli = ToolTest;
 
 TEST_F(Cli, HelpOpensWithExamples) {
-    for (const char* verb : {"", "render ", "draw ", "info ", "generate "}) {
+    for (const char* verb : {"", "render ", "draw ", "compare ", "info ", "generate "}) {
         const auto r = run(std::string(verb) + "--help");
         EXPECT_EQ(r.code, 0);
         EXPECT_EQ(r.output.rfind("Examples:", 0), 0u) << r.output;

@@ -105,9 +105,9 @@ TEST_F(Compare, TellsWhatEachStructureCosts) {
 }
 TEST_F(Compare, HasTheSameCountsEachTime) {
     const auto counts = [&] {
+        const json found = parsed("gen:grass:300 --time 50 --structures grid,bvh:builder=sweep,bins=8");
         json all;
-        for (const auto& s :
-             parsed("gen:grass:300 --time 50 --structures grid,bvh:builder=sweep,bins=8")["structures"])
+        for (const auto& s : found["structures"])
             for (const auto& q : s["queries"])
                 all.push_back({q["asked"], q["nodes"], q["leaves"], q["primitives"]});
         return all;

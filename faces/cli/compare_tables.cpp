@@ -117,7 +117,7 @@ Table break_even_table(const Comparison& c, Ask ask) {
 
 Table sweep_table(const CompareReport::Swept& swept, Ask ask) {
     Table t{fmt::format("{}: {}", swept.sweep.structure, swept.sweep.option),
-            fmt::format("a {} query, the mean over its sets of rays; x: times the least", name_of(ask)),
+            fmt::format("a {} query, of rays the mean over their sets; x: times the least", name_of(ask)),
             {swept.sweep.option, "build", "x", "memory", "items/primitive", "time", "x", "nodes", "leaves",
              "primitives"},
             {}};

@@ -48,16 +48,18 @@ public:
         const double low = std::log(least()), high = std::log(most());
         return from_ + (to_ - from_) * (std::log(value) - low) / (high - low);
     }
-    /// Powers of ten; where there are few of them, also twice and five times these.
+    /// Powers of ten; where there are few of them, also some of their multiples.
     std::vector<double> ticks() const {
         const double decades = std::log10(most() / least());
+        const int apart = decades < 7 ? 1 : 2;
+        const std::vector<double> digits = decades < 1     ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7}
+                                           : decades < 2.5 ? std::vector<double>{1, 2, 5}
+                                                           : std::vector<double>{1};
         std::vector<double> all;
-        for (double p = std::floor(std::log10(least())); p <= std::log10(most()); ++p)
-            for (const double digit : {1.0, 2.0, 5.0}) {
+        for (int p = static_cast<int>(std::floor(std::log10(least()))); p <= std::log10(most()); ++p)
+            for (const double digit : digits) {
                 const double v = digit * std::pow(10, p);
-                const bool wanted =
-                    digit == 1 ? decades < 7 || std::fmod(p, 2) == 0 : decades < (digit == 5 ? 1.5 : 2.5);
-                if (wanted && v >= least() * 0.999 && v <= most() * 1.001) all.push_back(v);
+                if (p % apart == 0 && v >= least() && v <= most()) all.push_back(v);
             }
         return all;
     }
@@ -66,7 +68,11 @@ private:
     /// A little more than there is; of nothing, something.
     double least() const { return least_ <= most_ ? least_ / margin() : 1; }
     double most() const { return least_ <= most_ ? most_ * margin() : 10; }
-    double margin() const { return std::max(1.05, std::pow(most_ / least_, 0.03)); }
+    /// A factor of four at least is shown, so that what hardly differs looks so.
+    double margin() const {
+        const double range = most_ / least_;
+        return std::max({1.05, std::pow(range, 0.03), 2 / std::sqrt(range)});
+    }
 
     double from_, to_;
     double least_ = std::numeric_limits<double>::infinity(), most_ = 0;
