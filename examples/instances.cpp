@@ -27,7 +27,7 @@ std::vector<Instance<I>> rings_of(const I& teapot) {
 }
 
 int main() {
-    const auto mesh = teapot<float>(5000);
+    const auto mesh = teapot<float>(1000);
 
     // The three lines.
     const auto grid = build<Grid>(mesh);
@@ -50,7 +50,7 @@ int main() {
             const auto hit = closest_hit(index, ray);
             hits += hit.has_value();
             std::putchar(hit ? static_cast<char>('a' + hit->instance % 26) : ' ');
-            if ((row + column) % 7 != 0) continue;  // the oracle takes its time
+            if ((row * columns + column) % 31 != 0) continue;  // the oracle takes its time
             const Vec3f near = ray.at(28);
             wrong += hit != closest_hit(oracle, ray);
             wrong += closest_point(index, near) != closest_point(oracle, near);
