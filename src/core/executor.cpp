@@ -4,13 +4,6 @@
 #define HEDGEROW_HAS_TBB 1
 #endif
 
-#if defined(__SANITIZE_THREAD__)
-#define HEDGEROW_TSAN 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define HEDGEROW_TSAN 1
-#endif
-#endif
 #if HEDGEROW_TSAN
 extern "C" void __tsan_acquire(void*);
 extern "C" void __tsan_release(void*);
@@ -29,7 +22,8 @@ namespace hedgerow {
 namespace {
 
 /// Work handed to other threads and taken back: what comes before it happens before each task, and the tasks
-/// before what comes after. TBB sees to that, but is built without ThreadSanitizer, which has to be told.
+/// before what comes after. TBB sees to that, but is built without ThreadSanitizer, which has to be told. So
+/// that it looks at the tasks and not at TBB, this file alone is compiled without it, with HEDGEROW_TSAN.
 class Handover {
 public:
     Handover() { released(&before_); }
@@ -46,17 +40,16 @@ public:
     }
 
 private:
+    static void acquired([[maybe_unused]] char* what) {
 #if HEDGEROW_TSAN
-    static void acquired(char* what) {
         __tsan_acquire(what);
-    }
-    static void released(char* what) {
-        __tsan_release(what);
-    }
-#else
-    static void acquired(char*) {}
-    static void released(char*) {}
 #endif
+    }
+    static void released([[maybe_unused]] char* what) {
+#if HEDGEROW_TSAN
+        __tsan_release(what);
+#endif
+    }
     char before_ = 0, after_ = 0;
 };
 

@@ -47,6 +47,12 @@ concept OverlapsBoxes = PrimitiveSet<P> &&
 template <class P>
 concept HitsLieOnPrimitives = OverlapsBoxes<P> && P::hits_lie_on_primitives;
 
+/// A set of points and nothing else.
+template <class P>
+concept PointSet = PrimitiveSet<P> && requires(const P& set, std::size_t i) {
+    { set.point(i) } -> std::convertible_to<Vec<typename P::Scalar, P::dimension>>;
+};
+
 /// What a ray query is offered. `instance` names the placed index that the element is in; 0 where there are
 /// no instances.
 template <std::floating_point T>

@@ -124,7 +124,8 @@ public:
     std::span<const std::uint32_t> places_changed() const { return edits_->placed; }
 
     /// Fits all boxes to primitives that have moved: `references` are those of the same ids as at the build.
-    /// The tree stays as it is. O(n), parallel over subtrees, allocates nothing.
+    /// The tree stays as it is; what spatial splits had cut is fitted whole. O(n), parallel over subtrees,
+    /// allocates nothing.
     void refit(std::span<const Reference<T, D>> references, Executor& executor) {
         if (built_cost_ < 0) built_cost_ = sah_cost();
         if (!tree_.root.empty())
@@ -139,8 +140,7 @@ public:
     std::string validate(const P& set) const {
         std::vector<std::uint8_t> seen(set.size());
         std::string fault;
-        if (edits_ ? edits_->held.size() > set.size() : count_ != set.size())
-            return "not built over these primitives";
+        if ((edits_ ? edits_->held.size() : count_) > set.size()) return "not built over these primitives";
         const auto visit = [&](auto& self, NodeRef r, const Box<T, D>& box, int depth) -> void {
             if (!fault.empty()) return;
             if (depth > max_depth) fault = "deeper than its bound";

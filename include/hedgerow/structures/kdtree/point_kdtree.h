@@ -9,12 +9,6 @@
 
 namespace hedgerow {
 
-/// A set of points and nothing else.
-template <class P>
-concept PointSet = PrimitiveSet<P> && requires(const P& set, std::size_t i) {
-    { set.point(i) } -> std::convertible_to<Vec<typename P::Scalar, P::dimension>>;
-};
-
 /// Axes in turn; the median by its axis is the node, what lies before it is below on the low side, what lies
 /// behind on the high side (Bentley 1975). The tree is as full as a heap and lies like one: the children of
 /// node i are 2i + 1 and 2i + 2, so that no link is stored (Jensen, Realistic image synthesis using photon
