@@ -28,7 +28,7 @@ struct Score {
 template <class P>
 void judge(const std::string& name, const P& primitives, std::vector<Score>& scores) {
     std::vector<std::string> left_out;
-    const auto structures = usual_structures(P::dimension, primitives.size(), left_out);
+    const auto structures = usual_structures(P::dimension, PointSet<ViewOf<P>>, primitives.size(), left_out);
     MeasureOptions options;
     options.asks = {Ask::closest_hit, Ask::nearest};
     options.seconds = 0.1, options.seed = first_seed;

@@ -193,7 +193,7 @@ TEST(Lists, HaveRangesWithBothEnds) {
 TEST(Lists, NameStructuresThatCanBeBuilt) {
     for (const int dimension : {2, 3})
         for (const std::size_t size : {std::size_t{10}, std::size_t{100'000'000}}) {
-            Strings left_out, usual = usual_structures(dimension, size, left_out);
+            Strings left_out, usual = usual_structures(dimension, true, size, left_out);
             EXPECT_EQ(left_out.empty(), size == 10);
             usual.insert(usual.end(), left_out.begin(), left_out.end());
             for (const auto& info : structure_list())

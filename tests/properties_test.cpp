@@ -19,8 +19,7 @@ template <class P>
 auto every_index(const P& set) {
     std::vector<std::string> specs = {"brute-force"};
     for (const auto& s : structure_list())
-        if ((s.dimension == 0 || s.dimension == P::dimension) && (!s.points_only || PointSet<ViewOf<P>>))
-            specs.emplace_back(s.name);
+        if (s.holds(P::dimension, PointSet<ViewOf<P>>)) specs.emplace_back(s.name);
     for (const char* more :
          {"bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts", "bvh:builder=lbvh",
           "bvh:builder=ploc", "bvh:builder=agglomerative", "bvh:reinsertion=2", "bvh:max_leaf_size=1",

@@ -55,7 +55,7 @@ public:
     template <class P>
     void compare_on(const P& primitives) {
         for (auto& s : report_.sweeps) check_structures(s.sweep.structures, P::dimension);
-        const auto chosen = structures_for(P::dimension, primitives.size());
+        const auto chosen = structures_for<P>(primitives.size());
         check_structures(chosen, P::dimension);
         if (report_.sweeps.empty() && !a_.scale) {
             report_.comparison = measured(primitives, chosen, true, "comparing");
@@ -77,10 +77,11 @@ public:
     }
 
     /// Those that were asked for, or what is usual; brute force is always there to pay against.
-    std::vector<std::string> structures_for(int dimension, std::size_t size) {
+    template <class P>
+    std::vector<std::string> structures_for(std::size_t size) {
         if (a_.structures.empty()) {
             std::vector<std::string> left_out;
-            auto usual = compare::usual_structures(dimension, size, left_out);
+            auto usual = compare::usual_structures(P::dimension, PointSet<ViewOf<P>>, size, left_out);
             for (const auto& s : left_out)
                 note(fmt::format(
                     "{} is left out: it takes long to build over {} primitives; name it in --structures", s,
@@ -159,7 +160,8 @@ void run_scale(const CompareArguments& a, Comparing& comparing) {
         std::visit(
             [&](const auto& set) {
                 // The same ones at each size: those that the largest allows.
-                if (structures.empty()) structures = comparing.structures_for(set.dimension, sizes.back());
+                if (structures.empty())
+                    structures = comparing.structures_for<std::remove_cvref_t<decltype(set)>>(sizes.back());
                 comparing.scale_on(set, structures);
             },
             generate<T>(spec));

@@ -74,6 +74,11 @@ struct StructureInfo {
     /// Of the only sets that it holds; 0: of any.
     int dimension = 0;
     bool points_only = false;
+
+    /// Whether it can be built over sets of a dimension, of points or of something else.
+    bool holds(int set_dimension, bool points) const {
+        return (dimension == 0 || dimension == set_dimension) && (points || !points_only);
+    }
 };
 /// Every structure that `build_any` knows.
 const std::vector<StructureInfo>& structure_list();

@@ -159,7 +159,7 @@ std::vector<std::uint64_t> sizes_of(View text) {
     return sizes;
 }
 
-std::vector<std::string> usual_structures(int dimension, std::size_t size,
+std::vector<std::string> usual_structures(int dimension, bool points, std::size_t size,
                                           std::vector<std::string>& left_out) {
     struct Variant {
         const char *structure, *options;
@@ -177,7 +177,7 @@ std::vector<std::string> usual_structures(int dimension, std::size_t size,
         (size <= largest ? usual : left_out).push_back(structure);
     };
     for (const StructureInfo& s : structure_list()) {
-        if (s.dimension != 0 && s.dimension != dimension) continue;
+        if (!s.holds(dimension, points)) continue;
         const auto limit = std::find_if(std::begin(slow), std::end(slow),
                                         [&](const Variant& v) { return v.structure == s.name; });
         add(std::string(s.name), limit == std::end(slow) ? any : limit->largest);
