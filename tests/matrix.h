@@ -47,8 +47,8 @@ inline constexpr const char* structures[] = {
     "bvh:volume=obb,max_leaf_size=1",
     "bvh:volume=kdop6",
     "bvh:volume=kdop14,builder=ploc",
-    "bvh:volume=kdop18,ordered=off",
-    "bvh:volume=kdop26,culling=off",
+    "bvh:volume=kdop18",
+    "bvh:volume=kdop26",
     "bvh:volume=cylinder",
     "bvh:volume=hull,builder=agglomerative"};
 inline constexpr std::size_t fast_structures = 15;

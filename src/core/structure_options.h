@@ -175,13 +175,13 @@ void read_bvh_options(OptionReader& in, BvhOptions& o, Volume& volume) {
     in.number("traversal_cost", o.traversal_cost, 0.0, 1e6);
     in.number("intersection_cost", o.intersection_cost, 1e-6, 1e6);
     in.number<std::uint32_t>("max_leaf_size", o.max_leaf_size, 1, 1u << 20);
-    in.flag("culling", o.culling);
-    in.flag("ordered", o.ordered);
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename Bvh<T, D>::Options& o, std::type_identity<Bvh<T, D>>) {
     Volume box = Volume::box;
     read_bvh_options<T, D>(in, o, box);
+    in.flag("culling", o.culling);
+    in.flag("ordered", o.ordered);
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename VolumeBvh<T, D>::Options& o,

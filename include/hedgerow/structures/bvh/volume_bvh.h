@@ -16,10 +16,11 @@ struct VolumeBvhOptions : BvhOptions {
 /// holds: of primitives whose answers lie on them (triangles, segments, points) the corners, of others the
 /// corners of their boxes, and around these the margin that answers may err by (cells.h).
 ///
-/// Which volume it is, is chosen at run time, and asked at every test: that costs some nanoseconds, and saves
-/// compiling every query for every volume. Tests are in double. Memory: a node is 16 bytes for where its
-/// children are and two volumes (bytes in space, float): sphere 16, cylinder 36, obb 60, kdop 4k, hull 16 a
-/// face and 8. Build: that of the tree, then serially O(n · depth), times some 50 µs a node for hulls.
+/// Always ordered and culled: what these bring, the Bvh shows. Which volume it is, is chosen at run time, and
+/// asked at every test: that costs some nanoseconds, and saves compiling every query for every volume. Tests
+/// are in double. Memory: a node is 16 bytes for where its children are and two volumes (bytes in space,
+/// float): sphere 16, cylinder 36, obb 60, kdop 4k, hull 16 a face and 8. Build: that of the tree, then
+/// serially O(n · depth), times some 50 µs a node for hulls.
 template <std::floating_point T, int D>
 class VolumeBvh {
 public:
@@ -72,14 +73,7 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (query.limit() < 0) return;
-        if (options_.ordered && options_.culling)
-            walk_volumes(*this, primitives, query, count);
-        else if (options_.ordered)
-            walk_volumes<Q::order, Culling::off>(*this, primitives, query, count);
-        else if (options_.culling)
-            walk_volumes<Order::none, Culling::on>(*this, primitives, query, count);
-        else
-            walk_volumes<Order::none, Culling::off>(*this, primitives, query, count);
+        walk_volumes(*this, primitives, query, count);
     }
 
     /// What is wrong with the structure; empty if nothing is. O(n · depth).
