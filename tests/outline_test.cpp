@@ -53,7 +53,10 @@ void expect_sound_outline(const P& set, const std::string& spec) {
             ASSERT_NE(parent, by_id.end()) << "cell " << c.id << " comes before its parent";
             EXPECT_EQ(c.level, parent->second->level + 1);
             EXPECT_FALSE(parent->second->leaf);
-            EXPECT_TRUE(enlarged_by(parent->second->box, 1e-9 * extent).contains(c.box))
+            // A two-level grid's inner ones hold what is within the pad of a cell.
+            const auto& around = parent->second->box;
+            const double beyond = spec.starts_with("two-level") ? 0.01 * length(around.extent()) : 0;
+            EXPECT_TRUE(enlarged_by(around, beyond + 1e-9 * extent).contains(c.box))
                 << "cell " << c.id << " reaches out of its parent";
         }
         leaves += c.leaf, occupied += c.leaf && !c.items.empty(), items += c.items.size();
@@ -90,8 +93,7 @@ TYPED_TEST(Outline, LeavesOfPartitionsTileTheRoot) {
     for_each_set<TypeParam>([](const auto& set) {
         using P = std::remove_cvref_t<decltype(set)>;
         constexpr int D = P::dimension;
-        for (const std::string spec :
-             {"kdtree", "kdtree:builder=midpoint", "bsp", "octree", "grid", "two-level-grid"}) {
+        for (const std::string spec : {"kdtree", "kdtree:builder=midpoint", "bsp", "octree", "grid"}) {
             const auto index = build_any(matrix::named_for<P>(spec), set);
             SCOPED_TRACE(index->structure());
             const auto cells = index->outline();

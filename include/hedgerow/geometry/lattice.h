@@ -15,9 +15,28 @@ struct Lattice {
 
     Vec<double, D> low, size;  // of the box, of one cell (> 0)
     Cell resolution{};
+    /// A primitive is entered in every cell that it comes this near to along each axis: a probe that errs by
+    /// less than half of it need not look beside its way.
+    Vec<double, D> pad;
 
-    /// Primitives are entered in every cell that their box, enlarged by this part of a cell, touches.
+    /// `pad`, in cells, if nothing else is said.
     static constexpr double inflation = 0x1p-7;
+
+    /// So many cells over a box. Along an axis in which it is flat there is to be one.
+    template <std::floating_point T>
+    static Lattice over(const Box<T, D>& box, const Cell& resolution) {
+        const Vec<double, D> extent = Vec<double, D>(box.high) - Vec<double, D>(box.low);
+        const double longest = max_component(extent);
+        Lattice lattice;
+        lattice.resolution = resolution;
+        for (int a = 0; a < D; ++a) {
+            lattice.low[a] = static_cast<double>(box.low[a]);
+            lattice.size[a] = extent[a] > 0 ? extent[a] / resolution[static_cast<std::size_t>(a)]
+                                            : (longest > 0 ? longest : 1.0);
+        }
+        lattice.pad = lattice.size * inflation;
+        return lattice;
+    }
 
     /// Cells are numbered by bricks of 4³ (in the plane 8²): a brick's 64 cells fit the bits of a word.
     static constexpr int brick_bits = D == 3 ? 2 : 3;

@@ -82,12 +82,11 @@ public:
             center[i] = lattice.coordinate(p[a], a);
             last = std::max({last, center[i], lattice.resolution[i] - 1 - center[i]});
         }
-        const Vec<double, D> pad = lattice.size * Lattice<D>::inflation;
         for (std::int32_t r = 0; r <= last; ++r) {
             bool any = false;
             const bool go_on = for_each_in_shell(lattice, center, r, [&](const auto& cell) {
                 auto box = lattice.bounds(cell);
-                box.low = box.low - pad, box.high = box.high + pad;
+                box.low = box.low - lattice.pad, box.high = box.high + lattice.pad;
                 // In T, since distances of tiny scenes underflow there; rounded down by more than they round
                 // up.
                 const T at = static_cast<T>(distance2(p, box) * (1 - 0x1p-20));

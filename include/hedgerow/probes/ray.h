@@ -227,8 +227,7 @@ private:
                             const Vec<double, D>& inverse) const {
         Interval<double> in{static_cast<double>(ray_.t_min), static_cast<double>(ray_.t_max)};
         for (int a = 0; a < D; ++a) {
-            const double margin =
-                product(0.5 * Lattice<D>::inflation, lattice.size[a]) + static_cast<double>(slack_);
+            const double margin = product(0.5, lattice.pad[a]) + static_cast<double>(slack_);
             const double low = lattice.low[a] - margin;
             const double high = lattice.plane(lattice.resolution[static_cast<std::size_t>(a)], a) + margin;
             if (d[a] == 0) {
@@ -245,7 +244,7 @@ private:
         typename Lattice<D>::Cell reach{};
         const double wide = static_cast<double>(slack_);
         for (int a = 0; a < D; ++a) {
-            if (wide <= product(0.5 * Lattice<D>::inflation, lattice.size[a])) continue;
+            if (wide <= product(0.5, lattice.pad[a])) continue;
             const double cells = wide / lattice.size[a] + 1,
                          most = lattice.resolution[static_cast<std::size_t>(a)];
             reach[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(std::min(cells, most));

@@ -165,11 +165,13 @@ void outline_lattice(const S& grid, const Box<double, D>& within, Outliner<D, F>
         cell.box = grid.lattice().bounds(c);
         cell.id = cell.parent = grid.lattice().number(c);
         cell.place = {cell.id};
-        bool divided = false;
-        if constexpr (requires { grid.with_lattice_in(c, [](auto&&...) {}); })
-            grid.with_lattice_in(c, [&](const auto& inner, const auto& leaf_of, const auto& place_of) {
-                divided = true;
-                if (!list(cell)) return;
+        cell.leaf = true;
+        if constexpr (requires { grid.for_each_lattice_in(c, [](auto&&...) {}); })
+            grid.for_each_lattice_in(c, [&](auto&&...) { cell.leaf = false; });
+        cell.hold(grid.leaf(c));
+        if (!list(cell)) return;
+        if constexpr (requires { grid.for_each_lattice_in(c, [](auto&&...) {}); })
+            grid.for_each_lattice_in(c, [&](const auto& inner, const auto& leaf_of, const auto& place_of) {
                 for_each_cell_within(inner, within, [&](const auto& i) {
                     // Cells of the first level have numbers below 2^30.
                     auto child = cell.child(0x80000000u | place_of(i).first, place_of(i));
@@ -178,9 +180,6 @@ void outline_lattice(const S& grid, const Box<double, D>& within, Outliner<D, F>
                     list(child);
                 });
             });
-        if (divided) return;
-        cell.end_in(grid.leaf(c));
-        list(cell);
     });
 }
 

@@ -10,8 +10,7 @@ namespace hedgerow {
 /// triangles that stand askew.
 enum class GridInsert { exact, box };
 
-/// A primitive is entered in every cell that it comes within `pad` of, 2^-7 of a cell (Lattice::inflation) if
-/// nothing else is said: a ray that errs by less than that need not look beside its way.
+/// Which cells of a lattice a primitive is entered in: those that it comes within the lattice's pad of.
 template <PrimitiveSet P>
 class CellEntering {
 public:
@@ -19,15 +18,11 @@ public:
     static constexpr int D = P::dimension;
     using Cell = typename Lattice<D>::Cell;
 
-    CellEntering(const P& set, const Lattice<D>& lattice, GridInsert insert, T margin,
-                 const Vec<double, D>& pad)
-        : set_(set), lattice_(lattice), insert_(insert), margin_(margin), pad_(pad) {}
     CellEntering(const P& set, const Lattice<D>& lattice, GridInsert insert, T margin)
-        : CellEntering(set, lattice, insert, margin, lattice.size * Lattice<D>::inflation) {}
+        : set_(set), lattice_(lattice), insert_(insert), margin_(margin) {}
 
-    /// The same for a lattice in one of the cells: with the same pad, since what comes that near to the cell
-    /// is to be found in it.
-    CellEntering within(const Lattice<D>& inner) const { return {set_, inner, insert_, margin_, pad_}; }
+    /// The same for another lattice.
+    CellEntering within(const Lattice<D>& inner) const { return {set_, inner, insert_, margin_}; }
 
     /// Calls f(cell) for each cell of the lattice, whose outermost stand for what lies beyond. A row of cells
     /// that a box reaches is reached by what spans the box: only where it spans several along two axes does
@@ -43,6 +38,12 @@ public:
             return true;
         });
     }
+    /// The bounds of what stands in a cell of a primitive that is entered there.
+    Box<T, D> part(PrimitiveId id, const Cell& cell) const {
+        const auto enlarged = enlarged_cell(cell);
+        return insert_ == GridInsert::exact ? part_in(set_, id, enlarged)
+                                            : intersection(set_.bounds(id), enlarged);
+    }
     /// How many cells a box reaches.
     std::uint64_t cells_reached(const Box<T, D>& box) const {
         const auto [first, last] = reached(box);
@@ -56,21 +57,21 @@ private:
         std::pair<Cell, Cell> block;
         for (int a = 0; a < D; ++a) {
             const auto i = static_cast<std::size_t>(a);
-            block.first[i] = lattice_.coordinate(static_cast<double>(box.low[a]) - pad_[a], a);
-            block.second[i] = lattice_.coordinate(static_cast<double>(box.high[a]) + pad_[a], a);
+            block.first[i] = lattice_.coordinate(static_cast<double>(box.low[a]) - lattice_.pad[a], a);
+            block.second[i] = lattice_.coordinate(static_cast<double>(box.high[a]) + lattice_.pad[a], a);
         }
         return block;
     }
     Box<T, D> enlarged_cell(const Cell& cell) const {
         const auto b = lattice_.bounds(cell);
-        return enlarged(Box<T, D>{Vec<T, D>(b.low - pad_), Vec<T, D>(b.high + pad_)}, margin_);
+        return enlarged(Box<T, D>{Vec<T, D>(b.low - lattice_.pad), Vec<T, D>(b.high + lattice_.pad)},
+                        margin_);
     }
 
     const P& set_;
     const Lattice<D>& lattice_;
     GridInsert insert_;
     T margin_;
-    Vec<double, D> pad_;
 };
 
 /// Throws InputError when so many entries would take more than `budget` bytes to build from.

@@ -18,19 +18,13 @@ struct GridResolution {
     /// The lattice over a box. Along an axis in which the box is flat there is one cell.
     template <std::floating_point T, int D>
     Lattice<D> lattice_over(const Box<T, D>& box, std::size_t count) const {
-        Lattice<D> lattice;
         const Vec<double, D> extent = Vec<double, D>(box.high) - Vec<double, D>(box.low);
-        const double longest = max_component(extent);
         const Vec<double, D> cells = cells_along(extent, static_cast<double>(count));
-        for (int a = 0; a < D; ++a) {
-            const auto i = static_cast<std::size_t>(a);
-            lattice.resolution[i] =
+        typename Lattice<D>::Cell along;
+        for (int a = 0; a < D; ++a)
+            along[static_cast<std::size_t>(a)] =
                 static_cast<std::int32_t>(std::clamp(cells[a], 1.0, double(Lattice<D>::most_cells)));
-            lattice.low[a] = static_cast<double>(box.low[a]);
-            lattice.size[a] =
-                extent[a] > 0 ? extent[a] / lattice.resolution[i] : (longest > 0 ? longest : 1.0);
-        }
-        return lattice;
+        return Lattice<D>::over(box, along);
     }
 
 private:

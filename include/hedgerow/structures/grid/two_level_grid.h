@@ -1,4 +1,4 @@
-/// Two-level grid: a coarse grid, of which each crowded cell is a grid of its own.
+/// Two-level grid: a coarse grid, in each of whose cells stand grids for what is in it.
 #pragma once
 
 #include <hedgerow/structures/grid/grid.h>
@@ -6,11 +6,14 @@
 namespace hedgerow {
 
 /// For scenes with detail in few places (Jevans and Wyvill 1989; built from sorted pairs as in Kalojanov,
-/// Billeter, Slusallek, EG 2011): each cell of the first level gets as many cells as what stands in it asks
-/// for. A cell that asks for one stays a row of the first level.
+/// Billeter, Slusallek, EG 2011). The second level's grids lie over the bounds of what they hold, not over
+/// the cell, and where a cell holds large and small things each get one (by size, as Cazals, Drettakis and
+/// Puech 1995 part a scene): a teapot on the grass of a stadium, all in one cell, has cells of a teapot's
+/// size, and the grass its own.
 ///
-/// Memory: of the first level as Grid; of the second 4 bytes a cell, empty or not, and 4 an item, 16 a cell
-/// of the first. Items of the first level that are crowded out are kept no longer.
+/// Memory: of the first level as Grid, but for its items; of the second 4 bytes an item, 4 a cell, empty or
+/// not, 32 a grid (in space, float), one or two in each occupied cell. The grids in a cell are built by one
+/// thread.
 template <std::floating_point T, int D>
 class TwoLevelGrid {
 public:
@@ -36,8 +39,9 @@ public:
         grid.count_ = references.size();
         if (references.empty()) return grid;
         for (const auto& r : references) grid.bounds_.expand(r.box());
+        grid.margin_ = cell_margin(grid.bounds_);
         const auto lattice = options.cells.lattice_over(grid.bounds_, grid.count_);
-        const CellEntering entering(set, lattice, options.insert, cell_margin(grid.bounds_));
+        const CellEntering entering(set, lattice, options.insert, grid.margin_);
         grid.rows_ =
             CellRows<D>(lattice, entries_of(entering, lattice, references, options.budget, executor));
         grid.divide(set, executor);
@@ -48,12 +52,11 @@ public:
     std::span<const PrimitiveId> items() const { return items_; }
     std::size_t bytes() const {
         return rows_.bytes() + inner_.capacity() * sizeof(Inner) +
-               starts_.capacity() * sizeof(std::uint32_t) + items_.capacity() * sizeof(PrimitiveId);
+               (first_inner_.capacity() + starts_.capacity()) * sizeof(std::uint32_t) +
+               items_.capacity() * sizeof(PrimitiveId);
     }
     /// Cells of both levels.
-    std::size_t node_count() const {
-        return empty() ? 0 : rows_.lattice().cell_count() + starts_.size() - inner_.size();
-    }
+    std::size_t node_count() const { return empty() ? 0 : rows_.lattice().cell_count() + starts_.size() - 1; }
     std::size_t leaf_count() const {
         std::size_t occupied = 0;
         for (std::size_t i = 1; i < starts_.size(); ++i) occupied += starts_[i] != starts_[i - 1];
@@ -62,21 +65,16 @@ public:
     int depth() const { return empty() ? 0 : 2; }
     bool empty() const { return count_ == 0; }
     const Lattice<D>& lattice() const { return rows_.lattice(); }
-    /// What stands in a cell of the first level that is a row of its own.
-    Leaf leaf(const typename Lattice<D>::Cell& cell) const {
-        const Inner* inner = inner_of(cell);
-        return inner == nullptr ? Leaf{nullptr, 0, 0} : leaf(inner->start);
-    }
-    /// Calls f(lattice, leaf_of, place_of) if a cell of the first level is a grid of its own: with what
-    /// stands in each of its cells, and how walks name them.
+    /// What stands in a cell of the first level: all of it in its grids.
+    Leaf leaf(const typename Lattice<D>::Cell&) const { return {nullptr, 0, 0}; }
+    /// Calls f(lattice, leaf_of, place_of) for each grid in a cell of the first level: with what stands in
+    /// its cells, and how walks name them.
     template <class F>
-    void with_lattice_in(const typename Lattice<D>::Cell& cell, F f) const {
-        const Inner* inner = inner_of(cell);
-        if (inner == nullptr || inner->cell_count() == 1) return;
-        const auto start = [&](const auto& c) { return inner->start + inner->number(c); };
-        f(
-            inner->lattice_in(lattice(), cell), [&](const auto& c) { return leaf(start(c)); },
-            [&](const auto& c) { return place_of(start(c)); });
+    void for_each_lattice_in(const typename Lattice<D>::Cell& cell, F f) const {
+        for (const Inner& inner : grids_in(rows_.cursor().row(cell)))
+            f(
+                inner.lattice(margin_), [&](const auto& c) { return leaf(inner.start_of(c)); },
+                [&](const auto& c) { return place_of(inner.start_of(c)); });
     }
 
     template <class Primitives, Query Q, class Count>
@@ -84,25 +82,20 @@ public:
         if (empty() || query.limit() < 0) return;
         with_mailbox(options_.mailbox, primitives, count, [&](auto& tested) {
             auto cursor = rows_.cursor();
-            const auto look_into = [&](std::uint32_t start, const Place& place) {
-                const Leaf found = leaf(start);
-                if (found.count == 0) return Flow::go_on;
-                count.leaf(found.count, place);
-                return test_leaf(tested, query.probe(), found, query);
-            };
             walk_lattice(rows_.lattice(), query, [&](const auto& cell) {
-                const Place place{rows_.lattice().number(cell)};
-                count.node(place);
-                const std::uint32_t row = cursor.row(cell);
-                if (row == CellRows<D>::none) return Flow::go_on;
-                const Inner& inner = inner_[row];
-                if (inner.cell_count() == 1) return look_into(inner.start, place);
-                const auto lattice = inner.lattice_in(rows_.lattice(), cell);
-                return walk_lattice(lattice, query, [&](const auto& c) {
-                    const std::uint32_t start = inner.start + inner.number(c);
-                    count.node(place_of(start));
-                    return look_into(start, place_of(start));
-                });
+                count.node(Place{rows_.lattice().number(cell)});
+                Flow flow = Flow::go_on;
+                for (const Inner& inner : grids_in(cursor.row(cell)))
+                    if (flow == Flow::go_on)
+                        flow = walk_lattice(inner.lattice(margin_), query, [&](const auto& c) {
+                            const Leaf found = leaf(inner.start_of(c));
+                            const Place place = place_of(inner.start_of(c));
+                            count.node(place);
+                            if (found.count == 0) return Flow::go_on;
+                            count.leaf(found.count, place);
+                            return test_leaf(tested, query.probe(), found, query);
+                        });
+                return flow;
             });
         });
     }
@@ -112,23 +105,25 @@ public:
     std::string validate(const P& set) const {
         if (set.size() != count_) return "not built over these primitives";
         if (empty()) return "";
-        const auto& outer = rows_.lattice();
-        const CellEntering entering(set, outer, options_.insert, cell_margin(bounds_));
+        const CellEntering entering(set, lattice(), options_.insert, margin_);
         auto cursor = rows_.cursor();
         std::string fault;
-        const auto expect = [&](std::uint32_t start, std::uint32_t p) {
-            if (!std::binary_search(items_.begin() + starts_[start], items_.begin() + starts_[start + 1], p))
-                fault = "primitive " + std::to_string(p) + " is missing from a cell that it meets";
+        const auto holds = [&](std::uint32_t start, PrimitiveId p) {
+            return std::binary_search(items_.begin() + starts_[start], items_.begin() + starts_[start + 1],
+                                      p);
         };
-        for (std::uint32_t p = 0; p < set.size() && fault.empty(); ++p)
+        for (PrimitiveId p = 0; p < set.size() && fault.empty(); ++p)
             entering.for_each(p, set.bounds(p), [&](const auto& cell) {
-                const std::uint32_t row = cursor.row(cell);
-                if (row == CellRows<D>::none) return void(fault = "an occupied cell is not there");
-                const Inner& inner = inner_[row];
-                if (inner.cell_count() == 1) return expect(inner.start, p);
-                const auto lattice = inner.lattice_in(outer, cell);
-                entering.within(lattice).for_each(
-                    p, set.bounds(p), [&](const auto& c) { expect(inner.start + inner.number(c), p); });
+                const auto part = entering.part(p, cell);
+                bool held = part.empty();
+                for (const Inner& inner : grids_in(cursor.row(cell))) {
+                    if (held || !inner.parts.contains(part)) continue;
+                    const auto lattice = inner.lattice(margin_);
+                    held = true;
+                    entering.within(lattice).for_each(
+                        p, part, [&](const auto& c) { held = held && holds(inner.start_of(c), p); });
+                }
+                if (!held) fault = "primitive " + std::to_string(p) + " is missing from a cell that it meets";
             });
         return fault;
     }
@@ -136,11 +131,13 @@ public:
 private:
     using Cell = typename Lattice<D>::Cell;
 
-    /// A cell of the first level: its own cells' places in `starts_`, and how many there are along each axis.
+    /// A grid in a cell of the first level: where its cells' starts begin, and how many there are along each
+    /// axis.
     struct Inner {
-        static constexpr std::int32_t most_cells = 64;
+        static constexpr std::int32_t most_cells = 255;
+        Box<T, D> parts;  // bounds of what it holds
         std::uint32_t start = 0;
-        std::array<std::uint8_t, static_cast<std::size_t>(D)> resolution;
+        std::array<std::uint8_t, static_cast<std::size_t>(D)> resolution{};
 
         std::uint32_t cell_count() const {
             std::uint32_t n = 1;
@@ -152,27 +149,32 @@ private:
             for (std::size_t a = D; a-- > 0;) n = n * resolution[a] + static_cast<std::uint32_t>(c[a]);
             return n;
         }
-        Lattice<D> lattice_in(const Lattice<D>& outer, const Cell& cell) const {
-            Lattice<D> lattice;
-            for (int a = 0; a < D; ++a) {
-                const auto i = static_cast<std::size_t>(a);
-                lattice.resolution[i] = resolution[i];
-                lattice.low[a] = outer.plane(cell[i], a);
-                lattice.size[a] = outer.size[a] / resolution[i];
-            }
+        std::uint32_t start_of(const Cell& c) const { return start + number(c); }
+        /// Its cells may be no larger than what answers err by: the pad is that at least.
+        Lattice<D> lattice(T margin) const {
+            Cell along;
+            for (std::size_t a = 0; a < D; ++a) along[a] = resolution[a];
+            auto lattice = Lattice<D>::over(parts, along);
+            lattice.pad = max(lattice.pad, Vec<double, D>::all(static_cast<double>(margin)));
             return lattice;
         }
     };
+    /// Of a primitive what stands in a cell of the first level.
+    struct Part {
+        Box<T, D> box;
+        PrimitiveId id;
+    };
     /// What some rows of the first level become.
     struct Divided {
+        std::vector<std::uint32_t> first_inner;
         std::vector<Inner> inner;
         std::vector<std::uint32_t> starts;
         std::vector<PrimitiveId> items;
     };
 
-    const Inner* inner_of(const Cell& cell) const {
-        const std::uint32_t row = rows_.cursor().row(cell);
-        return row == CellRows<D>::none ? nullptr : &inner_[row];
+    std::span<const Inner> grids_in(std::uint32_t row) const {
+        if (row == CellRows<D>::none) return {};
+        return std::span(inner_).subspan(first_inner_[row], first_inner_[row + 1] - first_inner_[row]);
     }
     Leaf leaf(std::uint32_t start) const {
         return {items_.data(), starts_[start], starts_[start + 1] - starts_[start]};
@@ -182,17 +184,19 @@ private:
 
     template <PrimitiveSet P>
     void divide(const P& set, Executor& executor) {
-        const CellEntering outer(set, rows_.lattice(), options_.insert, cell_margin(bounds_));
+        const CellEntering entering(set, lattice(), options_.insert, margin_);
         constexpr std::size_t grain = 64;
         std::vector<Divided> pieces((rows_.brick_count() + grain - 1) / grain);
         executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)
                 rows_.for_each_row(p * grain, (p + 1) * grain, [&](const Cell& cell, const Leaf& leaf) {
-                    divide_row(set, outer, cell, leaf, pieces[p]);
+                    divide_row(entering, cell, leaf, pieces[p]);
                 });
         });
         for (Divided& piece : pieces) {
             refuse_beyond(options_.budget, items_.size() + piece.items.size());
+            for (const std::uint32_t first : piece.first_inner)
+                first_inner_.push_back(first + static_cast<std::uint32_t>(inner_.size()));
             for (Inner i : piece.inner) {
                 i.start += static_cast<std::uint32_t>(starts_.size());
                 inner_.push_back(i);
@@ -202,59 +206,95 @@ private:
             items_.insert(items_.end(), piece.items.begin(), piece.items.end());
             piece = {};
         }
+        first_inner_.push_back(static_cast<std::uint32_t>(inner_.size()));
         starts_.push_back(static_cast<std::uint32_t>(items_.size()));
         rows_.forget_items();
     }
     template <PrimitiveSet P>
-    void divide_row(const P& set, const CellEntering<P>& outer, const Cell& cell, const Leaf& leaf,
+    void divide_row(const CellEntering<P>& entering, const Cell& cell, const Leaf& leaf,
                     Divided& piece) const {
-        Inner inner = inner_for(set, outer, cell, leaf);
-        inner.start = static_cast<std::uint32_t>(piece.starts.size());
-        piece.inner.push_back(inner);
-        const auto lattice = inner.lattice_in(rows_.lattice(), cell);
-        const auto entering = outer.within(lattice);
-        std::vector<CellEntry> entries;
-        std::vector<std::uint32_t> ends(inner.cell_count(), 0);
+        std::vector<Part> parts;
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-            entering.for_each(leaf.ids[i], set.bounds(leaf.ids[i]), [&](const Cell& c) {
-                entries.push_back({inner.number(c), leaf.ids[i]});
-                ++ends[entries.back().cell];
-            });
-        auto sum = static_cast<std::uint32_t>(piece.items.size());
-        for (auto& end : ends) {
-            piece.starts.push_back(sum);
-            sum += std::exchange(end, sum);
+            if (const auto box = entering.part(leaf.ids[i], cell); !box.empty())
+                parts.push_back({box, leaf.ids[i]});
+        const std::size_t large = part_by_size(parts, lattice().bounds(cell).half_area());
+        piece.first_inner.push_back(static_cast<std::uint32_t>(piece.inner.size()));
+        add_grid(entering, std::span(parts).first(large), piece);
+        add_grid(entering, std::span(parts).subspan(large), piece);
+    }
+    /// Sorts parts, large ones first, and returns how many shall have a grid of their own: so that a ray
+    /// through the cell, whose half area is given, is expected to do least. With the chance of meeting the
+    /// bounds of n parts (as the SAH has it) it goes through some ∛n of their cells, and tests as many parts.
+    static std::size_t part_by_size(std::vector<Part>& parts, double cell_half_area) {
+        const auto size = [](const Part& p) { return max_component(p.box.extent()); };
+        std::ranges::sort(parts, [&](const Part& a, const Part& b) {
+            return size(a) != size(b) ? size(a) > size(b) : a.id < b.id;
+        });
+        const auto work = [&](std::size_t n, const Box<T, D>& bounds) {
+            if (n == 0) return 0.0;
+            const double chance = static_cast<double>(bounds.half_area()) / cell_half_area;
+            return 1 + 2 * chance * std::pow(static_cast<double>(n), 1.0 / D);
+        };
+        std::vector<double> work_of_small(parts.size() + 1, 0);
+        Box<T, D> bounds;
+        for (std::size_t k = parts.size(); k-- > 0;)
+            work_of_small[k] = work(parts.size() - k, bounds.expand(parts[k].box));
+        std::size_t best = 0;
+        double least = std::numeric_limits<double>::infinity();
+        bounds = {};
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            if (const double all = work(k, bounds) + work_of_small[k]; all < least) least = all, best = k;
+            bounds.expand(parts[k].box);
         }
-        piece.items.resize(sum);
-        for (const CellEntry& e : entries) piece.items[ends[e.cell]++] = e.id;
+        return best;
+    }
+    template <PrimitiveSet P>
+    void add_grid(const CellEntering<P>& entering, std::span<const Part> parts, Divided& piece) const {
+        if (parts.empty()) return;
+        Inner inner;
+        for (const Part& part : parts) inner.parts.expand(part.box);
+        inner.start = static_cast<std::uint32_t>(piece.starts.size());
+        set_resolution(inner, parts, entering);
+        piece.inner.push_back(inner);
+
+        const auto lattice = inner.lattice(margin_);
+        std::vector<CellEntry> entries;
+        for (const Part& part : parts)
+            entering.within(lattice).for_each(part.id, part.box, [&](const Cell& c) {
+                entries.push_back({inner.number(c), part.id});
+            });
+        std::ranges::sort(entries, {}, [](const CellEntry& e) { return std::pair(e.cell, e.id); });
+        auto entry = entries.begin();
+        for (std::uint32_t c = 0; c < inner.cell_count(); ++c) {
+            piece.starts.push_back(static_cast<std::uint32_t>(piece.items.size()));
+            for (; entry != entries.end() && entry->cell == c; ++entry) piece.items.push_back(entry->id);
+        }
     }
     /// As many cells as the density asks for, but no more than what leaves a primitive in 8 of them: where
-    /// many are as large as the cell, dividing parts none.
+    /// many are as large as their bounds, dividing parts none.
     template <PrimitiveSet P>
-    Inner inner_for(const P& set, const CellEntering<P>& outer, const Cell& cell, const Leaf& leaf) const {
+    void set_resolution(Inner& inner, std::span<const Part> parts, const CellEntering<P>& entering) const {
         const GridResolution wanted{.density = options_.inner_density};
-        const auto whole = wanted.lattice_over(rows_.lattice().bounds(cell), leaf.count);
-        Inner inner;
+        const auto along = wanted.lattice_over(inner.parts, parts.size()).resolution;
         for (std::size_t a = 0; a < D; ++a)
-            inner.resolution[a] = static_cast<std::uint8_t>(std::min(whole.resolution[a], Inner::most_cells));
+            inner.resolution[a] = static_cast<std::uint8_t>(std::min(along[a], Inner::most_cells));
         while (inner.cell_count() > 1) {
-            const auto lattice = inner.lattice_in(rows_.lattice(), cell);
-            const auto entering = outer.within(lattice);
+            const auto lattice = inner.lattice(margin_);
             std::uint64_t entries = 0;
-            for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-                entries += entering.cells_reached(set.bounds(leaf.ids[i]));
-            if (entries <= 8 * std::uint64_t(leaf.count)) break;
+            for (const Part& part : parts) entries += entering.within(lattice).cells_reached(part.box);
+            if (entries <= 8 * parts.size()) return;
             for (auto& r : inner.resolution) r = static_cast<std::uint8_t>((r + 1) / 2);
         }
-        return inner;
     }
 
     Options options_;
     Box<T, D> bounds_;
     CellRows<D> rows_;
-    std::vector<Inner> inner_;           // by row
+    std::vector<std::uint32_t> first_inner_;  // of each row, and the end of the last
+    std::vector<Inner> inner_;
     std::vector<std::uint32_t> starts_;  // of each cell's items, and the end of the last
     std::vector<PrimitiveId> items_;
+    T margin_ = T(0);
     std::size_t count_ = 0;
 };
 
