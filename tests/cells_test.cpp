@@ -161,8 +161,8 @@ TYPED_TEST(Cells, TwoLevelsRecoverFromATeapotInAStadium) {
         Visits all;
         for (std::uint64_t i = 0; i < 400; ++i) {
             Random random(4, i);
-            const auto place = [&](T reach) { return random.direction<3>() * reach; };
-            const Vec<T, 3> from = place(T(30)), to = place(T(2));
+            const auto place = [&](double reach) { return Vec<T, 3>(random.direction<3>() * reach); };
+            const Vec<T, 3> from = place(30), to = place(2);
             closest_hit(index, Ray<T, 3>{from, to - from}, KeepAll{}, all);
         }
         return all;

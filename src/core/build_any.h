@@ -19,10 +19,6 @@ void for_each_query(std::size_t n, std::span<Visits> visits, F f) {
         for (std::size_t i = 0; i < n; ++i) f(i, visits[i]);
     }
 }
-template <class F>
-std::size_t counted(Visits* visits, F f) {
-    return visits == nullptr ? f(no_visits) : f(*visits);
-}
 
 template <class S, class P>
 class Holder final : public AnyIndex<typename P::Scalar, P::dimension> {
@@ -60,26 +56,27 @@ public:
             hits[i] = any_hit(index_, rays[i], KeepAll{}, count);
         });
     }
+    // Counting costs these some percent: less than another instance of each would cost the compiler.
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits) const override {
-        return counted(visits,
-                       [&](auto& count) { return hedgerow::all_hits(index_, ray, hits, KeepAll{}, count); });
+        Visits nobodys;
+        return hedgerow::all_hits(index_, ray, hits, KeepAll{}, visits != nullptr ? *visits : nobodys);
     }
     void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
                         std::span<Visits> visits) const override {
-        constexpr T anywhere = std::numeric_limits<T>::max();
-        for_each_query(points.size(), visits, [&](std::size_t i, auto& count) {
-            found[i] = closest_point(index_, points[i], anywhere, count).value_or(Near<T, D>{});
-        });
+        Visits nobodys;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[i] = closest_point(index_, points[i], anywhere, visits.empty() ? nobodys : visits[i])
+                           .value_or(Near<T, D>{});
     }
     std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
                         Visits* visits) const override {
-        constexpr T anywhere = std::numeric_limits<T>::max();
-        return counted(
-            visits, [&](auto& count) { return hedgerow::nearest(index_, point, k, found, anywhere, count); });
+        Visits nobodys;
+        return hedgerow::nearest(index_, point, k, found, anywhere, visits != nullptr ? *visits : nobodys);
     }
     std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
                             Visits* visits) const override {
-        return counted(visits, [&](auto& count) { return hedgerow::overlapping(index_, box, found, count); });
+        Visits nobodys;
+        return hedgerow::overlapping(index_, box, found, visits != nullptr ? *visits : nobodys);
     }
     std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits) const override {
         return hedgerow::outline(index_.structure(), limits);
@@ -110,6 +107,7 @@ public:
     }
 
 private:
+    static constexpr T anywhere = std::numeric_limits<T>::max();
     static constexpr bool one_by_one = ChangesOneByOne<S, P>;
     static constexpr bool fits_again = Refittable<S, P>;
     [[noreturn]] void refuse(const std::string& wanted) const {

@@ -93,17 +93,23 @@ private:
     }
 };
 
+/// Goes on to the next cell of the block from `first` to `last`, both included; false after the last.
+template <class Cell>
+bool next_in_block(Cell& c, const Cell& first, const Cell& last) {
+    std::size_t a = 0;
+    while (a < c.size() && c[a] == last[a]) c[a] = first[a], ++a;
+    if (a == c.size()) return false;
+    ++c[a];
+    return true;
+}
 /// Calls f(cell) for every cell of the block from `first` to `last`, both included, until it returns false.
 template <class Cell, class F>
 bool for_each_cell(const Cell& first, const Cell& last, F f) {
     Cell c = first;
-    while (true) {
+    do {
         if (!f(c)) return false;
-        std::size_t a = 0;
-        while (a < c.size() && c[a] == last[a]) c[a] = first[a], ++a;
-        if (a == c.size()) return true;
-        ++c[a];
-    }
+    } while (next_in_block(c, first, last));
+    return true;
 }
 
 }  // namespace hedgerow

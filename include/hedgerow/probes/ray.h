@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <tuple>
 #include <variant>
 
 #include <hedgerow/geometry/box_pair.h>
@@ -177,7 +178,14 @@ public:
         for (int a = 0; a < D; ++a) next[a] = leaves(a);
         double entry = in.entry;
         while (entry - back <= static_cast<double>(limit()) && entry <= in.exit) {
-            if (alone ? visit(cell) == Flow::stop : !visit_around(lattice, cell, reach, visit)) return;
+            auto at = cell, first = cell, last = cell;
+            if (!alone) [[unlikely]] {
+                std::tie(first, last) = block_around(lattice, cell, reach);
+                at = first;
+            }
+            do {
+                if (visit(at) == Flow::stop) return;
+            } while (!alone && next_in_block(at, first, last));
             int step = next[1] < next[0];
             if constexpr (D == 3) step = next[2] < next[step] ? 2 : step;
             if (!(next[step] < std::numeric_limits<double>::infinity())) return;
@@ -251,15 +259,15 @@ private:
         }
         return reach;
     }
-    template <class Visit>
-    static bool visit_around(const Lattice<D>& lattice, const typename Lattice<D>::Cell& cell,
-                             const typename Lattice<D>::Cell& reach, Visit& visit) {
-        auto first = cell, last = cell;
-        for (std::size_t a = 0; a < first.size(); ++a) {
-            first[a] = std::max(0, cell[a] - reach[a]);
-            last[a] = std::min(lattice.resolution[a] - 1, cell[a] + reach[a]);
+    using Cell = std::array<std::int32_t, static_cast<std::size_t>(D)>;
+    static std::pair<Cell, Cell> block_around(const Lattice<D>& lattice, const Cell& cell,
+                                              const Cell& reach) {
+        std::pair<Cell, Cell> block;
+        for (std::size_t a = 0; a < cell.size(); ++a) {
+            block.first[a] = std::max(0, cell[a] - reach[a]);
+            block.second[a] = std::min(lattice.resolution[a] - 1, cell[a] + reach[a]);
         }
-        return for_each_cell(first, last, [&](const auto& c) { return visit(c) == Flow::go_on; });
+        return block;
     }
 
     Ray<T, D> ray_;

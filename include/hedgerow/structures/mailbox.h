@@ -13,7 +13,9 @@ namespace hedgerow {
 template <class Primitives, class Count>
 class Mailboxed {
 public:
-    Mailboxed(const Primitives& primitives, Count& count) : primitives_(primitives), count_(count) {
+    /// With `on` false it passes nothing over: to show what it brings.
+    Mailboxed(const Primitives& primitives, Count& count, bool on)
+        : primitives_(primitives), count_(count), on_(on) {
         std::fill_n(last_, slots, none);
     }
 
@@ -21,7 +23,7 @@ public:
     Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             PrimitiveId& last = last_[leaf.ids[i] % slots];
-            if (last == leaf.ids[i]) {
+            if (on_ && last == leaf.ids[i]) {
                 count_.skip(leaf.ids[i]);
                 continue;
             }
@@ -38,23 +40,13 @@ private:
 
     const Primitives& primitives_;
     Count& count_;
+    bool on_;
     PrimitiveId last_[slots];
 };
 
 template <class Primitives, class Count, class Probe, class Query>
 Flow test_leaf(Mailboxed<Primitives, Count>& mailed, const Probe& probe, const Leaf& leaf, Query& query) {
     return mailed.test_leaf(probe, leaf, query);
-}
-
-/// Calls f with the primitives, or with a mailbox around them.
-template <class Primitives, class Count, class F>
-void with_mailbox(bool mailbox, const Primitives& primitives, Count& count, F f) {
-    if (mailbox) {
-        Mailboxed mailed(primitives, count);
-        f(mailed);
-    } else {
-        f(primitives);
-    }
 }
 
 }  // namespace hedgerow

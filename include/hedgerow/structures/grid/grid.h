@@ -57,17 +57,16 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (empty() || query.limit() < 0) return;
-        with_mailbox(options_.mailbox, primitives, count, [&](auto& tested) {
-            auto cursor = rows_.cursor();
-            walk_lattice(lattice(), query, [&](const auto& cell) {
-                const Place place{lattice().number(cell)};
-                count.node(place);
-                const std::uint32_t row = cursor.row(cell);
-                if (row == CellRows<D>::none) return Flow::go_on;
-                const Leaf leaf = rows_.leaf(row);
-                count.leaf(leaf.count, place);
-                return test_leaf(tested, query.probe(), leaf, query);
-            });
+        Mailboxed mailed(primitives, count, options_.mailbox);
+        auto cursor = rows_.cursor();
+        walk_lattice(lattice(), query, [&](const auto& cell) {
+            const Place place{lattice().number(cell)};
+            count.node(place);
+            const std::uint32_t row = cursor.row(cell);
+            if (row == CellRows<D>::none) return Flow::go_on;
+            const Leaf leaf = rows_.leaf(row);
+            count.leaf(leaf.count, place);
+            return test_leaf(mailed, query.probe(), leaf, query);
         });
     }
 

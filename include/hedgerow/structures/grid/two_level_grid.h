@@ -80,23 +80,22 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (empty() || query.limit() < 0) return;
-        with_mailbox(options_.mailbox, primitives, count, [&](auto& tested) {
-            auto cursor = rows_.cursor();
-            walk_lattice(rows_.lattice(), query, [&](const auto& cell) {
-                count.node(Place{rows_.lattice().number(cell)});
-                Flow flow = Flow::go_on;
-                for (const Inner& inner : grids_in(cursor.row(cell)))
-                    if (flow == Flow::go_on)
-                        flow = walk_lattice(inner.lattice(margin_), query, [&](const auto& c) {
-                            const Leaf found = leaf(inner.start_of(c));
-                            const Place place = place_of(inner.start_of(c));
-                            count.node(place);
-                            if (found.count == 0) return Flow::go_on;
-                            count.leaf(found.count, place);
-                            return test_leaf(tested, query.probe(), found, query);
-                        });
-                return flow;
-            });
+        Mailboxed mailed(primitives, count, options_.mailbox);
+        auto cursor = rows_.cursor();
+        walk_lattice(lattice(), query, [&](const auto& cell) {
+            count.node(Place{lattice().number(cell)});
+            Flow flow = Flow::go_on;
+            for (const Inner& inner : grids_in(cursor.row(cell)))
+                if (flow == Flow::go_on)
+                    flow = walk_lattice(inner.lattice(margin_), query, [&](const auto& c) {
+                        const Leaf found = leaf(inner.start_of(c));
+                        const Place place = place_of(inner.start_of(c));
+                        count.node(place);
+                        if (found.count == 0) return Flow::go_on;
+                        count.leaf(found.count, place);
+                        return test_leaf(mailed, query.probe(), found, query);
+                    });
+            return flow;
         });
     }
 

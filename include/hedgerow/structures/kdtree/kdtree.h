@@ -90,8 +90,8 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (query.limit() < 0) return;
-        with_mailbox(mailbox_, primitives, count,
-                     [&](auto& tested) { walk_planes(*this, tested, query, count); });
+        Mailboxed mailed(primitives, count, mailbox_);
+        walk_planes(*this, mailed, query, count);
     }
 
     /// What is wrong with the structure; empty if nothing is.

@@ -141,12 +141,8 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
         if (query.limit() < 0) return;
-        if (options_.mailbox) {
-            Mailboxed mailed(primitives, count);
-            walk_orthants(*this, mailed, query, count);
-        } else {
-            walk_orthants(*this, primitives, query, count);
-        }
+        Mailboxed mailed(primitives, count, options_.mailbox);
+        walk_orthants(*this, mailed, query, count);
     }
 
     /// What is wrong with the structure; empty if nothing is.
