@@ -13,7 +13,7 @@ template <int D>
 struct Lattice {
     using Cell = std::array<std::int32_t, static_cast<std::size_t>(D)>;
 
-    Vec<double, D> low, size;  // of the box, of one cell (> 0)
+    Vec<double, D> low, size, per_size;  // of the box, of one cell (> 0), and 1 / that
     Cell resolution{};
     /// A primitive is entered in every cell that it comes this near to along each axis: a probe that errs by
     /// less than half of it need not look beside its way.
@@ -31,8 +31,10 @@ struct Lattice {
         lattice.resolution = resolution;
         for (int a = 0; a < D; ++a) {
             lattice.low[a] = static_cast<double>(box.low[a]);
-            lattice.size[a] = extent[a] > 0 ? extent[a] / resolution[static_cast<std::size_t>(a)]
-                                            : (longest > 0 ? longest : 1.0);
+            const double size = extent[a] > 0 ? extent[a] / resolution[static_cast<std::size_t>(a)]
+                                              : (longest > 0 ? longest : 1.0);
+            lattice.size[a] = std::max(size, 0x1p-1000);  // so that per_size is a number
+            lattice.per_size[a] = 1 / lattice.size[a];
         }
         lattice.pad = lattice.size * inflation;
         return lattice;
@@ -44,9 +46,10 @@ struct Lattice {
     static constexpr std::int32_t most_cells = D == 3 ? 1024 : 32768;
 
     std::int32_t coordinate(double x, int axis) const {
-        const double c = std::floor((x - low[axis]) / size[axis]);
-        const std::int32_t last = resolution[static_cast<std::size_t>(axis)] - 1;
-        return c <= 0 ? 0 : (c >= last ? last : static_cast<std::int32_t>(c));
+        const double c = product(x - low[axis], per_size[axis]);
+        const double last = resolution[static_cast<std::size_t>(axis)] - 1;
+        const double inside = c > 0 ? (c < last ? c : last) : 0;
+        return static_cast<std::int32_t>(inside);
     }
     double plane(std::int32_t i, int axis) const { return low[axis] + product(double(i), size[axis]); }
     std::uint32_t number(const Cell& c) const {

@@ -38,27 +38,53 @@ void scale(Vec<double, D>& half, std::array<Vec<double, D>, N>& points) {
 }
 }  // namespace detail
 
-/// Separating axes: the box's, the plane's, the nine products of edges (Akenine-Möller 2001), in double. Only
-/// the box's part within the triangle's own box matters; with that the error is some roundings of the
-/// triangle's coordinates, however large the box.
+/// A triangle, to be asked about boxes. A corner in the box, or no separating axis: the box's, the plane's,
+/// the nine products of edges (Akenine-Möller 2001), in double. Only the box's part within the triangle's own
+/// box matters; with that the error is some roundings of the triangle's coordinates, however large the box.
 template <class T>
-bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& whole) {
-    const Box<T, 3> box = intersection(whole, tri.bounds());
-    if (box.empty()) return false;
-    const Vec3d center = Box3d{Vec3d(box.low), Vec3d(box.high)}.center();
-    Vec3d half = Vec3d(box.high) - center;
-    std::array<Vec3d, 3> p = {Vec3d(tri.a) - center, Vec3d(tri.b) - center, Vec3d(tri.c) - center};
-    detail::scale<T>(half, p);
-    if (!detail::meet_along(cross(p[1] - p[0], p[2] - p[0]), p, half)) return false;
-    for (int i = 0; i < 3; ++i) {
-        const Vec3d edge = p[static_cast<std::size_t>((i + 1) % 3)] - p[static_cast<std::size_t>(i)];
-        for (int k = 0; k < 3; ++k) {
-            Vec3d unit;
-            unit[k] = 1;
-            if (!detail::meet_along(cross(unit, edge), p, half)) return false;
+class TriangleOverlap {
+public:
+    explicit TriangleOverlap(const Triangle<T, 3>& tri)
+        : tri_(tri),
+          bounds_(tri.bounds()),
+          scale_(detail::safe_scale<T>(Vec3d(bounds_.high) - Vec3d(bounds_.low))),
+          edge_{(Vec3d(tri.b) - Vec3d(tri.a)) * scale_, (Vec3d(tri.c) - Vec3d(tri.b)) * scale_,
+                (Vec3d(tri.a) - Vec3d(tri.c)) * scale_},
+          normal_(cross(edge_[0], edge_[1])) {}
+
+    bool operator()(const Box<T, 3>& whole) const {
+        const Box<T, 3> box = intersection(whole, bounds_);
+        if (box.empty()) return false;
+        if (box.contains(tri_.a) || box.contains(tri_.b) || box.contains(tri_.c)) return true;
+        const Vec3d center = Box3d{Vec3d(box.low), Vec3d(box.high)}.center();
+        const Vec3d half = (Vec3d(box.high) - center) * scale_;
+        const std::array<Vec3d, 3> p = {(Vec3d(tri_.a) - center) * scale_, (Vec3d(tri_.b) - center) * scale_,
+                                        (Vec3d(tri_.c) - center) * scale_};
+        if (!detail::meet_along(normal_, p, half)) return false;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3d &from = p[i], &beside = p[(i + 2) % 3], &edge = edge_[i], wide = abs(edge);
+            for (int k = 0; k < 3; ++k) {
+                const int u = (k + 1) % 3, v = (k + 2) % 3;
+                // Along axis k × edge, on which the edge is one point.
+                const double one = product(edge[u], from[v]) - product(edge[v], from[u]);
+                const double other = product(edge[u], beside[v]) - product(edge[v], beside[u]);
+                const double radius = product(wide[v], half[u]) + product(wide[u], half[v]);
+                if ((one > radius && other > radius) || (one < -radius && other < -radius)) return false;
+            }
         }
+        return true;
     }
-    return true;
+
+private:
+    Triangle<T, 3> tri_;
+    Box<T, 3> bounds_;
+    double scale_;
+    std::array<Vec3d, 3> edge_;
+    Vec3d normal_;
+};
+template <class T>
+bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
+    return TriangleOverlap<T>(tri)(box);
 }
 
 template <class T>

@@ -54,6 +54,8 @@ public:
         return hedgerow::closest_point(p, triangle(i));
     }
     bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }
+    /// The same for many boxes.
+    TriangleOverlap<T> overlap_test(std::size_t i) const { return TriangleOverlap<T>(triangle(i)); }
 
     static constexpr bool hits_lie_on_primitives = true;
     std::array<Vec<T, 3>, 3> corners(std::size_t i) const {

@@ -25,14 +25,17 @@ Box<T, D> enlarged(const Box<T, D>& box, T margin) {
     return {box.low - by, box.high + by};
 }
 
-/// Whether a primitive whose box meets a cell (enlarged already) is to stand in it. Only a set whose hits lie
-/// on the primitives themselves can be told apart more finely than by boxes.
+/// What tells of cells (enlarged already) that a primitive's box meets whether it is to stand in them. Only a
+/// set whose hits lie on the primitives themselves can be told apart more finely than by boxes.
 template <PrimitiveSet P>
-bool stands_in(const P& set, PrimitiveId id, const Box<typename P::Scalar, P::dimension>& cell) {
-    if constexpr (HitsLieOnPrimitives<P>)
-        return set.overlaps(id, cell);
+auto stands_in(const P& set, PrimitiveId id) {
+    using Cell = Box<typename P::Scalar, P::dimension>;
+    if constexpr (!HitsLieOnPrimitives<P>)
+        return [](const Cell&) { return true; };
+    else if constexpr (requires { set.overlap_test(id); })
+        return set.overlap_test(id);
     else
-        return true;
+        return [&set, id](const Cell& cell) { return set.overlaps(id, cell); };
 }
 
 /// Bounds of the part of a primitive that is to stand in a cell (enlarged already), empty if there is none:

@@ -81,8 +81,8 @@ bool sound(const P& set, std::size_t i, const BoxType& box) {
     using T = typename P::Scalar;
     bool good = true;
     for (int k = 0; k < P::dimension; ++k)
-        good = good && box.low[k] <= box.high[k] && box.low[k] >= -largest_coordinate<T> &&
-               box.high[k] <= largest_coordinate<T>;
+        good &= (box.low[k] <= box.high[k]) &
+                (box.low[k] >= -largest_coordinate<T>)&(box.high[k] <= largest_coordinate<T>);
     if constexpr (requires { set.finite(i); }) good = good && set.finite(i);
     return good;
 }
@@ -97,30 +97,51 @@ template <std::floating_point T>
 template <std::floating_point T, int D>
 using ReferenceList = BareVector<Reference<T, D>>;
 
-/// The references of all primitives, in the order of their ids. Throws InputError for the first primitive
-/// with a coordinate that is NaN, infinite or beyond `largest_coordinate`, and for more than 2^31 primitives.
-template <PrimitiveSet P>
-auto references_of(const P& set, Executor& executor) {
+namespace detail {
+inline constexpr std::size_t run = 4096;
+
+/// Calls f(i, box) for every primitive, those of a run one after the other.
+template <PrimitiveSet P, class F>
+void for_each_sound_box(const P& set, Executor& executor, F f) {
     using T = typename P::Scalar;
-    constexpr int D = P::dimension;
     const std::size_t n = set.size();
     if (n > 0x80000000u)
         throw InputError("an index holds at most 2^31 primitives, and was given " + std::to_string(n));
     if constexpr (requires { set.validate(); }) set.validate();
-    ReferenceList<T, D> references(n);
     std::atomic<std::size_t> first_bad{n};
-    executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Box<T, D> b = set.bounds(i);
-            const bool good = detail::sound(set, i, b);
-            references[i] = Reference<T, D>(b, static_cast<PrimitiveId>(i));
+    executor.for_each_piece((n + run - 1) / run, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin * run; i < std::min(n, end * run); ++i) {
+            const Box<T, P::dimension> b = set.bounds(i);
+            const bool good = sound(set, i, b);
+            f(i, b);
             for (std::size_t seen = first_bad;
                  !good && i < seen && !first_bad.compare_exchange_weak(seen, i);) {
             }
         }
     });
-    if (first_bad < n) detail::refuse<T>(first_bad.load());
+    if (first_bad < n) refuse<T>(first_bad.load());
+}
+}  // namespace detail
+
+/// The references of all primitives, in the order of their ids. Throws InputError for the first primitive
+/// with a coordinate that is NaN, infinite or beyond `largest_coordinate`, and for more than 2^31 primitives.
+template <PrimitiveSet P>
+auto references_of(const P& set, Executor& executor) {
+    using R = Reference<typename P::Scalar, P::dimension>;
+    ReferenceList<typename P::Scalar, P::dimension> references(set.size());
+    detail::for_each_sound_box(set, executor, [&](std::size_t i, const auto& box) {
+        references[i] = R(box, static_cast<PrimitiveId>(i));
+    });
     return references;
+}
+/// Their bounds; throws as `references_of`.
+template <PrimitiveSet P>
+auto bounds_of(const P& set, Executor& executor) {
+    std::vector<Box<typename P::Scalar, P::dimension>> of_runs(set.size() / detail::run + 1);
+    detail::for_each_sound_box(set, executor,
+                               [&](std::size_t i, const auto& box) { of_runs[i / detail::run].expand(box); });
+    for (const auto& box : of_runs) of_runs[0].expand(box);
+    return of_runs[0];
 }
 
 /// The reference of one primitive of a set that has changed. Throws InputError if there is none or it is bad.

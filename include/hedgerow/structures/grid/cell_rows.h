@@ -35,7 +35,7 @@ public:
             sum += end;
             end = sum - end;  // where its entries begin, until all are there
         }
-        std::vector<CellEntry> sorted(sum);
+        BareVector<CellEntry> sorted(sum);
         for (const auto& piece : pieces)
             for (const CellEntry& e : piece) sorted[ends[e.cell >> 6]++] = e;
         items_.resize(sum);
@@ -137,7 +137,7 @@ private:
     std::vector<Brick> bricks_;
     std::vector<std::uint32_t> slots_;   // of the hash table: positions in bricks_
     std::vector<std::uint32_t> starts_;  // of each row, and the end of the last
-    std::vector<PrimitiveId> items_;
+    BareVector<PrimitiveId> items_;
 };
 
 }  // namespace hedgerow

@@ -30,13 +30,18 @@ public:
     template <class F>
     void for_each(PrimitiveId id, const Box<T, D>& box, F f) const {
         const auto [first, last] = reached(box);
+        if (first == last) return f(first);
         int spanned = 0;
         for (std::size_t a = 0; a < D; ++a) spanned += first[a] != last[a];
-        const bool ask = HitsLieOnPrimitives<P> && insert_ == GridInsert::exact && spanned > 1;
-        for_each_cell(first, last, [&](const Cell& cell) {
-            if (!ask || stands_in(set_, id, enlarged_cell(cell))) f(cell);
-            return true;
-        });
+        if (spanned == 1 || insert_ == GridInsert::box) {
+            for_each_cell(first, last, [&](const Cell& cell) { return f(cell), true; });
+        } else {
+            const auto stands = stands_in(set_, id);
+            for_each_cell(first, last, [&](const Cell& cell) {
+                if (stands(enlarged_cell(cell))) f(cell);
+                return true;
+            });
+        }
     }
     /// The bounds of what stands in a cell of a primitive that is entered there.
     Box<T, D> part(PrimitiveId id, const Cell& cell) const {
@@ -85,22 +90,23 @@ inline void refuse_beyond(double budget, std::uint64_t entries) {
 
 /// Where all primitives are entered, in pieces that follow each other by id. Throws InputError when building
 /// from them would take more than `budget` bytes.
-template <PrimitiveSet P, std::floating_point T, int D>
-std::vector<std::vector<CellEntry>> entries_of(const CellEntering<P>& entering, const Lattice<D>& lattice,
-                                               const ReferenceList<T, D>& references, double budget,
+template <PrimitiveSet P>
+std::vector<std::vector<CellEntry>> entries_of(const P& set, const CellEntering<P>& entering,
+                                               const Lattice<P::dimension>& lattice, double budget,
                                                Executor& executor) {
     constexpr std::size_t grain = 4096;
-    std::vector<std::vector<CellEntry>> pieces((references.size() + grain - 1) / grain);
+    std::vector<std::vector<CellEntry>> pieces((set.size() + grain - 1) / grain);
     std::atomic<std::uint64_t> entered{0};
     executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             auto& piece = pieces[p];
             piece.reserve(2 * grain);
-            const std::size_t last = std::min(references.size(), (p + 1) * grain);
+            const std::size_t last = std::min(set.size(), (p + 1) * grain);
             for (std::size_t i = p * grain; i < last; ++i) {
                 const std::size_t before = piece.size();
-                entering.for_each(references[i].id(), references[i].box(), [&](const auto& cell) {
-                    piece.push_back({lattice.number(cell), references[i].id()});
+                const auto id = static_cast<PrimitiveId>(i);
+                entering.for_each(id, set.bounds(i), [&](const auto& cell) {
+                    piece.push_back({lattice.number(cell), id});
                     if (((piece.size() - before) & 0xFFFFu) == 0)
                         refuse_beyond(budget, entered + piece.size());
                 });

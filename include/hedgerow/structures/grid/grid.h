@@ -27,16 +27,14 @@ public:
 
     template <PrimitiveSet P>
     static Grid build(const P& set, const Options& options, Executor& executor) {
-        const auto references = references_of(set, executor);
         Grid grid;
         grid.options_ = options;
-        grid.count_ = references.size();
-        if (references.empty()) return grid;
-        for (const auto& r : references) grid.bounds_.expand(r.box());
+        grid.count_ = set.size();
+        grid.bounds_ = bounds_of(set, executor);
+        if (grid.empty()) return grid;
         const auto lattice = options.cells.lattice_over(grid.bounds_, grid.count_);
         const CellEntering entering(set, lattice, options.insert, cell_margin(grid.bounds_));
-        grid.rows_ =
-            CellRows<D>(lattice, entries_of(entering, lattice, references, options.budget, executor));
+        grid.rows_ = CellRows<D>(lattice, entries_of(set, entering, lattice, options.budget, executor));
         return grid;
     }
 

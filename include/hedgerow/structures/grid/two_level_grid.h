@@ -33,17 +33,15 @@ public:
 
     template <PrimitiveSet P>
     static TwoLevelGrid build(const P& set, const Options& options, Executor& executor) {
-        const auto references = references_of(set, executor);
         TwoLevelGrid grid;
         grid.options_ = options;
-        grid.count_ = references.size();
-        if (references.empty()) return grid;
-        for (const auto& r : references) grid.bounds_.expand(r.box());
+        grid.count_ = set.size();
+        grid.bounds_ = bounds_of(set, executor);
+        if (grid.empty()) return grid;
         grid.margin_ = cell_margin(grid.bounds_);
         const auto lattice = options.cells.lattice_over(grid.bounds_, grid.count_);
         const CellEntering entering(set, lattice, options.insert, grid.margin_);
-        grid.rows_ =
-            CellRows<D>(lattice, entries_of(entering, lattice, references, options.budget, executor));
+        grid.rows_ = CellRows<D>(lattice, entries_of(set, entering, lattice, options.budget, executor));
         grid.divide(set, executor);
         return grid;
     }

@@ -44,10 +44,11 @@ public:
         const T around = margin(box);
         const unsigned near = orthants_reached(enlarged(box, around), cell.middle);
         if (std::has_single_bit(near) || !HitsLieOnPrimitives<P>) return near;
+        const auto stands = stands_in(set_, id);
         unsigned in = 0;
         for (unsigned left = near; left != 0; left &= left - 1) {
             const auto i = static_cast<unsigned>(std::countr_zero(left));
-            if (stands_in(set_, id, enlarged(cell.orthant(i).box(), around))) in |= 1u << i;
+            if (stands(enlarged(cell.orthant(i).box(), around))) in |= 1u << i;
         }
         return in != 0 ? in : near;
     }

@@ -60,7 +60,7 @@ public:
                              std::to_string(set.size()));
         Orthtree tree;
         tree.options_ = options;
-        for (const auto& r : references_of(set, executor)) tree.bounds_.expand(r.box());
+        tree.bounds_ = bounds_of(set, executor);
         tree.held_.assign(set.size(), true);
         tree.count_ = set.size();
         tree.plant(set, executor);
