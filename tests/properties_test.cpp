@@ -206,10 +206,12 @@ TYPED_TEST(OfEverySet, APowerOfTwoInTheDirectionDividesT) {
             std::vector<Hit<T>> hits, scaled;
             index->all_hits(ray, hits);
             index->all_hits(longer, scaled);
+            // What lies at 0 may lie just before it, where a t of the other ray does not underflow.
+            for (auto* list : {&hits, &scaled}) std::erase_if(*list, [](const auto& h) { return h.t == 0; });
             const auto tame = [=](const Hit<T>& h) {
-                return h.t == 0 || (std::abs(h.t) > least * (1 << 21) && std::abs(h.t) < most / (1 << 21));
+                return std::abs(h.t) > least * (1 << 21) && std::abs(h.t) < most / (1 << 21);
             };
-            if (!std::ranges::all_of(hits, tame)) continue;
+            if (!std::ranges::all_of(hits, tame) || !std::ranges::all_of(scaled, tame)) continue;
             for (auto& h : hits) h.t = std::ldexp(h.t, -k);
             RC_ASSERT(hits == scaled);
         }
