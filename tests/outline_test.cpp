@@ -53,10 +53,12 @@ void expect_sound_outline(const P& set, const std::string& spec) {
             ASSERT_NE(parent, by_id.end()) << "cell " << c.id << " comes before its parent";
             EXPECT_EQ(c.level, parent->second->level + 1);
             EXPECT_FALSE(parent->second->leaf);
-            // A two-level grid's inner ones hold what is within the pad of a cell.
+            // A two-level grid's inner ones hold what is within the pad of a cell; other volumes than boxes
+            // hold what is below them, and not each other.
             const auto& around = parent->second->box;
             const double beyond = spec.starts_with("two-level") ? 0.01 * length(around.extent()) : 0;
-            EXPECT_TRUE(enlarged_by(around, beyond + 1e-9 * extent).contains(c.box))
+            EXPECT_TRUE(spec.find("volume=") != std::string::npos ||
+                        enlarged_by(around, beyond + 1e-9 * extent).contains(c.box))
                 << "cell " << c.id << " reaches out of its parent";
         }
         leaves += c.leaf, occupied += c.leaf && !c.items.empty(), items += c.items.size();
@@ -129,7 +131,9 @@ TYPED_TEST(Outline, LimitsLeaveOutWhatIsDeepOrElsewhere) {
         for (const auto& c : some) got.insert(c.id);
         EXPECT_EQ(wanted, got);
         EXPECT_LT(0u, got.size());
-        if (std::string(spec) != "brute-force") EXPECT_LT(got.size(), all.size());
+        if (std::string(spec) != "brute-force") {
+            EXPECT_LT(got.size(), all.size());
+        }
     }
 }
 

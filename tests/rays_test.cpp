@@ -325,7 +325,8 @@ TYPED_TEST(Rays, TheProbeEntersEveryBoxAroundAHit) {
         }
         for (int axis = 0; axis < 3; ++axis)
             for (const bool above : {false, true}) {
-                const auto cut = probe.cut(probe.root(scene), {axis, above ? own.low[axis] : own.high[axis]});
+                const auto cut = probe.cut(probe.root(scene),
+                                           AxisPlane<T>{axis, above ? own.low[axis] : own.high[axis]}, m->t);
                 const auto& side = cut.near_is_high == above ? cut.near : cut.far;
                 ASSERT_TRUE(side.entry <= m->t && m->t <= side.exit) << i;
             }

@@ -271,7 +271,7 @@ private:
     }
 
     Ray<T, D> ray_;
-    T inverse_[4], near_origin_[4], far_origin_[4];
+    T inverse_[4] = {}, near_origin_[4], far_origin_[4];
     Lanes<T> pair_origin_[D], pair_inverse_[D];  // the same, near planes in the low half
     int near_row_[D] = {};
     T slack_ = T(0);
