@@ -1,7 +1,4 @@
 /// The tool as its user sees it: exit codes, messages, pictures.
-#include <csignal>
-#include <thread>
-
 #include <hedgerow/io/image.h>
 
 #include "tool.h"
@@ -131,18 +128,9 @@ TEST_F(Cli, AViewAlongUpIsRefused) {
 
 TEST_F(Cli, AnInterruptedRenderSavesWhatIsDone) {
     const std::string output = file("part.png");
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-        execl(HEDGEROW_TOOL_PATH, HEDGEROW_TOOL_PATH, "render", "gen:teapot:20000", "--structure",
-              "brute-force", "--size", "1600x1200", "--quiet", "-o", output.c_str(), nullptr);
-        _exit(127);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    kill(child, SIGINT);
-    int status = 0;
-    waitpid(child, &status, 0);
-    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_EQ(run_interrupted({"render", "gen:teapot:20000", "--structure", "brute-force", "--size",
+                               "1600x1200", "--quiet", "-o", output}),
+              130);
     EXPECT_EQ(hedgerow::load_png(output).width, 1600);
 }
 

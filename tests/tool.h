@@ -1,11 +1,15 @@
 /// Runs the tool as its user does.
 #pragma once
 
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -27,6 +31,24 @@ inline ToolResult run(const std::string& arguments) {
     while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) result.output.append(buffer, n);
     result.code = WEXITSTATUS(pclose(pipe));
     return result;
+}
+
+/// The exit code of the tool when it gets a SIGINT after a second and a half.
+inline int run_interrupted(std::vector<std::string> arguments) {
+    const pid_t child = fork();
+    if (child == 0) {
+        std::vector<char*> all = {const_cast<char*>(HEDGEROW_TOOL_PATH)};
+        for (auto& a : arguments) all.push_back(a.data());
+        all.push_back(nullptr);
+        execv(HEDGEROW_TOOL_PATH, all.data());
+        _exit(127);
+    }
+    if (child < 0) return -1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    kill(child, SIGINT);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WEXITSTATUS(status);
 }
 
 inline std::string bytes_of(const std::filesystem::path& path) {

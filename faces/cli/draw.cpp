@@ -430,8 +430,8 @@ std::uint64_t usual_scale(Shading shading) {
 }
 template <class P>
 int draw_heat(const DrawArguments& a, const P& set) {
-    expect_ending(a, ".png", "a heat map");
     RenderOptions options;
+    options.layers = asks_for_layers(a.output);
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.seed = a.seed;
     options.shading = parse_shading(a.heat);
@@ -449,7 +449,7 @@ int draw_heat(const DrawArguments& a, const P& set) {
               {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
                fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit, picture.mean, picture.most)},
               letter_scale(picture.image));
-    save_png(a.output, picture.image);
+    save(a.output, picture);
     const double pixels = double(options.width) * double(options.height);
     if (a.json)
         fmt::print("{}\n", ordered_json{{"output", a.output},
@@ -514,7 +514,8 @@ Run add_draw(CLI::App& verb) {
     verb.add_flag("--frames", a->frames, "with --ray: a page, .html, that goes through it step by step")
         ->needs(ray);
     auto* const heat =
-        verb.add_option("--heat", a->heat, "steps, tests or time (in nanoseconds) of a view's rays")
+        verb.add_option("--heat", a->heat,
+                        "steps, tests or time (in nanoseconds) of a view's rays, as .png or .exr")
             ->check(CLI::IsMember({"steps", "tests", "time"}));
     verb.add_option("--scale", a->scale, "where the heat's scale ends; 0: steps 200, tests 60, time 4000")
         ->needs(heat);

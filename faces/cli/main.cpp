@@ -32,7 +32,8 @@ struct Verb {
 constexpr Verb verbs[] = {
     {"render",
      "Examples:\n  hedgerow render gen:teapot -o teapot.png --size 640x480\n"
-     "  hedgerow render gen:teapot-in-stadium --shading steps -o steps.png\n\na picture, by rays",
+     "  hedgerow render gen:teapot-in-stadium --shading steps -o steps.png\n"
+     "  hedgerow render gen:teapot -o layers.exr\n\na picture, by rays",
      add_render},
     {"draw",
      "Examples:\n  hedgerow draw gen:clusters2d:300 --structure quadtree:leaf_size=4 -o cells.svg\n"

@@ -4,7 +4,6 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/error.h>
-#include <hedgerow/io/image.h>
 #include <hedgerow/render/raycast.h>
 
 #include "verbs.h"
@@ -20,6 +19,7 @@ struct RenderArguments : Common {
     int spp = 1;
     unsigned threads = 0;
     std::uint64_t steps_max = 0;
+    bool layers = false;  // as the output's ending asks
 };
 
 struct Outcome {
@@ -27,6 +27,14 @@ struct Outcome {
     std::size_t primitives = 0, bytes = 0;
     double build_seconds = 0, seconds = 0;
 };
+
+constexpr const char* layers_help =
+    "Layers of an .exr file, of a pixel's first ray or the mean of its --spp rays:\n"
+    "  R G B                    linear light, or the count that --shading steps shows; mean\n"
+    "  depth.Z                  distance along the first ray; infinity where nothing is hit\n"
+    "  normal.X .Y .Z           there, on the eye's side; 0 where nothing is hit\n"
+    "  id                       the primitive's number there; 4294967295 where nothing is hit\n"
+    "  nodes leaves primitives  looked at to find the hit; mean\n\n";
 
 void report(const RenderArguments& a, const Outcome& o) {
     const double rays = double(std::max<std::uint64_t>(o.picture.rays, 1));
@@ -65,6 +73,7 @@ int render(const RenderArguments& a, const P& primitives) {
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = a.spp, options.seed = a.seed, options.steps_max = a.steps_max;
     options.shading = parse_shading(a.shading);
+    options.layers = a.layers;
     const ThreadLimit limit(a.threads);
     Outcome o;
     double start = now();
@@ -78,7 +87,7 @@ int render(const RenderArguments& a, const P& primitives) {
         o.picture = raycast(*index, primitives, options, default_executor(), line.progress());
         o.seconds = now() - start;
     }
-    save_png(a.output, o.picture.image);
+    save(a.output, o.picture);
     report(a, o);
     if (!interrupted) return 0;
     fmt::print(stderr, "hedgerow: interrupted; the finished part is in {}\n", a.output);
@@ -102,6 +111,8 @@ int render(const RenderArguments& a, const SegmentSet<T>&) {
 Run add_render(CLI::App& verb) {
     auto a = std::make_shared<RenderArguments>();
     add_common(verb, *a, true);
+    verb.get_option("--output")->description("the file to write: .png, or .exr for layers of numbers");
+    verb.footer(layers_help + verb.get_footer());
     verb.add_option("--structure", a->structure, "NAME[:OPTION=VALUE,...]")->capture_default_str();
     verb.add_option("--shading", a->shading, "normals, depth, diffuse or steps")
         ->capture_default_str()
@@ -113,6 +124,7 @@ Run add_render(CLI::App& verb) {
     return [a] {
         parse_size(a->view.size);
         check_writable(a->output);
+        a->layers = asks_for_layers(a->output);
         return in_precision(*a, [&]<class T>(T) {
             return std::visit([&](const auto& set) { return render(*a, set); }, load<T>(*a));
         });

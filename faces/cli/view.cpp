@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include <fmt/format.h>
 
 #include <hedgerow/error.h>
+#include <hedgerow/io/exr.h>
+#include <hedgerow/io/image.h>
 
 namespace hedgerow::cli {
 
@@ -28,6 +31,25 @@ std::pair<int, int> parse_size(const std::string& text) {
         throw InputError(fmt::format(
             "--size {}: a picture is WIDTHxHEIGHT pixels, each from 1 to 32768, as 1024x768", text));
     return {w, h};
+}
+
+bool asks_for_layers(const std::string& output) {
+    const auto ending = std::filesystem::path(output).extension();
+    if (ending == ".png") return false;
+    if (ending != ".exr")
+        throw InputError(fmt::format(
+            "{}: a picture is written as .png (colours) or .exr (layers of numbers); let the output end so",
+            output));
+    if (!exr_supported())
+        throw InputError(output + ": this tool was built without OpenEXR; let the output end with .png");
+    return true;
+}
+
+void save(const std::string& output, const Picture& picture) {
+    if (picture.seen.empty())
+        save_png(output, picture.image);
+    else
+        save_exr(output, picture.layers());
 }
 
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds) {

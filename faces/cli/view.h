@@ -9,7 +9,7 @@
 
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/sphere_set.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/raycast.h>
 
 #include "common.h"
 
@@ -28,6 +28,13 @@ std::pair<int, int> parse_size(const std::string& text);
 
 /// Where the scene is best seen from, but for what the user says. Throws InputError for a view along up.
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds);
+
+/// Whether a picture's file is .exr, layers of numbers, or .png, colours. Throws InputError for any other
+/// ending, and for .exr in a build without OpenEXR.
+bool asks_for_layers(const std::string& output);
+
+/// Writes layers, if the picture has them, else colours.
+void save(const std::string& output, const Picture& picture);
 
 /// Rays pass between points, so that points are seen as small spheres.
 template <class T>

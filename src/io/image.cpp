@@ -10,6 +10,7 @@
 #include <hedgerow/error.h>
 
 #include "byte_source.h"
+#include "image_size.h"
 #include "output_file.h"
 
 namespace hedgerow {
@@ -31,13 +32,7 @@ struct Handle : png_image {
 }  // namespace
 
 void save_png(const std::filesystem::path& path, const Image& image) {
-    const std::string size = std::to_string(image.width) + "x" + std::to_string(image.height);
-    const auto count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    if (image.width <= 0 || image.height <= 0)
-        throw InputError(path.string() + ": an image of " + size + " pixels cannot be saved. Give it a size");
-    if (image.pixels.size() != count)
-        throw InputError(path.string() + ": an image of " + size + " has " +
-                         std::to_string(image.pixels.size()) + " pixels. Make them width times height");
+    detail::expect_pixels(path, image.width, image.height, image.pixels.size(), "pixels");
     Handle png;
     png.width = static_cast<png_uint_32>(image.width);
     png.height = static_cast<png_uint_32>(image.height);

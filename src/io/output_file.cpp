@@ -6,6 +6,8 @@
 #include <random>
 #include <system_error>
 
+#include <sys/types.h>
+
 #include <hedgerow/error.h>
 
 #include "text.h"
@@ -50,6 +52,18 @@ OutputFile::~OutputFile() {
 void OutputFile::write(std::string_view bytes) {
     errno = 0;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(errno);
+}
+
+std::uint64_t OutputFile::tell() const {
+    errno = 0;
+    const auto place = ::ftello(file_);
+    if (place < 0) fail(errno);
+    return static_cast<std::uint64_t>(place);
+}
+
+void OutputFile::seek(std::uint64_t place) {
+    errno = 0;
+    if (::fseeko(file_, static_cast<off_t>(place), SEEK_SET) != 0) fail(errno);
 }
 
 void OutputFile::commit() {

@@ -32,6 +32,9 @@ public:
         write({bytes, sizeof(U)});
     }
     std::FILE* stream() const { return file_; }
+    /// The next byte's place, for formats that go back to fill in what they did not know. Pipes have none.
+    std::uint64_t tell() const;
+    void seek(std::uint64_t place);
     void commit();
 
 private:

@@ -8,6 +8,7 @@
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/render/camera.h>
 #include <hedgerow/render/colour.h>
+#include <hedgerow/render/seen.h>
 #include <hedgerow/scenes/random.h>
 
 namespace hedgerow {
@@ -35,6 +36,8 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     /// Top of the scale of what is counted; 0: the most that was seen.
     std::uint64_t steps_max = 0;
+    /// Whether the picture keeps what its rays met, for `Picture::layers`.
+    bool layers = false;
 };
 
 struct Picture {
@@ -44,10 +47,18 @@ struct Picture {
     /// Of what is counted: the mean and the most of all pixels, and how many lie beyond the scale.
     double mean = 0, most = 0;
     std::uint64_t beyond = 0;
+    /// Empty unless layers were asked for. The colours as light, linear and unclamped; of what is counted,
+    /// the count three times.
+    std::vector<Vec3f> light;
+    std::vector<Seen> seen;
+
+    /// For `save_exr`; borrowed from this.
+    Layers layers() const& { return layers_of(image.width, image.height, light, seen); }
+    Layers layers() const&& = delete;
 };
 
 /// Casts one or more rays a pixel; diffuse adds a shadow ray where the light is faced. Rows that are not done
-/// when the progress is cancelled stay black.
+/// when the progress is cancelled stay black, and saw nothing.
 template <class T, class P>
 class Raycast {
 public:
@@ -57,6 +68,7 @@ public:
           o_(o),
           make_(o.camera, o.width, o.height),
           values_(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height)),
+          seen_(o.layers ? values_.size() : 0),
           done_(static_cast<std::size_t>(o.height)),
           light_(light_of(o.camera)),
           diagonal_(
@@ -80,52 +92,91 @@ private:
         const Vec3f forward = normalized(c.target - c.eye);
         return normalized(c.up + cross(forward, c.up) * 0.5f - forward * 0.35f);
     }
-    /// Colour, or what is counted, of every sample's mean.
-    bool row(int y, const Progress& progress) {
+    /// A ray from the eye, and what it met.
+    struct Look {
+        Ray<T, 3> ray;
+        Hit<T> hit;
+        Visits visits;
+    };
+    struct Total {
         Visits visits;
         std::uint64_t rays = 0;
-        for (int x = 0; x < o_.width; ++x) {
+    };
+
+    /// A row is kept whole or not at all.
+    bool row(int y, const Progress& progress) {
+        const auto width = static_cast<std::size_t>(o_.width), first = static_cast<std::size_t>(y) * width;
+        std::vector<Vec3f> values(width);
+        std::vector<Seen> seen(o_.layers ? width : 0);
+        Total total;
+        for (std::size_t x = 0; x < width; ++x) {
             if (x % 16 == 0 && progress.cancelled()) return false;
-            Vec3f sum;
-            for (int s = 0; s < o_.samples; ++s) {
-                Random random(o_.seed, (static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(o_.width) +
-                                        static_cast<std::uint64_t>(x)) *
-                                               static_cast<std::uint64_t>(o_.samples) +
-                                           static_cast<std::uint64_t>(s));
-                const bool jitter = o_.samples > 1;
-                const float dx = jitter ? static_cast<float>(random.uniform()) : 0.5f,
-                            dy = jitter ? static_cast<float>(random.uniform()) : 0.5f;
-                sum = sum +
-                      sample(make_.template ray<T>(static_cast<float>(x) + dx, static_cast<float>(y) + dy),
-                             visits, rays);
-            }
-            values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) +
-                    static_cast<std::size_t>(x)] = sum / static_cast<float>(o_.samples);
+            values[x] = pixel(static_cast<int>(x), y, o_.layers ? &seen[x] : nullptr, total);
         }
+        std::copy(values.begin(), values.end(), &values_[first]);
+        if (o_.layers) std::copy(seen.begin(), seen.end(), &seen_[first]);
         const std::lock_guard lock(mutex_);
         done_[static_cast<std::size_t>(y)] = 1;
-        visits_ += visits;
-        rays_ += rays;
+        visits_ += total.visits;
+        rays_ += total.rays;
         return true;
     }
 
-    Vec3f sample(const Ray<T, 3>& ray, Visits& visits, std::uint64_t& rays) const {
-        Hit<T> hit;
-        Visits here;
-        index_.closest_hits({&ray, 1}, {&hit, 1}, {&here, 1});
-        ++rays;
-        visits += here;
+    /// Colour, or what is counted: the mean of the samples.
+    Vec3f pixel(int x, int y, Seen* seen, Total& total) const {
+        Vec3f sum;
+        Visits visits;
+        for (int s = 0; s < o_.samples; ++s) {
+            const Look look = cast(ray_through(x, y, s));
+            visits += look.visits;
+            sum = sum + shade(look, total);
+            if (seen != nullptr && s == 0 && look.hit) see(look, *seen);
+        }
+        if (seen != nullptr) count(visits, *seen);
+        total.visits += visits;
+        total.rays += static_cast<std::uint64_t>(o_.samples);
+        return sum / static_cast<float>(o_.samples);
+    }
+    /// Through the pixel's middle, or where there are several samples anywhere in it.
+    Ray<T, 3> ray_through(int x, int y, int sample) const {
+        const auto left = static_cast<float>(x), top = static_cast<float>(y);
+        if (o_.samples == 1) return make_.template ray<T>(left + 0.5f, top + 0.5f);
+        Random random(o_.seed, (static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(o_.width) +
+                                static_cast<std::uint64_t>(x)) *
+                                       static_cast<std::uint64_t>(o_.samples) +
+                                   static_cast<std::uint64_t>(sample));
+        const auto dx = static_cast<float>(random.uniform()), dy = static_cast<float>(random.uniform());
+        return make_.template ray<T>(left + dx, top + dy);
+    }
+    Look cast(const Ray<T, 3>& ray) const {
+        Look look{ray, {}, {}};
+        index_.closest_hits({&ray, 1}, {&look.hit, 1}, {&look.visits, 1});
+        return look;
+    }
+
+    Vec3f shade(const Look& look, Total& total) const {
+        const Visits& counts = look.visits;
         if (o_.shading == Shading::steps)
-            return Vec3f::all(static_cast<float>(here.nodes + here.leaves + here.primitives));
-        if (o_.shading == Shading::tests) return Vec3f::all(static_cast<float>(here.primitives));
-        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(ray));
-        if (!hit) return background(Vec3f(ray.direction));
-        Vec3f n = normal(hit, ray);
-        if (dot(n, Vec3f(ray.direction)) > 0) n = -n;
-        if (o_.shading == Shading::normals) return (n + Vec3f(1, 1, 1)) * 0.5f;
+            return Vec3f::all(static_cast<float>(counts.nodes + counts.leaves + counts.primitives));
+        if (o_.shading == Shading::tests) return Vec3f::all(static_cast<float>(counts.primitives));
+        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(look.ray));
+        if (!look.hit) return background();
         if (o_.shading == Shading::depth)
-            return Vec3f::all(std::exp(-1.5f * static_cast<float>(hit.t) / (diagonal_ + 1e-30f)));
-        return lit(ray, hit, n, visits, rays);
+            return Vec3f::all(std::exp(-1.5f * static_cast<float>(look.hit.t) / (diagonal_ + 1e-30f)));
+        const Vec3f n = facing_normal(look);
+        if (o_.shading == Shading::normals) return (n + Vec3f(1, 1, 1)) * 0.5f;
+        return lit(look, n, total);
+    }
+    void see(const Look& look, Seen& seen) const {
+        seen.depth = static_cast<float>(look.hit.t);  // directions have length 1
+        seen.normal = facing_normal(look);
+        seen.id = look.hit.primitive;
+    }
+    void count(const Visits& visits, Seen& seen) const {
+        const auto mean = [&](std::uint64_t all) { return static_cast<float>(double(all) / o_.samples); };
+        seen.nodes = mean(visits.nodes);
+        seen.leaves = mean(visits.leaves);
+        seen.primitives = mean(visits.primitives);
     }
     float nanoseconds(const Ray<T, 3>& ray) const {
         using Clock = std::chrono::steady_clock;
@@ -138,26 +189,29 @@ private:
         }
         return std::chrono::duration<float, std::nano>(least).count();
     }
-    Vec3f lit(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& n, Visits& visits,
-              std::uint64_t& rays) const {
+    Vec3f lit(const Look& look, const Vec3f& n, Total& total) const {
         const Vec3f sky = Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(n, o_.camera.up));
         const float facing = dot(n, light_);
         Vec3f light = sky;
         if (facing > 0) {
-            const Vec<T, 3> origin =
-                offset_origin(ray, hit.t, primitives_.bounds(hit.element), Vec<T, 3>(n), Vec<T, 3>(n));
+            const Vec<T, 3> origin = offset_origin(look.ray, look.hit.t, primitives_.bounds(look.hit.element),
+                                                   Vec<T, 3>(n), Vec<T, 3>(n));
             const Ray<T, 3> shadow{origin, Vec<T, 3>(light_)};
             bool blocked = false;
             Visits here;
             index_.any_hits({&shadow, 1}, {&blocked, 1}, {&here, 1});
-            ++rays;
-            visits += here;
+            ++total.rays;
+            total.visits += here;
             if (!blocked) light = light + Vec3f(0.85f, 0.80f, 0.70f) * facing;
         }
         return light * 0.62f;
     }
-    static Vec3f background(const Vec3f&) { return {0.28f, 0.36f, 0.48f}; }
+    static Vec3f background() { return {0.28f, 0.36f, 0.48f}; }
 
+    Vec3f facing_normal(const Look& look) const {
+        const Vec3f n = normal(look.hit, look.ray);
+        return dot(n, Vec3f(look.ray.direction)) > 0 ? -n : n;
+    }
     Vec3f normal(const Hit<T>& hit, const Ray<T, 3>& ray) const {
         if constexpr (requires { primitives_.normal(hit.element); })
             return normalized(Vec3f(normalized(Vec3d(primitives_.normal(hit.element)))));
@@ -165,8 +219,10 @@ private:
             return Vec3f(normalized(Vec3d(ray.at(hit.t)) - Vec3d(primitives_.sphere(hit.element).center)));
     }
 
-    Picture develop() const {
-        Picture picture{Image(o_.width, o_.height), rays_, visits_};
+    Picture develop() {
+        Picture picture;
+        picture.image = Image(o_.width, o_.height);
+        picture.rays = rays_, picture.visits = visits_;
         for (const auto& v : values_) {
             picture.most = std::max(picture.most, double(v[0]));
             picture.mean += double(v[0]) / double(values_.size());
@@ -182,6 +238,7 @@ private:
             }
         }
         if (counted(o_.shading)) draw_colour_bar(picture.image, static_cast<std::uint64_t>(most));
+        if (o_.layers) picture.light = std::move(values_), picture.seen = std::move(seen_);
         return picture;
     }
 
@@ -190,6 +247,7 @@ private:
     RenderOptions o_;
     RayMaker make_;
     std::vector<Vec3f> values_;
+    std::vector<Seen> seen_;
     std::vector<std::uint8_t> done_;
     std::mutex mutex_;
     Visits visits_;

@@ -1,0 +1,142 @@
+/// EXR through OpenEXR, a scan line at a time.
+#include <hedgerow/io/exr.h>
+
+#include <hedgerow/error.h>
+
+#ifndef HEDGEROW_HAS_EXR
+#define HEDGEROW_HAS_EXR 1
+#endif
+
+#if HEDGEROW_HAS_EXR
+#include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+
+#include <cstring>
+#include <set>
+
+#include "image_size.h"
+#include "output_file.h"
+#endif
+
+namespace hedgerow {
+
+#if HEDGEROW_HAS_EXR
+namespace {
+
+void check(const std::filesystem::path& path, const Layers& layers) {
+    if (layers.channels.empty())
+        throw InputError(path.string() + ": an image without channels cannot be saved. Give it some");
+    std::set<std::string> names;
+    for (const auto& [name, values] : layers.channels) {
+        if (name.empty() || name.size() > 255 || name.find('\0') != std::string::npos)
+            throw InputError(path.string() + ": the name of channel " + std::to_string(names.size() + 1) +
+                             " is empty, longer than 255 bytes or has a zero byte. Give it another");
+        if (!names.insert(name).second)
+            throw InputError(path.string() + ": two channels are named \"" + name +
+                             "\". Give each a name of its own");
+        const std::size_t count = std::visit([](const auto& v) { return v.size(); }, values);
+        detail::expect_pixels(path, layers.width, layers.height, count, "values of " + name);
+    }
+}
+
+/// OpenEXR's way into an OutputFile.
+class Stream : public Imf::OStream {
+public:
+    explicit Stream(detail::OutputFile& file) : OStream(""), file_(file) {}
+    void write(const char* bytes, int count) override {
+        file_.write({bytes, static_cast<std::size_t>(count)});
+    }
+    std::uint64_t tellp() override { return file_.tell(); }
+    void seekp(std::uint64_t place) override { file_.seek(place); }
+
+private:
+    detail::OutputFile& file_;
+};
+
+/// One row of every channel, refilled for each scan line.
+class Row {
+public:
+    explicit Row(const Layers& layers) : layers_(layers), width_(static_cast<std::size_t>(layers.width)) {
+        bytes_.resize(layers.channels.size() * width_ * value_size);
+    }
+    static Imf::PixelType type_of(const Channel& channel) {
+        return std::holds_alternative<Strided<float>>(channel.values) ? Imf::FLOAT : Imf::UINT;
+    }
+    /// Where OpenEXR finds it, whichever scan line it writes.
+    Imf::FrameBuffer buffer() {
+        Imf::FrameBuffer buffer;
+        char* first = bytes_.data();
+        for (const Channel& channel : layers_.channels) {
+            buffer.insert(channel.name, Imf::Slice(type_of(channel), first, value_size, 0));
+            first += width_ * value_size;
+        }
+        return buffer;
+    }
+    void fill(int y) {
+        char* to = bytes_.data();
+        const std::size_t begin = static_cast<std::size_t>(y) * width_;
+        const auto copy = [&](const auto& values) {
+            for (std::size_t i = begin; i < begin + width_; ++i, to += value_size) {
+                const auto value = values[i];
+                std::memcpy(to, &value, value_size);
+            }
+        };
+        for (const Channel& channel : layers_.channels) std::visit(copy, channel.values);
+    }
+
+private:
+    static constexpr std::size_t value_size = 4;
+
+    const Layers& layers_;
+    std::size_t width_;
+    std::vector<char> bytes_;
+};
+
+void write(detail::OutputFile& file, const Layers& layers) {
+    Imf::Header header(layers.width, layers.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const Channel& channel : layers.channels)
+        header.channels().insert(channel.name, Imf::Channel(Row::type_of(channel)));
+    Stream stream(file);
+    Imf::OutputFile image(stream, header);
+    Row row(layers);
+    image.setFrameBuffer(row.buffer());
+    for (int y = 0; y < layers.height; ++y) {
+        row.fill(y);
+        image.writePixels();
+    }
+}
+
+}  // namespace
+
+void save_exr(const std::filesystem::path& path, const Layers& layers) {
+    check(path, layers);
+    detail::OutputFile file(path);
+    try {
+        write(file, layers);
+    } catch (const Iex::BaseExc& error) {
+        throw InputError(path.string() + ": cannot be written (" + error.what() +
+                         "). Check the folder, its permissions and the space left");
+    }
+    file.commit();
+}
+
+bool exr_supported() {
+    return true;
+}
+#else
+void save_exr(const std::filesystem::path& path, const Layers&) {
+    throw InputError(path.string() +
+                     ": this build has no OpenEXR: build with HEDGEROW_EXR=ON, or save a PNG");
+}
+
+bool exr_supported() {
+    return false;
+}
+#endif
+
+}  // namespace hedgerow
