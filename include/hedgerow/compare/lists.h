@@ -29,9 +29,9 @@ std::vector<double> range_of(std::string_view text);
 /// Sizes: a range, or a list of whole numbers, ascending. Throws InputError.
 std::vector<std::uint64_t> sizes_of(std::string_view text);
 
-/// Structures worth comparing among sets of `dimension` with `size` primitives, points or others: each by its standard options,
-/// and variants that are known for something. What takes long to build at that size is left out and named in
-/// `left_out`.
+/// Structures worth comparing among sets of `dimension` with `size` primitives, points or others: each by its
+/// standard options, and variants that are known for something. What takes long to build at that size is left
+/// out and named in `left_out`.
 std::vector<std::string> usual_structures(int dimension, bool points, std::size_t size,
                                           std::vector<std::string>& left_out);
 
