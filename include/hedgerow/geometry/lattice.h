@@ -26,13 +26,14 @@ struct Lattice {
     template <std::floating_point T>
     static Lattice over(const Box<T, D>& box, const Cell& resolution) {
         const Vec<double, D> extent = Vec<double, D>(box.high) - Vec<double, D>(box.low);
-        const double longest = max_component(extent);
+        // Where the box is flat a cell is as thick as the thinnest that is divided: rays beside it pass by.
+        const double thin =
+            std::max(max_component(extent), 0x1p-10 * max_component(abs(Vec<double, D>(box.low)))) / 1024;
         Lattice lattice;
         lattice.resolution = resolution;
         for (int a = 0; a < D; ++a) {
             lattice.low[a] = static_cast<double>(box.low[a]);
-            const double size = extent[a] > 0 ? extent[a] / resolution[static_cast<std::size_t>(a)]
-                                              : (longest > 0 ? longest : 1.0);
+            const double size = extent[a] > 0 ? extent[a] / resolution[static_cast<std::size_t>(a)] : thin;
             lattice.size[a] = std::max(size, 0x1p-1000);  // so that per_size is a number
             lattice.per_size[a] = 1 / lattice.size[a];
         }

@@ -1,6 +1,7 @@
 /// The list of bounding volumes, and any one of them behind one type.
 #pragma once
 
+#include <string_view>
 #include <tuple>
 #include <variant>
 
