@@ -1,10 +1,12 @@
 /// The list of bounding volumes, and any one of them behind one type.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <variant>
 
+#include <hedgerow/error.h>
 #include <hedgerow/structures/bvh/volumes/fit.h>
 
 namespace hedgerow {
