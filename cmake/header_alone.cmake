@@ -1,4 +1,5 @@
-# hedgerow_headers_alone(TARGET): an object library that compiles each public header alone and twice over.
+# hedgerow_headers_alone(TARGET): an object library, built only when asked for, that compiles each public header alone
+# and twice over.
 function(hedgerow_headers_alone target)
   set(include ${PROJECT_SOURCE_DIR}/include)
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${include} ${include}/hedgerow/*.h)
@@ -7,8 +8,8 @@ function(hedgerow_headers_alone target)
     file(CONFIGURE OUTPUT ${source} CONTENT "#include <${header}>\n#include <${header}>\n")
     list(APPEND sources ${source})
   endforeach()
-  add_library(${target} OBJECT ${sources})
-  target_link_libraries(${target} PRIVATE hedgerow_core hedgerow_io)
+  add_library(${target} OBJECT EXCLUDE_FROM_ALL ${sources})
+  target_link_libraries(${target} PRIVATE hedgerow_any hedgerow_io)
   target_compile_options(${target} PRIVATE -O0)
   hedgerow_warnings(${target})
 endfunction()

@@ -4,6 +4,8 @@
 
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
+#include <hedgerow/structures/bvh/builders/collapse.h>
+#include <hedgerow/structures/bvh/builders/morton.h>
 
 #include "contract.h"
 

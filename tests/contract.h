@@ -61,6 +61,27 @@ Answers<T, D> answers(const I& index, const Questions<T, D>& questions) {
     return said;
 }
 
+/// The same of a structure chosen by its name, which counts no hits.
+template <class T, int D>
+Answers<T, D> answers(const AnyIndex<T, D>& index, const Questions<T, D>& questions) {
+    Answers<T, D> said;
+    for (const auto& ray : questions.rays) {
+        Hit<T> closest;
+        bool any = false;
+        index.closest_hits({&ray, 1}, {&closest, 1});
+        index.any_hits({&ray, 1}, {&any, 1});
+        said.closest.push_back(closest ? std::optional(closest) : std::nullopt);
+        said.counts.push_back(any);
+        index.all_hits(ray, said.all.emplace_back());
+    }
+    for (const auto& p : questions.points) {
+        index.closest_points({&p, 1}, {&said.near.emplace_back().emplace(), 1});
+        index.nearest(p, 5, said.nearest.emplace_back());
+    }
+    for (const auto& box : questions.boxes) index.overlapping(box, said.overlapping.emplace_back());
+    return said;
+}
+
 /// Calls f with an index of each kind.
 template <class P, class F>
 void with_each_structure(const P& set, F f) {

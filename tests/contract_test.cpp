@@ -37,13 +37,14 @@ struct Interleaved {
 /// `scattered` looks at the same elements as `set`, otherwise laid out.
 template <class P, class V>
 void expect_same_bits(const P& set, const V& scattered) {
-    const auto plain = build<Bvh>(set);
-    const Questions questions(plain, 400);
-    const auto expected = answers(plain, questions);
-    with_each_structure(scattered, [&](const auto& index) {
-        EXPECT_EQ(index.validate(), "");
-        EXPECT_EQ(answers(index, questions), expected);
-    });
+    const auto plain = build_any("bvh", set);
+    const Questions questions(plain->bounds(), {plain->bounds().low, plain->bounds().center()}, 400);
+    const auto expected = answers(*plain, questions);
+    for (const auto& name : matrix::structures_for<P>()) {
+        const auto index = build_any(name, scattered);
+        EXPECT_EQ(index->validate(), "") << name;
+        EXPECT_TRUE(answers(*index, questions) == expected) << name;
+    }
 }
 
 TYPED_TEST(Contract, ViewsOfAnyStrideGiveTheSameBits) {
@@ -247,29 +248,25 @@ private:
 };
 
 /// Of an index asked in that mode, and of one built in it too.
-template <template <class, int> class S, class T>
-void expect_no_effect(const char* name, const TriangleMesh<T>& mesh, const Questions<T, 3>& questions,
+template <class T>
+void expect_no_effect(const std::string& name, const TriangleMesh<T>& mesh, const Questions<T, 3>& questions,
                       unsigned mode) {
-    const auto index = build<S>(mesh);
-    const auto expected = answers(index, questions);
+    const auto index = build_any(name, mesh, serial_executor());
+    const auto expected = answers(*index, questions);
     std::optional<Answers<T, 3>> asked, built;
     unsigned after = 0;
     {
         const InMode here(mode);
-        asked = answers(index, questions);
-        built = answers(build<S>(mesh), questions);
+        asked = answers(*index, questions);
+        built = answers(*build_any(name, mesh, serial_executor()), questions);
         after = _mm_getcsr() & modes;
     }
     EXPECT_EQ(after, mode);
     EXPECT_TRUE(*asked == expected) << name << " asked in mode " << mode;
     EXPECT_TRUE(*built == expected) << name << " built in mode " << mode;
     InModeExecutor threads(mode);
-    const auto elsewhere = build<S>(mesh, {}, threads);
-    EXPECT_TRUE(answers(elsewhere, questions) == expected) << name << " built by threads in mode " << mode;
-    std::vector<Hit<T>> hits(questions.rays.size());
-    closest_hits(elsewhere, questions.rays, hits, threads);
-    for (std::size_t i = 0; i < hits.size(); ++i)
-        EXPECT_EQ(hits[i], expected.closest[i].value_or(Hit<T>{})) << name << " asked by threads";
+    EXPECT_TRUE(answers(*build_any(name, mesh, threads), questions) == expected)
+        << name << " built by threads in mode " << mode;
 }
 
 TYPED_TEST(Contract, TheCallersFloatingPointModeChangesNothing) {
@@ -284,11 +281,15 @@ TYPED_TEST(Contract, TheCallersFloatingPointModeChangesNothing) {
         const Questions<T, 3> questions(build(mesh).bounds(), mesh.vertices, 160);
         // Flush to zero and denormals are zero; rounding up; both.
         for (const unsigned mode : {0x8040u, 0x4000u, 0xC040u}) {
-            expect_no_effect<Bvh>("bvh", mesh, questions, mode);
-            expect_no_effect<KdTree>("kdtree", mesh, questions, mode);
-            expect_no_effect<Grid>("grid", mesh, questions, mode);
-            expect_no_effect<Orthtree>("octree", mesh, questions, mode);
-            expect_no_effect<BruteForce>("brute-force", mesh, questions, mode);
+            for (const auto& name : matrix::structures_for<TriangleMesh<T>>())
+                expect_no_effect(name, mesh, questions, mode);
+            InModeExecutor threads(mode);
+            const auto index = build(mesh, threads);
+            std::vector<Hit<T>> hits(questions.rays.size());
+            closest_hits(index, questions.rays, hits, threads);
+            for (std::size_t i = 0; i < hits.size(); ++i)
+                EXPECT_EQ(hits[i], closest_hit(index, questions.rays[i]).value_or(Hit<T>{}))
+                    << "asked by threads in mode " << mode;
         }
     }
 }

@@ -68,6 +68,15 @@ std::string named_for(std::string spec) {
     return spec;
 }
 
+/// Every structure that holds sets of P, as it is when nothing more is said.
+template <class P>
+std::vector<std::string> structures_for() {
+    std::vector<std::string> names;
+    for (const auto& s : structure_list())
+        if (s.holds(P::dimension, PointSet<ViewOf<P>>)) names.emplace_back(s.name);
+    return names;
+}
+
 /// HEDGEROW_LONG=1 in the environment asks for the long suites.
 inline std::size_t in_long_runs(std::size_t many, std::size_t few) {
     return std::getenv("HEDGEROW_LONG") != nullptr ? many : few;

@@ -13,7 +13,7 @@ namespace {
 
 template <class T>
 void expect_equal(const std::string& file) {
-    const std::string path = std::string(HEDGEROW_DATA) + "/" + file;
+    const std::string path = HEDGEROW_DATA "/" + file;
     if (!std::filesystem::exists(path))
         GTEST_SKIP() << "skipped: there is no data/" << file << "; scripts/fetch-scenes brings it";
     const auto mesh = load_mesh<T>(path);

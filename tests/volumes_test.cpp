@@ -260,13 +260,13 @@ TEST(Fits, FollowWhatTheyHold) {
         rod.push_back(along * random.uniform(0, 10) + random.direction<3>() * 0.1);
         ball.push_back(random.direction<3>());
     }
-    const auto obb = Fit<Obb<float, 3>>::around(rod, 0);
+    const auto obb = VolumeFit<Obb<float, 3>>::around(rod, 0);
     EXPECT_LT((Box3f{obb.low, obb.high}.half_area()), 10 * 0.2f * 2 * 1.3f);
-    const auto cylinder = Fit<Cylinder<float>>::around(rod, 0);
+    const auto cylinder = VolumeFit<Cylinder<float>>::around(rod, 0);
     EXPECT_LT(cylinder.radius, 0.13f);
     EXPECT_LT(cylinder.high - cylinder.low, 10.3f);
-    EXPECT_LT((Fit<Sphere<float, 3>>::around(ball, 0).radius), 1.05f);
-    EXPECT_LT((Fit<Sphere<float, 3>>::around(rod, 0).radius), 5.3f);
+    EXPECT_LT((VolumeFit<Sphere<float, 3>>::around(ball, 0).radius), 1.05f);
+    EXPECT_LT((VolumeFit<Sphere<float, 3>>::around(rod, 0).radius), 5.3f);
 }
 
 TEST(Hulls, HaveTheFacesOfTheirPoints) {

@@ -83,11 +83,20 @@ struct StructureInfo {
 /// Every structure that `build_any` knows.
 const std::vector<StructureInfo>& structure_list();
 
+namespace detail {
+template <class View>
+std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over(std::string_view spec,
+                                                                                 const View& primitives,
+                                                                                 Executor& executor);
+}
+
 /// Builds what `spec` names over primitives that are borrowed: "bvh", "bvh:builder=sweep,max_leaf_size=4".
 /// Throws InputError for unknown names and options (with the nearest that exists) and for bad primitives.
-/// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T>, T float or double.
+/// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T> and for views of
+/// such in arrays of the caller's, T float or double.
 template <class P>
-std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(
-    std::string_view spec, const P& primitives, Executor& executor = default_executor());
+auto build_any(std::string_view spec, const P& primitives, Executor& executor = default_executor()) {
+    return detail::build_any_over(spec, view_of(primitives), executor);
+}
 
 }  // namespace hedgerow

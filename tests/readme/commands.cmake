@@ -11,7 +11,12 @@ file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 set(ENV{PATH} "${TOOL_DIR}:$ENV{PATH}")
 
+# How long `compare` measures is cut to what shows that it works.
 function(run command)
+  if(command MATCHES "^hedgerow compare ")
+    string(REGEX REPLACE " --time [0-9.]+" "" command "${command}")
+    string(APPEND command " --time 0.001")
+  endif()
   execute_process(COMMAND sh -c "${command}" WORKING_DIRECTORY ${WORK} RESULT_VARIABLE result
                   OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)

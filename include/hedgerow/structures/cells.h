@@ -48,5 +48,8 @@ Box<typename P::Scalar, P::dimension> part_in(const P& set, PrimitiveId id,
     else
         return intersection(set.bounds(id), cell);
 }
+/// The same for builders that are compiled once, in core, and know no sets.
+template <std::floating_point T, int D>
+using PartIn = FunctionRef<Box<T, D>(PrimitiveId, const Box<T, D>&)>;
 
 }  // namespace hedgerow

@@ -1,7 +1,7 @@
 /// BSP tree: space cut by arbitrary planes.
 #pragma once
 
-#include <hedgerow/structures/bsp/cutter.h>
+#include <hedgerow/structures/bsp/build.h>
 #include <hedgerow/structures/mailbox.h>
 #include <hedgerow/structures/walk_planes.h>
 
@@ -15,20 +15,10 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class BspTree {
 public:
-    struct Options {
-        BspCosts costs = {};
-        /// Cells of no more primitives are leaves.
-        std::uint32_t leaf_size = 1;
-        /// 0: by the number of primitives (usual_depth).
-        int max_depth = 0;
-        /// In cells of more primitives than this, so many suggest planes.
-        std::uint32_t samples = 32;
-        /// Off only to show what it brings.
-        bool mailbox = true;
-    };
+    using Options = BspOptions;
     static constexpr auto packed_order = PackedOrder::of_leaves;
     static constexpr bool exclusive() { return false; }
-    static constexpr int max_depth = 64;
+    static constexpr int max_depth = bsp_max_depth;
 
     template <PrimitiveSet P>
     static BspTree build(const P& set, const Options& options, Executor& executor) {
@@ -40,12 +30,13 @@ public:
         for (const auto& r : references) tree.bounds_.expand(r.box());
         // Parts of parts err by a few roundings a level in double, which for float is nothing.
         tree.margin_ = static_cast<double>(cell_margin(tree.bounds_)) * (std::is_same_v<T, float> ? 1 : 16);
-        const int deepest =
-            std::min(max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(tree.count_));
-        const BspCutter<P> cutter(set, options.costs, options.leaf_size, std::max(1u, options.samples),
-                                  tree.margin_);
-        CutTreeGrowth<BspNode<T, D>, BspCutter<P>> growth(cutter, deepest, executor);
-        tree.tree_ = growth.grow(cutter.root(references));
+        const auto corners = [&](PrimitiveId id) -> Corners<T, D> {
+            if constexpr (HitsLieOnPrimitives<P> && requires { set.corners(id); })
+                return set.corners(id);
+            else
+                return std::nullopt;
+        };
+        tree.tree_ = build_bsp_tree<T, D>(references, corners, options, tree.margin_, executor);
         return tree;
     }
 

@@ -2,19 +2,10 @@
 #pragma once
 
 #include <hedgerow/geometry/polytope.h>
-#include <hedgerow/structures/bsp/bsp_node.h>
+#include <hedgerow/structures/bsp/build.h>
 #include <hedgerow/structures/cells.h>
 
 namespace hedgerow {
-
-/// How the SAH decides. A node across an axis costs `traversal_cost`, one with any other plane `plane_cost`.
-struct BspCosts {
-    double traversal_cost = 4;
-    double plane_cost = 6;
-    double intersection_cost = 1;
-    /// A plane that cuts off empty space costs that part less.
-    double empty_bonus = 0.2;
-};
 
 /// What a primitive has in a cell: the corners of a convex part of it, or of its box.
 template <int D>
@@ -54,11 +45,9 @@ struct BspPart {
 /// What comes within a fourth of a plane's margin counts as on it; a primitive wholly on it stands on the low
 /// side only, since a probe takes a plane to be as thick as its margin. A plane across an axis has no
 /// thickness for a probe: there what comes within the margin stands on both sides.
-template <PrimitiveSet P>
+template <std::floating_point T, int D>
 class BspCutter {
 public:
-    using T = typename P::Scalar;
-    static constexpr int D = P::dimension;
     using Plane = BspPlane<T, D>;
     struct Cell {
         Polytope<D> shape;
@@ -72,9 +61,12 @@ public:
         }
     };
 
-    BspCutter(const P& set, const BspCosts& costs, std::uint32_t leaf_size, std::uint32_t samples,
-              double margin)
-        : set_(set), costs_(costs), leaf_size_(leaf_size), samples_(samples), margin_(margin) {}
+    BspCutter(CornersOf<T, D> corners, const BspOptions& options, double margin)
+        : corners_(corners),
+          costs_(options.costs),
+          leaf_size_(options.leaf_size),
+          samples_(std::max(1u, options.samples)),
+          margin_(margin) {}
 
     Cell root(const ReferenceList<T, D>& references) const {
         Cell cell;
@@ -128,9 +120,9 @@ private:
     /// The whole primitive: its corners where the set names them, else its box's.
     BspPart<D> whole(PrimitiveId id, const Box<T, D>& box) const {
         BspPart<D> part{id, false, {}};
-        if constexpr (HitsLieOnPrimitives<P> && requires { set_.corners(id); }) {
+        if (const auto corners = corners_(id)) {
             part.exact = true;
-            for (const auto& c : set_.corners(id)) part.corners.emplace_back(c);
+            for (const auto& c : *corners) part.corners.emplace_back(c);
         } else {
             for (int i = 0; i < 1 << D; ++i) {
                 Vec<double, D> p;
@@ -191,8 +183,7 @@ private:
             if (high + beside < cell.box.high[axis])
                 offer(Plane::across(axis, static_cast<T>(high + beside)));
         }
-        if constexpr (requires { set_.corners(part.id); })
-            for_each_plane_through(set_.corners(part.id), offer);
+        if (const auto corners = corners_(part.id)) for_each_plane_through(*corners, offer);
     }
 
     /// A triangle's plane, and those through its edges upright on it.
@@ -223,7 +214,7 @@ private:
         offer(Plane{stored, static_cast<T>(dot(Vec<double, D>(stored), through)), -1});
     }
 
-    const P& set_;
+    CornersOf<T, D> corners_;
     BspCosts costs_;
     std::uint32_t leaf_size_, samples_;
     double margin_;

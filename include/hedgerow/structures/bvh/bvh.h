@@ -22,7 +22,9 @@ public:
 
     template <PrimitiveSet P>
     static Bvh build(const P& set, const Options& options, Executor& executor) {
-        return Bvh(build_tree(set, options, executor), set.size(), options, executor);
+        const auto part = [&](PrimitiveId id, const Box<T, D>& box) { return part_in(set, id, box); };
+        return Bvh(build_tree<T, D>(references_of(set, executor), part, options, executor), set.size(),
+                   options, executor);
     }
 
     /// Whether each primitive stands in one leaf: always but after spatial splits.

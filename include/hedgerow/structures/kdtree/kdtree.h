@@ -1,15 +1,11 @@
 /// kd-tree: space cut by axis-aligned planes, each across one cell.
 #pragma once
 
-#include <hedgerow/structures/kdtree/builders/binned.h>
-#include <hedgerow/structures/kdtree/builders/plain.h>
-#include <hedgerow/structures/kdtree/builders/sah.h>
+#include <hedgerow/structures/kdtree/builders/build.h>
 #include <hedgerow/structures/mailbox.h>
 #include <hedgerow/structures/walk_planes.h>
 
 namespace hedgerow {
-
-enum class KdBuilder { sah, binned, median, midpoint };
 
 /// A primitive stands in every leaf that its part reaches, and is found in the cell where it is hit; a
 /// mailbox keeps it from being tested again in the next. Memory: 8 bytes a node (16 for double), 4 an item,
@@ -18,21 +14,10 @@ enum class KdBuilder { sah, binned, median, midpoint };
 template <std::floating_point T, int D>
 class KdTree {
 public:
-    struct Options {
-        KdBuilder builder = KdBuilder::sah;
-        /// Cells of no more primitives are leaves. 0: 1 where costs decide, else 4.
-        std::uint32_t leaf_size = 0;
-        /// 0: by the number of primitives (usual_depth).
-        int max_depth = 0;
-        /// Of the binned builder.
-        int bins = 32;
-        KdCosts costs = {};
-        /// Off only to show what it brings.
-        bool mailbox = true;
-    };
+    using Options = KdOptions;
     static constexpr auto packed_order = PackedOrder::of_leaves;
     static constexpr bool exclusive() { return false; }
-    static constexpr int max_depth = 64;
+    static constexpr int max_depth = kd_max_depth;
 
     template <PrimitiveSet P>
     static KdTree build(const P& set, const Options& options, Executor& executor) {
@@ -44,26 +29,8 @@ public:
         if (root.inside.empty()) return tree;
         for (const auto& r : root.inside) root.box.expand(r.box());
         tree.bounds_ = root.box;
-        const int deepest =
-            std::min(max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(tree.count_));
-        const bool by_cost = options.builder == KdBuilder::sah || options.builder == KdBuilder::binned;
-        const std::uint32_t leaf_size = options.leaf_size > 0 ? options.leaf_size : (by_cost ? 1 : 4);
-        const auto grow = [&](const auto& planes) {
-            const KdCutter cutter(set, planes, cell_margin(tree.bounds_));
-            CutTreeGrowth<KdNode<T>, std::remove_cv_t<decltype(cutter)>> growth(cutter, deepest, executor);
-            tree.tree_ = growth.grow(cutter.root(std::move(root), executor));
-        };
-        switch (options.builder) {
-            case KdBuilder::sah:
-                grow(KdSahPlanes<T, D>(options.costs, leaf_size));
-                break;
-            case KdBuilder::binned:
-                grow(KdBinnedPlanes<T, D>(options.costs, leaf_size, options.bins));
-                break;
-            case KdBuilder::median:
-            case KdBuilder::midpoint:
-                grow(KdPlainPlanes<T, D>(options.builder == KdBuilder::median, leaf_size));
-        }
+        const auto part = [&](PrimitiveId id, const Box<T, D>& box) { return part_in(set, id, box); };
+        tree.tree_ = build_kd_tree<T, D>(std::move(root), part, options, executor);
         return tree;
     }
 

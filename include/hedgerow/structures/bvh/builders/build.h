@@ -1,15 +1,8 @@
 /// The list of BVH builders.
 #pragma once
 
-#include <hedgerow/structures/bvh/builders/agglomerative.h>
-#include <hedgerow/structures/bvh/builders/binned.h>
-#include <hedgerow/structures/bvh/builders/equal_counts.h>
-#include <hedgerow/structures/bvh/builders/lbvh.h>
-#include <hedgerow/structures/bvh/builders/midpoint.h>
-#include <hedgerow/structures/bvh/builders/ploc.h>
-#include <hedgerow/structures/bvh/builders/reinsertion.h>
-#include <hedgerow/structures/bvh/builders/spatial_splits.h>
-#include <hedgerow/structures/bvh/builders/sweep.h>
+#include <hedgerow/structures/bvh/build_tree.h>
+#include <hedgerow/structures/cells.h>
 
 namespace hedgerow {
 
@@ -37,41 +30,10 @@ struct BvhOptions : SahOptions {
     double overlap = 1e-5;
 };
 
-template <PrimitiveSet P>
-auto build_tree(const P& set, const BvhOptions& options, Executor& executor) {
-    using T = typename P::Scalar;
-    constexpr int D = P::dimension;
-    ReferenceList<T, D> references = references_of(set, executor);
-    const auto top_down = [&]<class Splitter>(Splitter splitter, const SahOptions& sah) {
-        return TopDown<T, D, Splitter>(splitter, sah.max_leaf_size, executor).build();
-    };
-    const auto build = [&](const SahOptions& sah) {
-        switch (options.builder) {
-            case BvhBuilder::sweep:
-                return top_down(SweepSplitter<T, D>(std::move(references), sah), sah);
-            case BvhBuilder::equal_counts:
-                return top_down(EqualCountsSplitter<T, D>(std::move(references), sah), sah);
-            case BvhBuilder::midpoint:
-                return top_down(MidpointSplitter<T, D>(std::move(references), sah), sah);
-            case BvhBuilder::lbvh:
-                return build_lbvh<T, D>(references, sah, executor);
-            case BvhBuilder::ploc:
-                return build_ploc<T, D>(references, sah, options.search_radius, executor);
-            case BvhBuilder::agglomerative:
-                return build_agglomerative<T, D>(references, sah, executor);
-            case BvhBuilder::spatial_splits:
-                return top_down(
-                    SpatialSplitter<P>(set, std::move(references), sah, options.duplicates, options.overlap),
-                    sah);
-            case BvhBuilder::binned:
-                break;
-        }
-        return top_down(BinnedSplitter<T, D>(std::move(references), sah), sah);
-    };
-    if (options.reinsertion == 0) return build(options);
-    SahOptions single = options;  // every primitive may move on its own; leaves are made after
-    single.max_leaf_size = 1;
-    return reinserted(build(single), options, options.reinsertion, executor);
-}
+/// The tree over all references, by the builder chosen and improved as asked for. `part_in` is asked by
+/// spatial splits alone. Compiled in core (src/core/build_bvh.cpp), for float and double, in 2D and 3D.
+template <std::floating_point T, int D>
+BuildTree<T, D> build_tree(ReferenceList<T, D> references, PartIn<T, D> part_in, const BvhOptions& options,
+                           Executor& executor);
 
 }  // namespace hedgerow

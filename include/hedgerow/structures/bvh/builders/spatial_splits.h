@@ -18,19 +18,17 @@ namespace hedgerow {
 ///
 /// A part's bounds are enlarged by the margin of cells.h on every side, within the bounds of what it was cut
 /// from, so that the leaves of a primitive together hold every answer that lies on it.
-template <PrimitiveSet P>
-class SpatialSplitter : public BinnedSplitter<typename P::Scalar, P::dimension> {
+template <std::floating_point T, int D>
+class SpatialSplitter : public BinnedSplitter<T, D> {
 public:
-    using T = typename P::Scalar;
-    static constexpr int D = P::dimension;
     using Base = BinnedSplitter<T, D>;
 
     /// `duplicates`: how many references may be added, as a share of the primitives. `overlap`: a plane is
     /// only tried where the boxes of the best split of objects overlap by more than that share of the root's
     /// area (the paper's α).
-    SpatialSplitter(const P& set, ReferenceList<T, D> references, const SahOptions& options,
+    SpatialSplitter(PartIn<T, D> part_in, ReferenceList<T, D> references, const SahOptions& options,
                     double duplicates, double overlap)
-        : Base(std::move(references), options), set_(set), size_(this->references_.size()) {
+        : Base(std::move(references), options), part_in_(part_in), size_(this->references_.size()) {
         auto scene = LaneBox<T>::none();
         for (const auto& r : this->references_) scene.expand(r.lanes());
         if (size_ > 0) {
@@ -93,7 +91,7 @@ private:
         return {{part_in_box(r, low), r.id()}, {part_in_box(r, high), r.id()}};
     }
     Box<T, D> part_in_box(const Reference<T, D>& r, const Box<T, D>& box) const {
-        const Box<T, D> part = part_in(set_, r.id(), box);
+        const Box<T, D> part = part_in_(r.id(), box);
         return part.empty() ? part : intersection(enlarged(part, margin_), box);
     }
 
@@ -201,7 +199,7 @@ private:
         return to_left <= to_right ? only_left : only_right;
     }
 
-    const P& set_;
+    PartIn<T, D> part_in_;
     std::size_t size_;
     T margin_ = T(0);
     double worth_a_plane_ = 0;

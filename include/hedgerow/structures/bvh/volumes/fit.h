@@ -82,10 +82,10 @@ Rows<D> coordinate_axes() {
 
 /// Fits a volume around points, of which there is at least one. O(points).
 template <class V>
-struct Fit;
+struct VolumeFit;
 
 template <class T, int D>
-struct Fit<Sphere<T, D>> {
+struct VolumeFit<Sphere<T, D>> {
     static Sphere<T, D> around(PointSpan<D> points, double margin) {
         Sphere<T, D> s;
         s.center = Vec<T, D>(detail::center_of(points));
@@ -100,7 +100,7 @@ struct Fit<Sphere<T, D>> {
 /// Of the frame of the principal axes (Gottschalk, Lin and Manocha 1996) and that of the coordinates the one
 /// with the smaller box.
 template <class T, int D>
-struct Fit<Obb<T, D>> {
+struct VolumeFit<Obb<T, D>> {
     static Obb<T, D> around(PointSpan<D> points, double margin) {
         const Obb<T, D> turned = in_frame(points, detail::principal_axes<T>(points), margin);
         const Obb<T, D> straight = in_frame(points, detail::coordinate_axes<D>(), margin);
@@ -123,7 +123,7 @@ private:
 };
 
 template <class T, int D, int k>
-struct Fit<Kdop<T, D, k>> {
+struct VolumeFit<Kdop<T, D, k>> {
     static Kdop<T, D, k> around(PointSpan<D> points, double margin) {
         Kdop<T, D, k> b;
         for (int i = 0; i < b.slab_count(); ++i) {
@@ -136,7 +136,7 @@ struct Fit<Kdop<T, D, k>> {
 
 /// Along whichever of the principal and the coordinates' axes makes the smallest surface.
 template <class T>
-struct Fit<Cylinder<T>> {
+struct VolumeFit<Cylinder<T>> {
     static Cylinder<T> around(PointSpan<3> points, double margin) {
         Cylinder<T> best{};
         double least = std::numeric_limits<double>::infinity();

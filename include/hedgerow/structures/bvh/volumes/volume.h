@@ -32,7 +32,7 @@ public:
     V operator[](std::size_t i) const { return volumes_[i]; }
     void resize(std::size_t size) { volumes_.resize(size); }
     void fit(std::size_t i, PointSpan<D> points, double margin) {
-        volumes_[i] = Fit<V>::around(points, margin);
+        volumes_[i] = VolumeFit<V>::around(points, margin);
     }
 
 private:

@@ -40,11 +40,9 @@ struct KdPlaces {
 /// `Lists` of its own beside each cell: `begin(root)` makes them, and `divide(lists, places, low, high)`
 /// hands them on. Straddlers are clipped anew (perfect splits, Havran 2000; Wald and Havran 2006), and
 /// dropped where nothing of them is left.
-template <PrimitiveSet P, class Planes>
+template <std::floating_point T, int D, class Planes>
 class KdCutter {
 public:
-    using T = typename P::Scalar;
-    static constexpr int D = P::dimension;
     struct Cell : KdCell<T, D> {
         typename Planes::Lists lists;
 
@@ -54,7 +52,8 @@ public:
         }
     };
 
-    KdCutter(const P& set, const Planes& planes, T margin) : set_(set), planes_(planes), margin_(margin) {}
+    KdCutter(PartIn<T, D> part_in, const Planes& planes, T margin)
+        : part_in_(part_in), planes_(planes), margin_(margin) {}
 
     Cell root(KdCell<T, D> cell, Executor& executor) const {
         for (auto& r : cell.inside) r = Reference<T, D>(enlarged(r.box(), margin_), r.id());
@@ -87,14 +86,14 @@ private:
         if (!cut) {
             to.inside.push_back(r);
         } else {
-            const Box<T, D> part = part_in(set_, r.id(), enlarged(to.box, margin_));
+            const Box<T, D> part = part_in_(r.id(), enlarged(to.box, margin_));
             if (part.empty()) return KdPlaces::nowhere;
             to.inside.emplace_back(enlarged(part, margin_), r.id());
         }
         return to.size() - 1;
     }
 
-    const P& set_;
+    PartIn<T, D> part_in_;
     const Planes& planes_;
     T margin_;
 };

@@ -6,9 +6,7 @@
 
 #include "structure_options.h"
 
-namespace hedgerow {
-
-namespace detail {
+namespace hedgerow::detail {
 
 /// Calls f(i, count) for each i, with that query's count or with none.
 template <class F>
@@ -140,52 +138,50 @@ void for_each_structure(F f) {
     f.template operator()<VolumeBvh>(bvh_of_volumes);
 }
 
-}  // namespace detail
-
-template <class P>
-std::unique_ptr<AnyIndex<typename P::Scalar, P::dimension>> build_any(std::string_view spec,
-                                                                      const P& primitives,
-                                                                      Executor& executor) {
-    using T = typename P::Scalar;
-    constexpr int D = P::dimension;
+template <class View>
+std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over(std::string_view spec,
+                                                                                 const View& primitives,
+                                                                                 Executor& executor) {
+    using T = typename View::Scalar;
+    constexpr int D = View::dimension;
     const auto colon = spec.find(':');
     const std::string_view wanted = spec.substr(0, colon);
-    detail::OptionReader in(wanted,
-                            colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1));
-    const auto type = wanted == "bvh" && in.differs("volume", "box") ? detail::bvh_of_volumes : wanted;
+    OptionReader in(wanted, colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1));
+    const auto type = wanted == "bvh" && in.differs("volume", "box") ? bvh_of_volumes : wanted;
     std::unique_ptr<AnyIndex<T, D>> built;
     std::vector<std::string_view> known;
-    detail::for_each_structure<D>([&]<template <class, int> class S>(std::string_view name) {
-        if (name != detail::bvh_of_volumes) known.push_back(name);
+    for_each_structure<D>([&]<template <class, int> class S>(std::string_view name) {
+        if (name != bvh_of_volumes) known.push_back(name);
         if (name != type) return;
         typename S<T, D>::Options options;
-        detail::read_options(in, options, std::type_identity<S<T, D>>());
+        read_options(in, options, std::type_identity<S<T, D>>());
         in.finish();
-        using View = ViewOf<P>;
-        if constexpr (requires { S<T, D>::build(std::declval<View>(), options, executor); })
-            built = std::make_unique<detail::Holder<S<T, D>, View>>(std::string(spec), view_of(primitives),
-                                                                    options, executor);
+        if constexpr (requires { S<T, D>::build(primitives, options, executor); })
+            built = std::make_unique<Holder<S<T, D>, View>>(std::string(spec), primitives, options, executor);
         else
             throw InputError("structure '" + std::string(wanted) + "' holds points alone");
     });
-    if (wanted == detail::orthtree_name(5 - D))
+    if (wanted == orthtree_name(5 - D))
         throw InputError("structure '" + std::string(wanted) + "' holds what lies in " +
                          (D == 2 ? "space" : "the plane") + ": in " + (D == 2 ? "the plane" : "space") +
-                         " use '" + std::string(detail::orthtree_name(D)) + "'");
+                         " use '" + std::string(orthtree_name(D)) + "'");
     if (!built)
         throw InputError("no structure is called '" + std::string(wanted) + "'" + suggestion(wanted, known) +
-                         "; there are " + detail::choices(known));
+                         "; there are " + choices(known));
     return built;
 }
 
 /// Everything for one scalar.
-#define HEDGEROW_BUILD_ANY(T)                                                                                \
-    template std::unique_ptr<AnyIndex<T, 3>> build_any(std::string_view, const TriangleMesh<T>&, Executor&); \
-    template std::unique_ptr<AnyIndex<T, 3>> build_any(std::string_view, const SphereSet<T, 3>&, Executor&); \
-    template std::unique_ptr<AnyIndex<T, 3>> build_any(std::string_view, const PointCloud<T, 3>&,            \
-                                                       Executor&);                                           \
-    template std::unique_ptr<AnyIndex<T, 2>> build_any(std::string_view, const PointCloud<T, 2>&,            \
-                                                       Executor&);                                           \
-    template std::unique_ptr<AnyIndex<T, 2>> build_any(std::string_view, const SegmentSet<T>&, Executor&);
+#define HEDGEROW_BUILD_ANY(T)                                                                              \
+    template std::unique_ptr<AnyIndex<T, 3>> build_any_over(std::string_view, const TriangleMeshView<T>&,  \
+                                                            Executor&);                                    \
+    template std::unique_ptr<AnyIndex<T, 3>> build_any_over(std::string_view, const SphereSetView<T, 3>&,  \
+                                                            Executor&);                                    \
+    template std::unique_ptr<AnyIndex<T, 3>> build_any_over(std::string_view, const PointCloudView<T, 3>&, \
+                                                            Executor&);                                    \
+    template std::unique_ptr<AnyIndex<T, 2>> build_any_over(std::string_view, const PointCloudView<T, 2>&, \
+                                                            Executor&);                                    \
+    template std::unique_ptr<AnyIndex<T, 2>> build_any_over(std::string_view, const SegmentSetView<T>&,    \
+                                                            Executor&);
 
-}  // namespace hedgerow
+}  // namespace hedgerow::detail

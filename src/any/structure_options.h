@@ -13,6 +13,9 @@
 #include <hedgerow/error.h>
 #include <hedgerow/spelling.h>
 #include <hedgerow/structures/all.h>
+#include <hedgerow/structures/bvh/builders/binned.h>
+#include <hedgerow/structures/bvh/builders/ploc.h>
+#include <hedgerow/structures/kdtree/builders/binned.h>
 
 namespace hedgerow::detail {
 

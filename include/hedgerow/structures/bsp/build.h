@@ -1,0 +1,47 @@
+/// What a BSP tree is built from and by.
+#pragma once
+
+#include <array>
+
+#include <hedgerow/structures/bsp/bsp_node.h>
+#include <hedgerow/structures/cut_tree.h>
+
+namespace hedgerow {
+
+/// How the SAH decides. A node across an axis costs `traversal_cost`, one with any other plane `plane_cost`.
+struct BspCosts {
+    double traversal_cost = 4;
+    double plane_cost = 6;
+    double intersection_cost = 1;
+    /// A plane that cuts off empty space costs that part less.
+    double empty_bonus = 0.2;
+};
+
+struct BspOptions {
+    BspCosts costs = {};
+    /// Cells of no more primitives are leaves.
+    std::uint32_t leaf_size = 1;
+    /// 0: by the number of primitives (usual_depth).
+    int max_depth = 0;
+    /// In cells of more primitives than this, so many suggest planes.
+    std::uint32_t samples = 32;
+    /// Off only to show what it brings.
+    bool mailbox = true;
+};
+/// No tree is deeper.
+inline constexpr int bsp_max_depth = 64;
+
+/// The corners of a primitive that is what they span, a triangle or (in the plane) a segment; nothing for
+/// others.
+template <std::floating_point T, int D>
+using Corners = std::optional<std::array<Vec<T, D>, static_cast<std::size_t>(D)>>;
+template <std::floating_point T, int D>
+using CornersOf = FunctionRef<Corners<T, D>(PrimitiveId)>;
+
+/// The tree over the references; the margin is cell_margin in double. Compiled in core
+/// (src/core/build_bsp_tree.cpp), for float and double, in 2D and 3D.
+template <std::floating_point T, int D>
+CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>& references, CornersOf<T, D> corners,
+                                      const BspOptions& options, double margin, Executor& executor);
+
+}  // namespace hedgerow

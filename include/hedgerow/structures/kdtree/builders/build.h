@@ -1,0 +1,31 @@
+/// The list of kd-tree builders.
+#pragma once
+
+#include <hedgerow/structures/kdtree/builders/costs.h>
+
+namespace hedgerow {
+
+enum class KdBuilder { sah, binned, median, midpoint };
+
+struct KdOptions {
+    KdBuilder builder = KdBuilder::sah;
+    /// Cells of no more primitives are leaves. 0: 1 where costs decide, else 4.
+    std::uint32_t leaf_size = 0;
+    /// 0: by the number of primitives (usual_depth).
+    int max_depth = 0;
+    /// Of the binned builder.
+    int bins = 32;
+    KdCosts costs = {};
+    /// Off only to show what it brings.
+    bool mailbox = true;
+};
+/// No tree is deeper.
+inline constexpr int kd_max_depth = 64;
+
+/// The tree below a root that holds every reference. Compiled in core (src/core/build_kdtree.cpp), for float
+/// and double, in 2D and 3D.
+template <std::floating_point T, int D>
+CutTree<KdNode<T>> build_kd_tree(KdCell<T, D> root, PartIn<T, D> part_in, const KdOptions& options,
+                                 Executor& executor);
+
+}  // namespace hedgerow

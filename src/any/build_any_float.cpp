@@ -1,0 +1,5 @@
+#include "build_any.h"
+
+namespace hedgerow::detail {
+HEDGEROW_BUILD_ANY(float)
+}  // namespace hedgerow::detail

@@ -1,0 +1,24 @@
+/// The BSP builder, compiled once for all sets.
+#include <hedgerow/structures/bsp/cutter.h>
+
+namespace hedgerow {
+
+template <std::floating_point T, int D>
+CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>& references, CornersOf<T, D> corners,
+                                      const BspOptions& options, double margin, Executor& executor) {
+    const int deepest =
+        std::min(bsp_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(references.size()));
+    const BspCutter<T, D> cutter(corners, options, margin);
+    return CutTreeGrowth<BspNode<T, D>, BspCutter<T, D>>(cutter, deepest, executor)
+        .grow(cutter.root(references));
+}
+
+#define HEDGEROW_BUILD_BSP_TREE(T, D)                                                           \
+    template CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>&, CornersOf<T, D>, \
+                                                   const BspOptions&, double, Executor&);
+HEDGEROW_BUILD_BSP_TREE(float, 2)
+HEDGEROW_BUILD_BSP_TREE(float, 3)
+HEDGEROW_BUILD_BSP_TREE(double, 2)
+HEDGEROW_BUILD_BSP_TREE(double, 3)
+
+}  // namespace hedgerow

@@ -1,0 +1,57 @@
+/// The list of BVH builders, compiled once for all sets.
+#include <hedgerow/structures/bvh/builders/agglomerative.h>
+#include <hedgerow/structures/bvh/builders/binned.h>
+#include <hedgerow/structures/bvh/builders/build.h>
+#include <hedgerow/structures/bvh/builders/equal_counts.h>
+#include <hedgerow/structures/bvh/builders/lbvh.h>
+#include <hedgerow/structures/bvh/builders/midpoint.h>
+#include <hedgerow/structures/bvh/builders/ploc.h>
+#include <hedgerow/structures/bvh/builders/reinsertion.h>
+#include <hedgerow/structures/bvh/builders/spatial_splits.h>
+#include <hedgerow/structures/bvh/builders/sweep.h>
+
+namespace hedgerow {
+
+template <std::floating_point T, int D>
+BuildTree<T, D> build_tree(ReferenceList<T, D> references, PartIn<T, D> part_in, const BvhOptions& options,
+                           Executor& executor) {
+    const auto top_down = [&]<class Splitter>(Splitter splitter, const SahOptions& sah) {
+        return TopDown<T, D, Splitter>(splitter, sah.max_leaf_size, executor).build();
+    };
+    const auto build = [&](const SahOptions& sah) {
+        switch (options.builder) {
+            case BvhBuilder::sweep:
+                return top_down(SweepSplitter<T, D>(std::move(references), sah), sah);
+            case BvhBuilder::equal_counts:
+                return top_down(EqualCountsSplitter<T, D>(std::move(references), sah), sah);
+            case BvhBuilder::midpoint:
+                return top_down(MidpointSplitter<T, D>(std::move(references), sah), sah);
+            case BvhBuilder::lbvh:
+                return build_lbvh<T, D>(references, sah, executor);
+            case BvhBuilder::ploc:
+                return build_ploc<T, D>(references, sah, options.search_radius, executor);
+            case BvhBuilder::agglomerative:
+                return build_agglomerative<T, D>(references, sah, executor);
+            case BvhBuilder::spatial_splits:
+                return top_down(SpatialSplitter<T, D>(part_in, std::move(references), sah, options.duplicates,
+                                                      options.overlap),
+                                sah);
+            case BvhBuilder::binned:
+                break;
+        }
+        return top_down(BinnedSplitter<T, D>(std::move(references), sah), sah);
+    };
+    if (options.reinsertion == 0) return build(options);
+    SahOptions single = options;  // every primitive may move on its own; leaves are made after
+    single.max_leaf_size = 1;
+    return reinserted(build(single), options, options.reinsertion, executor);
+}
+
+#define HEDGEROW_BUILD_BVH(T, D) \
+    template BuildTree<T, D> build_tree(ReferenceList<T, D>, PartIn<T, D>, const BvhOptions&, Executor&);
+HEDGEROW_BUILD_BVH(float, 2)
+HEDGEROW_BUILD_BVH(float, 3)
+HEDGEROW_BUILD_BVH(double, 2)
+HEDGEROW_BUILD_BVH(double, 3)
+
+}  // namespace hedgerow

@@ -1,0 +1,40 @@
+/// The list of kd-tree builders, compiled once for all sets.
+#include <hedgerow/structures/kdtree/builders/binned.h>
+#include <hedgerow/structures/kdtree/builders/build.h>
+#include <hedgerow/structures/kdtree/builders/plain.h>
+#include <hedgerow/structures/kdtree/builders/sah.h>
+
+namespace hedgerow {
+
+template <std::floating_point T, int D>
+CutTree<KdNode<T>> build_kd_tree(KdCell<T, D> root, PartIn<T, D> part_in, const KdOptions& options,
+                                 Executor& executor) {
+    const int deepest =
+        std::min(kd_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(root.inside.size()));
+    const bool by_cost = options.builder == KdBuilder::sah || options.builder == KdBuilder::binned;
+    const std::uint32_t leaf_size = options.leaf_size > 0 ? options.leaf_size : (by_cost ? 1 : 4);
+    const auto grow = [&]<class Planes>(const Planes& planes) {
+        const KdCutter<T, D, Planes> cutter(part_in, planes, cell_margin(root.box));
+        return CutTreeGrowth<KdNode<T>, KdCutter<T, D, Planes>>(cutter, deepest, executor)
+            .grow(cutter.root(std::move(root), executor));
+    };
+    switch (options.builder) {
+        case KdBuilder::binned:
+            return grow(KdBinnedPlanes<T, D>(options.costs, leaf_size, options.bins));
+        case KdBuilder::median:
+        case KdBuilder::midpoint:
+            return grow(KdPlainPlanes<T, D>(options.builder == KdBuilder::median, leaf_size));
+        case KdBuilder::sah:
+            break;
+    }
+    return grow(KdSahPlanes<T, D>(options.costs, leaf_size));
+}
+
+#define HEDGEROW_BUILD_KD_TREE(T, D) \
+    template CutTree<KdNode<T>> build_kd_tree(KdCell<T, D>, PartIn<T, D>, const KdOptions&, Executor&);
+HEDGEROW_BUILD_KD_TREE(float, 2)
+HEDGEROW_BUILD_KD_TREE(float, 3)
+HEDGEROW_BUILD_KD_TREE(double, 2)
+HEDGEROW_BUILD_KD_TREE(double, 3)
+
+}  // namespace hedgerow
