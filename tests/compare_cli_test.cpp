@@ -119,14 +119,13 @@ TEST_F(Compare, HasTheSameCountsEachTime) {
 TEST_F(Compare, PrintsTablesAndAdvice) {
     const auto r = run("gen:segments2d:300");
     ASSERT_EQ(r.code, 0) << r.errors;
-    for (const char* said :
-         {"quadtree", "bvh:builder=lbvh", "closest hit, random rays", "8 nearest", "box overlap",
-          "break-even", "one by one", "For a few queries", "For many queries", "For moving primitives",
-          "For little memory", "Note: built on one thread"})
+    for (const char* said : {"quadtree", "bvh:builder=lbvh", "closest hit, random rays", "8 nearest",
+                             "box overlap", "break-even", "all by", "For a few queries", "For many queries",
+                             "For moving primitives", "For little memory", "Note: built on one thread"})
         EXPECT_NE(r.output.find(said), std::string::npos) << said << "\n" << r.output;
     EXPECT_EQ(r.output.find("octree"), std::string::npos) << "which lives in space";
     EXPECT_EQ(r.errors, "");
-    EXPECT_EQ(run("gen:cube --quiet").output, "");
+    EXPECT_NE(run("gen:cube --quiet").output.find("For moving primitives"), std::string::npos);
 }
 TEST_F(Compare, IsAboutTheQueryThatIsAskedFor) {
     const json j = parsed("gen:points:300 --structures kdtree --for overlap");

@@ -207,7 +207,7 @@ TYPED_TEST(OfEverySet, APowerOfTwoInTheDirectionDividesT) {
 
 template <class P>
 class OfEveryRay : public testing::Test {};
-using SetsThatRaysHit = testing::Types<TriangleMesh<float>, SphereSet<double, 3>, SegmentSet<float>>;
+using SetsThatRaysHit = testing::Types<TriangleMesh<float>, SphereSet<double, 3>>;
 TYPED_TEST_SUITE(OfEveryRay, SetsThatRaysHit);
 
 TYPED_TEST(OfEveryRay, IntervalsCountsAndFiltersFollowFromTheListOfHits) {

@@ -7,6 +7,8 @@
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "matrix.h"
+
 using namespace hedgerow;
 
 namespace {
@@ -222,6 +224,34 @@ TEST(Walkers, VisitsAreCountedOnlyWhenAsked) {
     EXPECT_GT(visits.nodes, 0u);
     EXPECT_EQ(all.primitives, mesh.size());
     EXPECT_LT(visits.primitives, all.primitives);
+}
+
+/// A row of walls: what is behind the one that is hit is passed over by every structure.
+TEST(Walkers, PassOverWhatLiesBehindTheHit) {
+    constexpr std::uint32_t walls = 64;
+    TriangleMesh<float> row;
+    for (std::uint32_t i = 0; i < walls; ++i) {
+        const auto x = static_cast<float>(i);
+        row.vertices.insert(row.vertices.end(), {{x, 0, 0}, {x, 1, 0}, {x, 0, 1}, {x, 1, 1}});
+        row.triangles.push_back({4 * i, 4 * i + 1, 4 * i + 2});
+        row.triangles.push_back({4 * i + 3, 4 * i + 2, 4 * i + 1});
+    }
+    const Ray3f ray{{-1, 0.3f, 0.4f}, {1, 0, 0}};
+    for (const auto& name : matrix::structures_for<TriangleMesh<float>>()) {
+        if (name == "brute-force") continue;
+        SCOPED_TRACE(name);
+        const auto index = build_any(name, row);
+        Hit<float> hit;
+        std::vector<Hit<float>> hits;
+        Visits closest, all;
+        index->closest_hits({&ray, 1}, {&hit, 1}, {&closest, 1});
+        index->all_hits(ray, hits, &all);
+        EXPECT_EQ(hit.t, 1);
+        EXPECT_EQ(hits.size(), walls);
+        EXPECT_LE(closest.primitives, 8u);
+        EXPECT_LE(closest.leaves, 2u);
+        EXPECT_LT(2 * closest.nodes, all.nodes);
+    }
 }
 
 TEST(Builds, GiveTheSameTreeForAnyNumberOfThreads) {

@@ -50,4 +50,17 @@ void check_writable(const std::string& path) {
         throw InputError(path + ": cannot be written; choose another output");
 }
 
+std::vector<std::string> wrapped(std::string_view text, std::size_t letters) {
+    std::vector<std::string> lines;
+    while (text.size() > letters) {
+        auto blank = text.rfind(' ', letters);
+        if (blank == text.npos) blank = text.find(' ');
+        if (blank == text.npos) break;
+        lines.emplace_back(text.substr(0, blank));
+        text.remove_prefix(blank + 1);
+    }
+    lines.emplace_back(text);
+    return lines;
+}
+
 }  // namespace hedgerow::cli

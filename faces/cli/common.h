@@ -4,6 +4,8 @@
 #include <atomic>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <hedgerow/io/scene_file.h>
 #include <hedgerow/parallel/progress.h>
@@ -57,6 +59,9 @@ template <class F>
 int in_precision(const Common& c, F f) {
     return c.precision == "double" ? f(double()) : f(float());
 }
+
+/// A text in lines of at most so many letters, broken at blanks; a longer word has a line of its own.
+std::vector<std::string> wrapped(std::string_view text, std::size_t letters);
 
 /// Throws InputError before any work is done for a path that cannot be written.
 void check_writable(const std::string& path);

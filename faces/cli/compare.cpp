@@ -183,7 +183,7 @@ void show(const CompareArguments& a, const CompareReport& r) {
     if (!a.html.empty()) save_text(a.html, page_of(r));
     if (a.json) {
         fmt::print("{}\n", json_of(r).dump(2));
-    } else if (!a.quiet) {
+    } else {
         std::string text = r.scene;
         if (r.comparison) text += fmt::format(": {} {}", r.comparison->size, r.comparison->primitive);
         text += "\n\n";
@@ -214,7 +214,8 @@ Run add_compare(CLI::App& verb) {
                     "which, as grid,bvh:builder=sweep,bins=8,kdtree; brute force is always among them");
     verb.add_option("--sweep", a->sweeps,
                     "STRUCTURE:option=FROM..TO, or a list of values: what an option does")
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->option_text("TEXT, may be repeated");
     verb.add_flag("--scale", a->scale, "how costs grow with a generated scene, and which laws fit");
     verb.add_option("--sizes", a->sizes, "of --scale: FROM..TO or a list; 1000 to 64000 if not given")
         ->needs("--scale");

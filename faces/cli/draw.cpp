@@ -132,11 +132,10 @@ std::vector<OutlineCell<D>> few(std::vector<OutlineCell<D>> cells) {
 }
 
 ordered_json facts_of(const NamedStructure& s, std::size_t leaves, int depth) {
-    return {{"structure", s.name},
-            {"cells_drawn", s.flat.cells.size()},
-            {"leaves", leaves},
-            {"depth", depth},
-            {"sibling_overlap", s.flat.overlap}};
+    ordered_json facts = {
+        {"structure", s.name}, {"cells_drawn", s.flat.cells.size()}, {"leaves", leaves}, {"depth", depth}};
+    if (s.flat.overlap) facts["sibling_overlap"] = *s.flat.overlap;
+    return facts;
 }
 
 template <class P>
@@ -165,9 +164,9 @@ int draw_cells(const DrawArguments& a, const P& set) {
         s.facts = {fmt::format("{} cells here; {} leaves, depth {}, {} items of {} primitives",
                                s.flat.cells.size(), index->leaf_count(), index->depth(), index->item_count(),
                                index->size())};
-        if (s.flat.overlap > 0)
-            s.facts.push_back(fmt::format("siblings share {:.2f}% of their parents' {}", 100 * s.flat.overlap,
-                                          D == 2 ? "area" : "volume"));
+        if (s.flat.overlap.value_or(0) > 0)
+            s.facts.push_back(fmt::format("siblings share {:.2f}% of their parents' {}",
+                                          100 * *s.flat.overlap, D == 2 ? "area" : "volume"));
         report.push_back(facts_of(s, index->leaf_count(), index->depth()));
         if (scene.primitives.empty()) scene = flat_scene(a, set, section, bounds);
         structures.push_back(std::move(s));
@@ -336,10 +335,19 @@ void draw_edges(const OutlineCell<3>& cell, const Image::Pixel& colour, float wi
 int letter_scale(const Image& image) {
     return std::max(1, image.height / 600);
 }
+/// As `draw_note` can hold them in the picture's width.
+std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts) {
+    const int letters = image.width / (letter_width * letter_scale(image)) - 2;
+    std::vector<std::string> lines;
+    for (const auto& text : texts)
+        for (auto& line : wrapped(text, static_cast<std::size_t>(std::max(8, letters))))
+            lines.push_back(std::move(line));
+    return lines;
+}
 /// A title and below it a swatch and a number a level, from the upper left corner.
 void draw_level_legend(Image& image, const std::vector<std::string>& title, int levels) {
     const int unit = letter_scale(image), row = letter_height * unit;
-    std::vector<std::string> lines = title;
+    std::vector<std::string> lines = note_lines(image, title);
     const int first = static_cast<int>(lines.size());
     for (int k = 0; k < levels; ++k) lines.push_back(fmt::format("     level {}", k + 1));
     draw_note(image, 0, 0, lines, unit);
@@ -370,7 +378,7 @@ Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, c
     for (const auto& c : cells)
         draw_edges(c, pixel_of(level_colour(c.level - 1, levels)),
                    unit * std::max(1.1f, 2.8f * std::pow(0.85f, static_cast<float>(c.level - 1))), wires);
-    facts = fmt::format("{} boxes of the first {} levels of {}", cells.size(), levels, index.depth());
+    facts = fmt::format("{} cells of the first {} levels of {}", cells.size(), levels, index.depth());
     draw_level_legend(picture.image, {std::string(index.structure()), facts}, levels);
     return picture.image;
 }
@@ -409,9 +417,9 @@ int draw_wireframe(const DrawArguments& a, const P& set, const Seen& seen) {
         NamedStructure s{spec, {facts}, {}};
         if (!a.beside.empty()) {
             add_shared(index->outline(), Section<3>{{}, {1, 0, 0}, {0, 1, 0}}, s.flat);
-            if (s.flat.overlap > 0)
+            if (s.flat.overlap.value_or(0) > 0)
                 facts +=
-                    fmt::format("; siblings share {:.2f}% of their parents' volume", 100 * s.flat.overlap);
+                    fmt::format("; siblings share {:.2f}% of their parents' volume", 100 * *s.flat.overlap);
         }
         report.push_back(facts_of(s, index->leaf_count(), index->depth()));
         text += fmt::format("{}: {}\n", spec, facts);
@@ -445,10 +453,12 @@ int draw_heat(const DrawArguments& a, const P& set) {
     }
     const std::string unit =
         a.heat == "time" ? "nanoseconds" : (a.heat == "tests" ? "primitives tested" : a.heat);
-    draw_note(picture.image, 0, 0,
-              {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
-               fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit, picture.mean, picture.most)},
-              letter_scale(picture.image));
+    draw_note(
+        picture.image, 0, 0,
+        note_lines(picture.image, {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
+                                   fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit,
+                                               picture.mean, picture.most)}),
+        letter_scale(picture.image));
     save(a.output, picture);
     const double pixels = double(options.width) * double(options.height);
     if (a.json)

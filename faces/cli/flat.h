@@ -1,6 +1,7 @@
 /// What lies in a plane: a flat scene as it is, of one in space what a section shows.
 #pragma once
 
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -124,7 +125,7 @@ struct FlatCell {
 struct FlatStructure {
     std::vector<FlatCell> cells;
     std::vector<Corners> shared;
-    double overlap = 0;
+    std::optional<double> overlap;  // if it was looked for
 };
 
 template <int D>
@@ -148,6 +149,7 @@ void add_shared(const std::vector<OutlineCell<D>>& cells, const Section<D>& sect
     for (const auto& c : cells)
         if (c.level > 1 && c.shape.empty()) children[c.parent].push_back(&c);
     std::size_t parents = 0;
+    double overlap = 0;
     for (const auto& p : cells) {
         const auto found = children.find(p.id);
         if (p.leaf || found == children.end() || volume(p.box) == 0) continue;
@@ -157,12 +159,12 @@ void add_shared(const std::vector<OutlineCell<D>>& cells, const Section<D>& sect
                 OutlineCell<D> both;
                 both.box = intersection(found->second[i]->box, found->second[k]->box);
                 if (volume(both.box) == 0) continue;
-                flat.overlap += volume(both.box) / volume(p.box);
+                overlap += volume(both.box) / volume(p.box);
                 if (auto corners = section.part(both); !corners.empty())
                     flat.shared.push_back(std::move(corners));
             }
     }
-    if (parents > 0) flat.overlap /= static_cast<double>(parents);
+    flat.overlap = parents > 0 ? overlap / static_cast<double>(parents) : 0;
 }
 
 }  // namespace hedgerow::cli

@@ -5,13 +5,32 @@
 #include <map>
 #include <unordered_map>
 
+#include "common.h"
 #include "svg.h"
 
 namespace hedgerow::cli {
 
 namespace {
 
-constexpr double margin = 24, head = 64, foot = 74, legend_width = 132;
+constexpr double margin = 24, head = 64, legend_width = 132;
+
+/// A structure's name and what is said of it, below its panel, in lines as wide as that.
+struct Caption {
+    std::vector<std::string> name, facts;
+
+    Caption(std::string_view name_text, const std::vector<std::string>& facts_text, double width) {
+        const auto letters = static_cast<std::size_t>(std::max(12.0, width / 6.6));
+        name = wrapped(name_text, letters);
+        for (const auto& fact : facts_text)
+            for (auto& line : wrapped(fact, letters)) facts.push_back(std::move(line));
+    }
+    /// Of the part of the picture below the panels.
+    double height() const { return 26 + 16 * double(name.size() + facts.size()); }
+    void draw(Svg& svg, Vec2d at) const {
+        for (const auto& line : name) svg.text(at, line, "class=\"name\""), at[1] += 16;
+        for (const auto& line : facts) svg.text(at, line), at[1] += 16;
+    }
+};
 
 constexpr std::string_view plain_style =
     "text{font-family:'DejaVu Sans',Helvetica,Arial,sans-serif;font-size:12px;fill:#333}\n"
@@ -85,7 +104,7 @@ void draw_cells(Svg& svg, const Panel& panel, const FlatStructure& flat) {
 }
 
 void draw_legend(Svg& svg, double left, const FlatScene& scene, const std::vector<NamedStructure>& structures,
-                 int levels) {
+                 int levels, double foot) {
     std::vector<std::vector<std::size_t>> counts(static_cast<std::size_t>(levels),
                                                  std::vector<std::size_t>(structures.size()));
     bool shared = false;
@@ -138,6 +157,12 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
     }
     const Box2d shown = frame_of(scene, structures);
     const double wide = (scene.width - legend_width - margin) / double(structures.size());
+    std::vector<Caption> captions;
+    double foot = 0;
+    for (const auto& s : structures) {
+        captions.emplace_back(s.name, s.facts, wide - margin);
+        foot = std::max(foot, captions.back().height());
+    }
     const auto area = [&](std::size_t s) {
         const double left = margin + wide * double(s);
         return Box2d{{left, head}, {left + wide - margin, scene.height - foot}};
@@ -153,11 +178,9 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
         draw_corners(svg, panel, shown);
         draw_cells(svg, panel, structures[s].flat);
         for (const auto& p : scene.primitives) draw_primitive(svg, panel, p, size, "");
-        double y = scene.height - 38;
-        svg.text({area(s).low[0], y}, structures[s].name, "class=\"name\"");
-        for (const auto& line : structures[s].facts) svg.text({area(s).low[0], y += 16}, line);
+        captions[s].draw(svg, {area(s).low[0], scene.height - foot + 36});
     }
-    draw_legend(svg, scene.width - legend_width, scene, structures, levels);
+    draw_legend(svg, scene.width - legend_width, scene, structures, levels, foot);
     return svg.finished();
 }
 
@@ -244,16 +267,16 @@ public:
         : scene_(scene),
           all_(all),
           table_(table),
+          caption_(table.structure, {table.summary()}, scene.width - 2 * margin),
           shown_(frame_with_ray()),
-          panel_(shown_, {{margin, head}, {scene.width - margin, scene.height - foot}}),
+          panel_(shown_, {{margin, head}, {scene.width - margin, scene.height - caption_.height()}}),
           svg_(scene.width, scene.height, style()) {
         for (const auto& p : scene.primitives) primitives_[p.id] = &p;
     }
 
     void ground() {
         svg_.text({margin, 32}, scene_.title, "class=\"title\"");
-        svg_.text({margin, scene_.height - 38.0}, table_.structure, "class=\"name\"");
-        svg_.text({margin, scene_.height - 22.0}, table_.summary());
+        caption_.draw(svg_, {margin, scene_.height - caption_.height() + 36});
         for (const auto& c : all_.cells) svg_.polygon(panel_(c.corners), "class=\"cell all\"", hint_of(c));
         const double size = crowding(scene_.primitives.size(), panel_);
         for (const auto& p : scene_.primitives) draw_primitive(svg_, panel_, p, size, " faint");
@@ -357,6 +380,7 @@ private:
     const FlatScene& scene_;
     const FlatStructure& all_;
     const TraceTable& table_;
+    Caption caption_;
     double first_ = 0, last_ = 0;  // t of the ray's ends in the picture
     Box2d shown_;
     Panel panel_;

@@ -227,10 +227,10 @@ private:
         }
         expect_same(c, *c.index, *oracle_, "after changes");
         UpdateCost& u = c.cost.update;
-        u.how = "one by one";
         u.erase = median(out) / static_cast<double>(some), u.insert = median(in) / static_cast<double>(some);
         u.one = u.erase + u.insert;
-        u.all = std::min(u.one * static_cast<double>(n), c.cost.build_seconds);
+        if (u.one * static_cast<double>(n) < u.all)
+            u.all = u.one * static_cast<double>(n), u.how = "one by one";
     }
 
     /// Moves a copy of the primitives under an index of its own, beside one that is built after the motion.
@@ -254,7 +254,8 @@ private:
             slowdown.push_back(refitted / rebuilt);
         }
         u.how = "refit";
-        u.one = u.all = median(seconds);
+        u.all = median(seconds);
+        if (!c.index->changes_one_by_one()) u.one = u.all;
         u.slowdown = median(slowdown);
     }
 

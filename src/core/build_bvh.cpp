@@ -13,7 +13,7 @@
 namespace hedgerow {
 
 template <std::floating_point T, int D>
-BuildTree<T, D> build_tree(ReferenceList<T, D> references, PartIn<T, D> part_in, const BvhOptions& options,
+BuildTree<T, D> build_tree(ReferenceList<T, D> references, CornersOf<T, D> corners, const BvhOptions& options,
                            Executor& executor) {
     const auto top_down = [&]<class Splitter>(Splitter splitter, const SahOptions& sah) {
         return TopDown<T, D, Splitter>(splitter, sah.max_leaf_size, executor).build();
@@ -33,7 +33,7 @@ BuildTree<T, D> build_tree(ReferenceList<T, D> references, PartIn<T, D> part_in,
             case BvhBuilder::agglomerative:
                 return build_agglomerative<T, D>(references, sah, executor);
             case BvhBuilder::spatial_splits:
-                return top_down(SpatialSplitter<T, D>(part_in, std::move(references), sah, options.duplicates,
+                return top_down(SpatialSplitter<T, D>(corners, std::move(references), sah, options.duplicates,
                                                       options.overlap),
                                 sah);
             case BvhBuilder::binned:
@@ -48,7 +48,7 @@ BuildTree<T, D> build_tree(ReferenceList<T, D> references, PartIn<T, D> part_in,
 }
 
 #define HEDGEROW_BUILD_BVH(T, D) \
-    template BuildTree<T, D> build_tree(ReferenceList<T, D>, PartIn<T, D>, const BvhOptions&, Executor&);
+    template BuildTree<T, D> build_tree(ReferenceList<T, D>, CornersOf<T, D>, const BvhOptions&, Executor&);
 HEDGEROW_BUILD_BVH(float, 2)
 HEDGEROW_BUILD_BVH(float, 3)
 HEDGEROW_BUILD_BVH(double, 2)

@@ -28,9 +28,9 @@ struct QueryCost {
 
 /// How a structure follows primitives that move.
 struct UpdateCost {
-    std::string_view how = "rebuild";  ///< of one primitive: "one by one", "refit" or "rebuild"
+    std::string_view how = "rebuild";  ///< all are followed: by a "refit", a "rebuild" or "one by one"
     double one = 0, all = 0;           ///< seconds to follow one primitive, and all of them
-    double insert = 0, erase = 0;      ///< seconds a primitive, where it is one by one; else 0
+    double insert = 0, erase = 0;      ///< seconds a primitive, where single ones can change; else 0
     /// After a refit: its SAH cost as a multiple of what it was, and its time a query as a multiple of what
     /// one takes that is built anew over the moved primitives.
     double drift = 1, slowdown = 1;

@@ -1,6 +1,9 @@
 /// Which cells a primitive stands in: what grids, kd-trees, octrees and BSP trees share.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include <hedgerow/structures/references.h>
 
 namespace hedgerow {
@@ -48,8 +51,25 @@ Box<typename P::Scalar, P::dimension> part_in(const P& set, PrimitiveId id,
     else
         return intersection(set.bounds(id), cell);
 }
-/// The same for builders that are compiled once, in core, and know no sets.
+
+// The same for builders that are compiled once, in core, and know no sets.
+
 template <std::floating_point T, int D>
 using PartIn = FunctionRef<Box<T, D>(PrimitiveId, const Box<T, D>&)>;
+
+/// The corners of a primitive that is no more than what they span, a triangle or (in the plane) a segment;
+/// nothing for others.
+template <std::floating_point T, int D>
+using Corners = std::optional<std::array<Vec<T, D>, static_cast<std::size_t>(D)>>;
+template <std::floating_point T, int D>
+using CornersOf = FunctionRef<Corners<T, D>(PrimitiveId)>;
+
+template <PrimitiveSet P>
+Corners<typename P::Scalar, P::dimension> corners_in(const P& set, PrimitiveId id) {
+    if constexpr (HitsLieOnPrimitives<P> && requires { set.corners(id); })
+        return set.corners(id);
+    else
+        return std::nullopt;
+}
 
 }  // namespace hedgerow

@@ -30,12 +30,7 @@ public:
         for (const auto& r : references) tree.bounds_.expand(r.box());
         // Parts of parts err by a few roundings a level in double, which for float is nothing.
         tree.margin_ = static_cast<double>(cell_margin(tree.bounds_)) * (std::is_same_v<T, float> ? 1 : 16);
-        const auto corners = [&](PrimitiveId id) -> Corners<T, D> {
-            if constexpr (HitsLieOnPrimitives<P> && requires { set.corners(id); })
-                return set.corners(id);
-            else
-                return std::nullopt;
-        };
+        const auto corners = [&](PrimitiveId id) { return corners_in(set, id); };
         tree.tree_ = build_bsp_tree<T, D>(references, corners, options, tree.margin_, executor);
         return tree;
     }

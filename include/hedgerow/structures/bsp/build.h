@@ -1,9 +1,8 @@
 /// What a BSP tree is built from and by.
 #pragma once
 
-#include <array>
-
 #include <hedgerow/structures/bsp/bsp_node.h>
+#include <hedgerow/structures/cells.h>
 #include <hedgerow/structures/cut_tree.h>
 
 namespace hedgerow {
@@ -30,13 +29,6 @@ struct BspOptions {
 };
 /// No tree is deeper.
 inline constexpr int bsp_max_depth = 64;
-
-/// The corners of a primitive that is what they span, a triangle or (in the plane) a segment; nothing for
-/// others.
-template <std::floating_point T, int D>
-using Corners = std::optional<std::array<Vec<T, D>, static_cast<std::size_t>(D)>>;
-template <std::floating_point T, int D>
-using CornersOf = FunctionRef<Corners<T, D>(PrimitiveId)>;
 
 /// The tree over the references; the margin is cell_margin in double. Compiled in core
 /// (src/core/build_bsp_tree.cpp), for float and double, in 2D and 3D.

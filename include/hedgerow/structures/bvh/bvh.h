@@ -22,8 +22,8 @@ public:
 
     template <PrimitiveSet P>
     static Bvh build(const P& set, const Options& options, Executor& executor) {
-        const auto part = [&](PrimitiveId id, const Box<T, D>& box) { return part_in(set, id, box); };
-        return Bvh(build_tree<T, D>(references_of(set, executor), part, options, executor), set.size(),
+        const auto corners = [&](PrimitiveId id) { return corners_in(set, id); };
+        return Bvh(build_tree<T, D>(references_of(set, executor), corners, options, executor), set.size(),
                    options, executor);
     }
 

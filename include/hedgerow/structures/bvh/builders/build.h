@@ -33,7 +33,7 @@ struct BvhOptions : SahOptions {
 /// The tree over all references, by the builder chosen and improved as asked for. `part_in` is asked by
 /// spatial splits alone. Compiled in core (src/core/build_bvh.cpp), for float and double, in 2D and 3D.
 template <std::floating_point T, int D>
-BuildTree<T, D> build_tree(ReferenceList<T, D> references, PartIn<T, D> part_in, const BvhOptions& options,
+BuildTree<T, D> build_tree(ReferenceList<T, D> references, CornersOf<T, D> corners, const BvhOptions& options,
                            Executor& executor);
 
 }  // namespace hedgerow

@@ -26,9 +26,9 @@ public:
     /// `duplicates`: how many references may be added, as a share of the primitives. `overlap`: a plane is
     /// only tried where the boxes of the best split of objects overlap by more than that share of the root's
     /// area (the paper's α).
-    SpatialSplitter(PartIn<T, D> part_in, ReferenceList<T, D> references, const SahOptions& options,
+    SpatialSplitter(CornersOf<T, D> corners, ReferenceList<T, D> references, const SahOptions& options,
                     double duplicates, double overlap)
-        : Base(std::move(references), options), part_in_(part_in), size_(this->references_.size()) {
+        : Base(std::move(references), options), corners_(corners), size_(this->references_.size()) {
         auto scene = LaneBox<T>::none();
         for (const auto& r : this->references_) scene.expand(r.lanes());
         if (size_ > 0) {
@@ -88,11 +88,31 @@ private:
         Box<T, D> low = r.box(), high = low;
         low.high[axis] = std::min(low.high[axis], position + margin_);
         high.low[axis] = std::max(high.low[axis], position - margin_);
-        return {{part_in_box(r, low), r.id()}, {part_in_box(r, high), r.id()}};
+        if (const auto corners = corners_(r.id())) {
+            const auto [below, above] = cut_corners(*corners, axis, position);
+            low = intersection(low, below), high = intersection(high, above);
+        }
+        return {{low, r.id()}, {high, r.id()}};
     }
-    Box<T, D> part_in_box(const Reference<T, D>& r, const Box<T, D>& box) const {
-        const Box<T, D> part = part_in_(r.id(), box);
-        return part.empty() ? part : intersection(enlarged(part, margin_), box);
+    /// Bounds of what is spanned by some corners on the sides of a plane: of the corners there, and of the
+    /// places where edges cross it. (Within a reference's own box that is all of its part, and seldom more.)
+    std::pair<Box<T, D>, Box<T, D>> cut_corners(
+        const std::array<Vec<T, D>, static_cast<std::size_t>(D)>& corners, int axis, T position) const {
+        std::pair<Box<T, D>, Box<T, D>> sides;
+        auto& [low, high] = sides;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const Vec<T, D>&p = corners[i], &q = corners[(i + 1) % corners.size()];
+            if (p[axis] <= position) low.expand(p);
+            if (p[axis] >= position) high.expand(p);
+            if ((p[axis] < position) == (q[axis] < position)) continue;
+            const Vec<double, D> from(p), to(q);
+            const double f = (static_cast<double>(position) - from[axis]) / (to[axis] - from[axis]);
+            const Vec<T, D> crossing(from * (1 - f) + to * f);
+            low.expand(crossing), high.expand(crossing);
+        }
+        if (!low.empty()) low = enlarged(low, margin_);
+        if (!high.empty()) high = enlarged(high, margin_);
+        return sides;
     }
 
     /// Of equal slabs along each axis the border of least cost that the room allows.
@@ -199,7 +219,7 @@ private:
         return to_left <= to_right ? only_left : only_right;
     }
 
-    PartIn<T, D> part_in_;
+    CornersOf<T, D> corners_;
     std::size_t size_;
     T margin_ = T(0);
     double worth_a_plane_ = 0;
