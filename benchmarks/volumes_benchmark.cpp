@@ -1,8 +1,9 @@
-/// What a BVH's bounding volume costs and brings: bytes, time a test, tests and time a ray. All but the first
-/// row are the study structure (structures/bvh/volume_bvh.h), whose tree is that of the first; kdop6 is the
-/// same box by its way.
+/// What a BVH's bounding volume costs and brings: bytes, cycles a test, tests and time a ray. All but the
+/// first row are the study structure (structures/bvh/volume_bvh.h), whose tree is that of the first; kdop6 is
+/// the same box by its way.
 ///
-///   volumes_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:100000; a mesh file is a scene
+///   volumes_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:100000
+///   gen:hairball:20000; a mesh file is a scene
 #include "ray_sets.h"
 
 #include <hedgerow/structures/bvh/volume_bvh.h>
@@ -14,10 +15,10 @@ namespace {
 
 constexpr int repeats = 3;
 
-/// Rays and nodes, both in arbitrary order, against each other: nanoseconds a test. At the end the answers
+/// Rays and nodes, both in arbitrary order, against each other: seconds a test. At the end the answers
 /// are counted, so that no test is left out.
 template <class Index>
-double test_time(const Index& index, const std::vector<Ray3f>& rays) {
+double test_seconds(const Index& index, const std::vector<Ray3f>& rays) {
     const auto& tree = index.structure();
     const std::size_t nodes = tree.leaf_count() - 1;
     if (nodes == 0) return 0;
@@ -40,11 +41,11 @@ double test_time(const Index& index, const std::vector<Ray3f>& rays) {
         times.push_back(seconds() - start);
     }
     asm volatile("" : : "r"(entered));
-    return median(times) / static_cast<double>(tests) * 1e9;
+    return median(times) / static_cast<double>(tests);
 }
 
 template <class Index>
-void row(const char* name, const Index& index, const RaySet& set, double built) {
+void row(const char* name, const Index& index, const RaySet& set, double built, double clock) {
     Visits visits;
     for (const auto& ray : set.rays) closest_hit(index, ray, KeepAll{}, visits);
     std::vector<double> times;
@@ -61,17 +62,17 @@ void row(const char* name, const Index& index, const RaySet& set, double built) 
     const double bytes = static_cast<double>(index.structure().bytes());
     std::printf("| %-9s | %-8s | %8.0f | %8.1f | %8.1f | %7.1f | %8.2f | %8.2f | %9.0f | %5.1f |\n", name,
                 set.name.c_str(), built * 1e3, (bytes - items) / inner,
-                bytes / static_cast<double>(index.size()), test_time(index, set.rays),
+                bytes / static_cast<double>(index.size()), test_seconds(index, set.rays) * clock * 1e9,
                 2 * static_cast<double>(visits.nodes) / n, static_cast<double>(visits.primitives) / n,
                 median(times) / n * 1e9, static_cast<double>(hits) / n * 100);
 }
 
-void table(const TriangleMesh<float>& mesh) {
+void table(const TriangleMesh<float>& mesh, double clock) {
     Box3f box;
     for (const auto& v : mesh.vertices) box.expand(v);
     const auto sets = ray_sets(mesh, box, 128, 1 << 14);
     std::printf(
-        "| volume    | rays     | build ms | B a node | B a prim | ns/test | volumes  | prims    | ns a ray  "
+        "| volume    | rays     | build ms | B a node | B a prim | cycles  | volumes  | prims    | ns a ray  "
         "| %% hit "
         "|\n|-----------|----------|----------|----------|----------|---------|----------|----------|--------"
         "---|-------"
@@ -80,7 +81,7 @@ void table(const TriangleMesh<float>& mesh) {
         const double start = seconds();
         const auto index = build_index();
         const double built = seconds() - start;
-        for (const auto& set : sets) row(name, index, set, built);
+        for (const auto& set : sets) row(name, index, set, built, clock);
     };
     measure("(default)", [&] { return build<Bvh>(mesh); });
     for (const auto& [name, volume] : volume_names) {
@@ -94,14 +95,15 @@ void table(const TriangleMesh<float>& mesh) {
 }  // namespace
 
 int main(int count, char** arguments) try {
-    std::printf("%s, g++ %d.%d, one thread, medians of %d\n", processor().c_str(), __GNUC__, __GNUC_MINOR__,
-                repeats);
+    const double clock = clock_rate();
+    std::printf("%s at %.2f GHz, g++ %d.%d, one thread, medians of %d; cycles: a test of one volume\n",
+                processor().c_str(), clock, __GNUC__, __GNUC_MINOR__, repeats);
     std::vector<std::string> names(arguments + 1, arguments + count);
-    if (names.empty()) names = {"gen:teapot-in-stadium", "gen:soup:100000"};
+    if (names.empty()) names = {"gen:teapot-in-stadium", "gen:soup:100000", "gen:hairball:20000"};
     for (const auto& name : names) {
         const auto mesh = scene(name);
         std::printf("\n%s, %zu triangles\n\n", name.substr(name.rfind('/') + 1).c_str(), mesh.size());
-        table(mesh);
+        table(mesh, clock);
     }
 } catch (const InputError& error) {
     std::fprintf(stderr, "volumes_benchmark: %s\n", error.what());
