@@ -128,9 +128,7 @@ TEST_F(Cli, AViewAlongUpIsRefused) {
 
 TEST_F(Cli, AnInterruptedRenderSavesWhatIsDone) {
     const std::string output = file("part.png");
-    EXPECT_EQ(run_interrupted({"render", "gen:teapot:20000", "--structure", "brute-force", "--size",
-                               "1600x1200", "--quiet", "-o", output}),
-              130);
+    EXPECT_EQ(run_interrupted_render(output), 130);
     EXPECT_EQ(hedgerow::load_png(output).width, 1600);
 }
 

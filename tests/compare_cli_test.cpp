@@ -1,55 +1,31 @@
 /// `hedgerow compare` as its user sees it: tables, JSON, the page, messages and exit codes.
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "tool.h"
 
 namespace {
 
+using namespace hedgerow;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-struct Result {
-    int code;
-    std::string output, errors;
+struct Result : ToolResult {
+    std::string errors;
 };
 
-std::string bytes_of(const fs::path& path) {
-    std::ostringstream all;
-    all << std::ifstream(path, std::ios::binary).rdbuf();
-    return all.str();
-}
-
-class Compare : public testing::Test {
+class Compare : public ToolTest {
 protected:
-    fs::path folder = fs::temp_directory_path() / ("hedgerow-compare-" + std::to_string(getpid()));
-    void SetUp() override { fs::create_directories(folder); }
-    void TearDown() override { fs::remove_all(folder); }
-    std::string file(const std::string& name) const { return (folder / name).string(); }
-
     /// Few queries and little time: figures do not matter here.
     Result run(const std::string& arguments) const {
         const bool timed = arguments.find("--time") != std::string::npos;
         const std::string command =
-            std::string(HEDGEROW_TOOL_PATH) + " compare " + (timed ? "" : "--time 0.002 ") +
+            HEDGEROW_TOOL_PATH " compare " + std::string(timed ? "" : "--time 0.002 ") +
             (arguments.find("--queries") != std::string::npos ? "" : "--queries 50 ") + arguments + " 2>" +
             file("errors");
-        FILE* pipe = popen(command.c_str(), "r");
-        Result result{-1, {}, {}};
-        char buffer[4096];
-        while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe))
-            result.output.append(buffer, n);
-        result.code = WEXITSTATUS(pclose(pipe));
-        result.errors = bytes_of(file("errors"));
-        return result;
+        return {run_shell(command), bytes_of(file("errors"))};
     }
     json parsed(const std::string& arguments) const {
         const auto r = run(arguments + " --json");

@@ -252,9 +252,7 @@ TEST_F(ExrTool, OtherEndingsAreRefused) {
 
 TEST_F(ExrTool, AnInterruptedRenderSavesWhatIsDone) {
     const std::string output = file("part.exr");
-    EXPECT_EQ(run_interrupted({"render", "gen:teapot:20000", "--structure", "brute-force", "--size",
-                               "1600x1200", "--quiet", "-o", output}),
-              130);
+    EXPECT_EQ(run_interrupted_render(output), 130);
     const Read read(output);
     ASSERT_EQ(read.width, 1600);
     ASSERT_EQ(read.height, 1200);

@@ -20,17 +20,21 @@ namespace hedgerow {
 
 struct ToolResult {
     int code;
-    std::string output;  // both streams
+    std::string output;
 };
 
-inline ToolResult run(const std::string& arguments) {
-    const std::string command = std::string(HEDGEROW_TOOL_PATH) + " " + arguments + " 2>&1";
+/// What a command of the shell prints to stdout.
+inline ToolResult run_shell(const std::string& command) {
     FILE* pipe = popen(command.c_str(), "r");
     ToolResult result{-1, {}};
     char buffer[4096];
     while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, pipe)) result.output.append(buffer, n);
     result.code = WEXITSTATUS(pclose(pipe));
     return result;
+}
+/// Both streams of the tool.
+inline ToolResult run(const std::string& arguments) {
+    return run_shell(HEDGEROW_TOOL_PATH " " + arguments + " 2>&1");
 }
 
 /// The exit code of the tool when it gets a SIGINT after a second and a half.
@@ -49,6 +53,12 @@ inline int run_interrupted(std::vector<std::string> arguments) {
     int status = 0;
     waitpid(child, &status, 0);
     return WEXITSTATUS(status);
+}
+
+/// The exit code of a picture of 1600 x 1200 that takes longer than that.
+inline int run_interrupted_render(const std::string& output) {
+    return run_interrupted({"render", "gen:teapot:20000", "--structure", "brute-force", "--size", "1600x1200",
+                            "--quiet", "-o", output});
 }
 
 inline std::string bytes_of(const std::filesystem::path& path) {
