@@ -1,0 +1,120 @@
+/// Flat pictures of cells, as SVG: of a flat scene, or in a slice.
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/error.h>
+#include <hedgerow/io/text_file.h>
+
+#include "draw.h"
+#include "section.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+Section<2> section_of(const DrawArguments& a, const Box2d&) {
+    if (!a.slice.empty())
+        throw InputError(a.scene + " is flat already, and has no slices: leave --slice out");
+    return {};
+}
+/// Across an axis: "z=0.5" is a fraction of the scene's extent, "z=@12.5" a position.
+Section<3> section_of(const DrawArguments& a, const Box3d& bounds) {
+    const std::string_view text = a.slice;
+    const auto bad = [&]() {
+        return InputError(
+            fmt::format("--slice {}: write x, y or z, then = and a fraction from 0 to 1, as z=0.5, or @ and "
+                        "a position, as "
+                        "z=@12.5",
+                        a.slice));
+    };
+    if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') throw bad();
+    const int axis = text[0] - 'x';
+    const bool position = text[2] == '@';
+    const std::string_view digits = text.substr(position ? 3 : 2);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) throw bad();
+    if (!position) {
+        if (!(value >= 0 && value <= 1)) throw bad();
+        value = bounds.low[axis] + value * bounds.extent()[axis];
+    }
+    Section<3> section;
+    section.origin[axis] = section.within.low[axis] = section.within.high[axis] = value;
+    section.right[axis == 0 ? 1 : 0] = 1;
+    section.up[axis == 2 ? 1 : 2] = 1;
+    return section;
+}
+
+template <class P>
+int draw_cells_of(const DrawArguments& a, const P& set) {
+    constexpr int D = P::dimension;
+    expect_ending(a, ".svg", D == 2 ? "a flat scene" : "a slice");
+    std::vector<std::string> specs = {a.structure};
+    if (!a.beside.empty()) specs.push_back(a.beside);
+    std::vector<NamedStructure> structures;
+    FlatScene scene;
+    ordered_json report = ordered_json::array();
+    for (const auto& spec : specs) {
+        const auto index = build_any(spec, set);
+        const auto bounds = bounds_of(*index);
+        const auto section = section_of(a, bounds);
+        const auto limits = section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels);
+        const auto cells = few(index->outline(limits));
+        NamedStructure s{spec, {}, flat_structure(cells, section)};
+        if (!a.beside.empty()) {
+            // The figure is of the whole tree, whatever the picture shows of it.
+            FlatStructure whole;
+            add_shared(index->outline(), section, whole);
+            add_shared(cells, section, s.flat);
+            s.flat.overlap = whole.overlap;
+        }
+        s.facts = {fmt::format("{} cells here; {} leaves, depth {}, {} items of {} primitives",
+                               s.flat.cells.size(), index->leaf_count(), index->depth(), index->item_count(),
+                               index->size())};
+        if (s.flat.overlap.value_or(0) > 0)
+            s.facts.push_back(fmt::format("siblings share {:.2f}% of their parents' {}",
+                                          100 * *s.flat.overlap, D == 2 ? "area" : "volume"));
+        report.push_back(facts_of(s, index->leaf_count(), index->depth()));
+        if (scene.primitives.empty()) scene = flat_scene(a, set, section, bounds);
+        structures.push_back(std::move(s));
+    }
+    if (D == 3) scene.title += ", slice " + a.slice;
+    if (a.levels > 0) scene.title += fmt::format(", first {} levels", a.levels);
+    save_text(a.output, cells_picture(scene, structures));
+    if (a.json)
+        fmt::print("{}\n", ordered_json{{"output", a.output}, {"structures", report}}.dump(2));
+    else if (!a.quiet)
+        for (const auto& s : structures) fmt::print("{}: {}\n", s.name, fmt::join(s.facts, "; "));
+    return 0;
+}
+
+}  // namespace
+
+void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what) {
+    if (std::filesystem::path(a.output).extension() != ending)
+        throw InputError(
+            fmt::format("{}: {} is written as {}; let the output end so", a.output, what, ending));
+}
+
+ordered_json facts_of(const NamedStructure& s, std::size_t leaves, int depth) {
+    ordered_json facts = {
+        {"structure", s.name}, {"cells_drawn", s.flat.cells.size()}, {"leaves", leaves}, {"depth", depth}};
+    if (s.flat.overlap) facts["sibling_overlap"] = *s.flat.overlap;
+    return facts;
+}
+
+template <class T>
+int draw_cells(const DrawArguments& a, const Scene<T>& scene) {
+    return std::visit([&](const auto& set) { return draw_cells_of(a, set); }, scene);
+}
+template int draw_cells(const DrawArguments&, const Scene<float>&);
+template int draw_cells(const DrawArguments&, const Scene<double>&);
+
+}  // namespace hedgerow::cli

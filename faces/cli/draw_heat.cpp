@@ -1,0 +1,77 @@
+/// Heat maps: what the rays of a view cost, as PNG or as layers of numbers.
+#include <filesystem>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/render/lettering.h>
+#include <hedgerow/render/raycast.h>
+
+#include "draw.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// What the scale ends at when nobody says: the same for every structure and scene, so that pictures compare.
+std::uint64_t usual_scale(Shading shading) {
+    return shading == Shading::steps ? 200 : (shading == Shading::tests ? 60 : 4000);
+}
+template <class P>
+int draw_heat_of(const DrawArguments& a, const P& set) {
+    RenderOptions options;
+    options.layers = asks_for_layers(a.output);
+    std::tie(options.width, options.height) = parse_size(a.view.size);
+    options.seed = a.seed;
+    options.shading = parse_shading(a.heat);
+    options.steps_max = a.scale > 0 ? a.scale : usual_scale(options.shading);
+    const auto index = build_any(a.structure, set);
+    options.camera = camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)});
+    Picture picture;
+    {
+        ProgressLine line("casting rays", a.quiet);
+        picture = raycast(*index, set, options, default_executor(), line.progress());
+    }
+    const std::string unit =
+        a.heat == "time" ? "nanoseconds" : (a.heat == "tests" ? "primitives tested" : a.heat);
+    draw_note(
+        picture.image, 0, 0,
+        note_lines(picture.image, {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
+                                   fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit,
+                                               picture.mean, picture.most)}),
+        letter_scale(picture.image));
+    save(a.output, picture);
+    const double pixels = double(options.width) * double(options.height);
+    if (a.json)
+        fmt::print("{}\n", ordered_json{{"output", a.output},
+                                        {"structure", a.structure},
+                                        {"heat", a.heat},
+                                        {"scale", options.steps_max},
+                                        {"mean", picture.mean},
+                                        {"most", picture.most},
+                                        {"share_beyond_scale", double(picture.beyond) / pixels},
+                                        {"finished", !interrupted.load()}}
+                               .dump(2));
+    else if (!a.quiet)
+        fmt::print(
+            "{}: {} a ray: {:.1f} on average, at most {:.0f}; the scale ends at {}, and {:.2f}% of the "
+            "pixels lie beyond\n",
+            a.structure, unit, picture.mean, picture.most, options.steps_max,
+            100 * double(picture.beyond) / pixels);
+    return interrupted ? 130 : 0;
+}
+
+}  // namespace
+
+template <class T>
+int draw_heat(const DrawArguments& a, const Scene<T>& scene) {
+    return in_space(a, scene, [&](const auto&, const auto& seen) { return draw_heat_of(a, seen); });
+}
+template int draw_heat(const DrawArguments&, const Scene<float>&);
+template int draw_heat(const DrawArguments&, const Scene<double>&);
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,154 @@
+/// One ray's walk, as SVG or as a page that steps through it.
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/error.h>
+#include <hedgerow/io/text_file.h>
+#include <hedgerow/render/camera.h>
+
+#include "draw.h"
+#include "section.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Cells that no ray visits are drawn behind those that it does, if there are no more.
+constexpr std::size_t most_behind = 20'000;
+
+template <class T>
+Section<2> section_along(const Ray<T, 2>&, const Box2d&) {
+    return {};
+}
+/// The plane that holds the ray and the scene's upward direction, or another where that runs along the ray.
+template <class T>
+Section<3> section_along(const Ray<T, 3>& ray, const Box3d& bounds) {
+    Section<3> section;
+    section.origin = Vec3d(ray.origin);
+    section.right = normalized(Vec3d(ray.direction));
+    Vec3d up(automatic_camera({Vec3f(bounds.low), Vec3f(bounds.high)}).up);
+    if (std::abs(dot(up, section.right)) > 0.9) up = {up[2], up[0], up[1]};
+    section.up = normalized(up - section.right * dot(up, section.right));
+    return section;
+}
+
+template <class T, int D>
+Ray<T, D> ray_of(const DrawArguments& a) {
+    if (a.ray.size() != 2 * D)
+        throw InputError(
+            fmt::format("--ray has {} numbers: {} are needed, the origin's and the direction's, as {}",
+                        a.ray.size(), 2 * D, D == 2 ? "-1,0.5,1,0.1" : "-1,0.5,0.5,1,0.1,0"));
+    Ray<T, D> ray;
+    for (int k = 0; k < D; ++k) {
+        ray.origin[k] = static_cast<T>(a.ray[static_cast<std::size_t>(k)]);
+        ray.direction[k] = static_cast<T>(a.ray[static_cast<std::size_t>(k + D)]);
+    }
+    if (!(length(Vec<double, D>(ray.direction)) > 0) || !finite(ray.origin) || !finite(ray.direction))
+        throw InputError("--ray: the direction must be finite and not zero, the origin finite");
+    return ray;
+}
+
+template <int D>
+std::vector<double> list_of(const Vec<double, D>& v) {
+    return {v.data, v.data + D};
+}
+template <class T, int D>
+TraceTable table_of(const std::string& structure, const Ray<T, D>& ray, const Trace<T, D>& trace,
+                    const Section<D>& section) {
+    TraceTable table;
+    table.structure = structure;
+    const Vec<double, D> origin(ray.origin), direction(ray.direction);
+    table.origin = list_of(origin), table.direction = list_of(direction);
+    table.flat_origin = section.flat(origin);
+    table.flat_direction = section.flat(origin + direction) - table.flat_origin;
+    table.visits = trace.visits;
+    if (trace.hit) table.hit = {trace.hit->element, static_cast<double>(trace.hit->t)};
+    for (const auto& s : trace.steps) {
+        TraceRow row{s.cell.id,
+                     s.cell.parent,
+                     s.cell.level,
+                     s.cell.leaf,
+                     list_of(s.cell.box.low),
+                     list_of(s.cell.box.high),
+                     {static_cast<double>(s.inside.entry), static_cast<double>(s.inside.exit)},
+                     static_cast<double>(s.limit),
+                     {},
+                     section.part(s.cell)};
+        for (const auto& t : s.tests)
+            row.tests.push_back(
+                {t.id, t.skipped, t.t ? std::optional(static_cast<double>(*t.t)) : std::nullopt});
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+ordered_json json_of(const TraceTable& table) {
+    ordered_json steps = ordered_json::array();
+    for (const auto& r : table.rows) {
+        ordered_json tests = ordered_json::array();
+        for (const auto& t : r.tests) {
+            ordered_json test = {{"primitive", t.id}, {"skipped", t.skipped}};
+            if (t.t) test["t"] = *t.t;
+            tests.push_back(test);
+        }
+        steps.push_back({{"node", r.node},
+                         {"parent", r.parent},
+                         {"level", r.level},
+                         {"leaf", r.leaf},
+                         {"low", r.low},
+                         {"high", r.high},
+                         {"t", {r.inside.entry, r.inside.exit}},
+                         {"limit", r.limit},
+                         {"tests", tests}});
+    }
+    ordered_json hit;
+    if (table.hit) hit = {{"primitive", table.hit->first}, {"t", table.hit->second}};
+    return {{"structure", table.structure},
+            {"origin", table.origin},
+            {"direction", table.direction},
+            {"hit", hit},
+            {"nodes", table.visits.nodes},
+            {"leaves", table.visits.leaves},
+            {"primitives", table.visits.primitives},
+            {"skipped", table.visits.skipped},
+            {"steps", steps}};
+}
+
+template <class P>
+int draw_ray_in(const DrawArguments& a, const P& set) {
+    using T = typename P::Scalar;
+    constexpr int D = P::dimension;
+    expect_ending(a, a.frames ? ".html" : ".svg", a.frames ? "a page of frames" : "a ray's way");
+    const auto ray = ray_of<T, D>(a);
+    const auto index = build_any(a.structure, set);
+    const auto bounds = bounds_of(*index);
+    const auto section = section_along(ray, bounds);
+    const auto table = table_of(a.structure, ray, index->trace(ray), section);
+    FlatScene scene = flat_scene(a, set, section, bounds);
+    scene.title += D == 2 ? ": what a ray visits" : ": what a ray visits, in a plane along it";
+    FlatStructure all;
+    auto cells = index->outline(section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels));
+    if (cells.size() <= most_behind) all = flat_structure(cells, section);
+    save_text(a.output, a.frames ? ray_page(scene, all, table) : ray_picture(scene, all, table));
+    if (a.json)
+        fmt::print("{}\n", json_of(table).dump(2));
+    else if (!a.quiet)
+        fmt::print("{}", text_of(table));
+    return 0;
+}
+
+}  // namespace
+
+template <class T>
+int draw_ray(const DrawArguments& a, const Scene<T>& scene) {
+    return std::visit([&](const auto& set) { return draw_ray_in(a, set); }, scene);
+}
+template int draw_ray(const DrawArguments&, const Scene<float>&);
+template int draw_ray(const DrawArguments&, const Scene<double>&);
+
+}  // namespace hedgerow::cli

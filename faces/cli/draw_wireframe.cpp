@@ -1,0 +1,178 @@
+/// Wireframes: the cells of a structure as lines over a view of the scene, as PNG.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/render/lettering.h>
+#include <hedgerow/render/raycast.h>
+#include <hedgerow/render/wireframe.h>
+
+#include "draw.h"
+#include "svg.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+/// So many boxes can be told apart in a wireframe; that is how its levels are chosen when nobody says.
+constexpr std::size_t most_boxes = 250;
+
+Image::Pixel pixel_of(const std::string& colour) {
+    Image::Pixel p;
+    for (std::size_t k = 0; k < 3; ++k)
+        p[k] = static_cast<std::uint8_t>(std::stoi(colour.substr(1 + 2 * k, 2), nullptr, 16));
+    return p;
+}
+
+/// The boxes of the levels that are wanted, or of as many as can be told apart. Empty ones are left out.
+template <class T>
+std::vector<OutlineCell<3>> boxes_of(const AnyIndex<T, 3>& index, int wanted, int& levels) {
+    const auto first_levels = [&](int n) {
+        auto cells = index.outline({n});
+        std::erase_if(cells, [](const auto& c) { return c.leaf && c.items.empty(); });
+        return cells;
+    };
+    levels = wanted > 0 ? std::min(wanted, std::max(1, index.depth())) : 1;
+    auto cells = first_levels(levels);
+    while (wanted == 0 && levels < index.depth()) {
+        auto more = first_levels(levels + 1);
+        if (more.size() > most_boxes) break;
+        cells = std::move(more);
+        ++levels;
+    }
+    return few(std::move(cells));
+}
+
+void draw_edges(const OutlineCell<3>& cell, const Image::Pixel& colour, float width, Wireframe& wires) {
+    const Polytope<3> region = cell.region();
+    std::vector<std::pair<Vec3d, Vec3d>> edges;
+    const auto before = [](const Vec3d& p, const Vec3d& q) {
+        return std::lexicographical_compare(p.data, p.data + 3, q.data, q.data + 3);
+    };
+    for (const auto& face : region.faces())
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            const Vec3d &p = face[i], &q = face[(i + 1) % face.size()];
+            const auto edge = before(p, q) ? std::pair(p, q) : std::pair(q, p);
+            // Each belongs to two faces.
+            if (std::find(edges.begin(), edges.end(), edge) == edges.end()) edges.push_back(edge);
+        }
+    for (const auto& [p, q] : edges) wires.draw({Vec3f(p), Vec3f(q), colour, width});
+}
+/// A title and below it a swatch and a number a level, from the upper left corner.
+void draw_level_legend(Image& image, const std::vector<std::string>& title, int levels) {
+    const int unit = letter_scale(image), row = letter_height * unit;
+    std::vector<std::string> lines = note_lines(image, title);
+    const int first = static_cast<int>(lines.size());
+    for (int k = 0; k < levels; ++k) lines.push_back(fmt::format("     level {}", k + 1));
+    draw_note(image, 0, 0, lines, unit);
+    for (int k = 0; k < levels; ++k) {
+        const auto colour = pixel_of(level_colour(k, levels));
+        const int top = (first + k) * row + 4 * unit;
+        for (int y = top; y < top + 8 * unit && y < image.height; ++y)
+            for (int x = 6 * unit; x < 28 * unit && x < image.width; ++x) image.at(x, y) = colour;
+    }
+}
+
+/// One structure's boxes over the picture of what can be seen.
+template <class T, class Seen>
+Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, const Seen& seen,
+                const RenderOptions& options, int wanted, std::string& facts) {
+    auto picture = raycast(seen_index, seen, options, default_executor());
+    for (auto& pixel : picture.image.pixels)
+        for (auto& c : pixel)
+            c = static_cast<std::uint8_t>(255 - (255 - c) * 9 / 20);  // pale, under the lines
+    const RayMaker maker(options.camera, options.width, options.height);
+    const auto surface = depths(seen_index, maker, options.width, options.height, default_executor());
+    int levels = 0;
+    auto cells = boxes_of(index, wanted, levels);
+    std::stable_sort(cells.begin(), cells.end(),
+                     [](const auto& a, const auto& b) { return a.level > b.level; });
+    Wireframe wires(picture.image, surface, maker);
+    const float unit = static_cast<float>(options.height) / 768;
+    for (const auto& c : cells)
+        draw_edges(c, pixel_of(level_colour(c.level - 1, levels)),
+                   unit * std::max(1.1f, 2.8f * std::pow(0.85f, static_cast<float>(c.level - 1))), wires);
+    facts = fmt::format("{} cells of the first {} levels of {}", cells.size(), levels, index.depth());
+    draw_level_legend(picture.image, {std::string(index.structure()), facts}, levels);
+    return picture.image;
+}
+Image joined(const Image& left, const Image& right) {
+    Image both(left.width + right.width + 4, left.height, {255, 255, 255});
+    for (int y = 0; y < left.height; ++y) {
+        for (int x = 0; x < left.width; ++x) both.at(x, y) = left.at(x, y);
+        for (int x = 0; x < right.width; ++x) both.at(left.width + 4 + x, y) = right.at(x, y);
+    }
+    return both;
+}
+
+/// `seen`: what the picture is of, and `set` what the structure holds; of points they differ.
+template <class P, class Seen>
+int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
+    expect_ending(a, ".png", "a picture in space");
+    RenderOptions options;
+    std::tie(options.width, options.height) = parse_size(a.view.size);
+    options.samples = 4, options.seed = a.seed;
+    std::vector<std::string> specs = {a.structure};
+    if (!a.beside.empty()) {
+        specs.push_back(a.beside);
+        options.width = std::max(1, (options.width - 4) / 2);
+    }
+    const auto seen_index = build_any("bvh", seen);
+    options.camera =
+        camera_of(a.view, a, Box3f{Vec3f(seen_index->bounds().low), Vec3f(seen_index->bounds().high)});
+    std::optional<Image> image;
+    ordered_json report = ordered_json::array();
+    std::string text;
+    for (const auto& spec : specs) {
+        const auto index = build_any(spec, set);
+        std::string facts;
+        const Image one = wireframe(*index, *seen_index, seen, options, a.levels, facts);
+        image = image ? joined(*image, one) : one;
+        NamedStructure s{spec, {facts}, {}};
+        if (!a.beside.empty()) {
+            add_shared(index->outline(), Section<3>{{}, {1, 0, 0}, {0, 1, 0}}, s.flat);
+            if (s.flat.overlap.value_or(0) > 0)
+                facts +=
+                    fmt::format("; siblings share {:.2f}% of their parents' volume", 100 * *s.flat.overlap);
+        }
+        report.push_back(facts_of(s, index->leaf_count(), index->depth()));
+        text += fmt::format("{}: {}\n", spec, facts);
+    }
+    save_png(a.output, *image);
+    if (a.json)
+        fmt::print("{}\n", ordered_json{{"output", a.output}, {"structures", report}}.dump(2));
+    else if (!a.quiet)
+        fmt::print("{}", text);
+    return 0;
+}
+
+}  // namespace
+
+int letter_scale(const Image& image) {
+    return std::max(1, image.height / 600);
+}
+std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts) {
+    const int letters = image.width / (letter_width * letter_scale(image)) - 2;
+    std::vector<std::string> lines;
+    for (const auto& text : texts)
+        for (auto& line : wrapped(text, static_cast<std::size_t>(std::max(8, letters))))
+            lines.push_back(std::move(line));
+    return lines;
+}
+
+template <class T>
+int draw_wireframe(const DrawArguments& a, const Scene<T>& scene) {
+    return in_space(a, scene,
+                    [&](const auto& set, const auto& seen) { return draw_wireframe_of(a, set, seen); });
+}
+template int draw_wireframe(const DrawArguments&, const Scene<float>&);
+template int draw_wireframe(const DrawArguments&, const Scene<double>&);
+
+}  // namespace hedgerow::cli
