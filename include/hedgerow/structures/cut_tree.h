@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include <hedgerow/queries/concepts.h>
 #include <hedgerow/structures/references.h>
 
 namespace hedgerow {
@@ -132,6 +133,67 @@ private:
     const Cutter& cutter_;
     int deepest_;
     Executor& executor_;
+};
+
+/// What is asked of kd-trees and BSP trees alike, as structures over a set.
+template <std::floating_point T, int D, class Node>
+class PlantedCutTree {
+public:
+    static constexpr auto packed_order = PackedOrder::of_leaves;
+    static constexpr bool exclusive() { return false; }
+
+    const Box<T, D>& bounds() const { return bounds_; }
+    std::span<const PrimitiveId> items() const { return tree_.items; }
+    std::size_t bytes() const { return tree_.bytes(); }
+    std::size_t node_count() const { return tree_.nodes.size(); }
+    std::size_t leaf_count() const { return tree_.leaf_count(); }
+    int depth() const { return tree_.depth; }
+
+    // What the walk and `fold` ask.
+    bool empty() const { return tree_.nodes.empty(); }
+    bool is_leaf(NodeId n) const { return tree_.nodes[n].is_leaf(); }
+    bool is_empty(NodeId n) const { return tree_.nodes[n].is_empty(); }
+    Leaf leaf(NodeId n) const { return {tree_.items.data(), tree_.nodes[n].first(), tree_.nodes[n].link()}; }
+    NodeId low_child(NodeId n) const { return tree_.nodes[n].link(); }
+    NodeId high_child(NodeId n) const { return tree_.nodes[n].link() + 1; }
+
+protected:
+    /// What is wrong with the tree; empty if nothing is. `cut(node, cell, fault)` gives the two sides of a
+    /// node's cell, and `meets(id, cell)` says whether a primitive may stand there.
+    template <PrimitiveSet P, class Cell, class Cut, class Meets>
+    std::string fault(const P& set, const Cell& root, int deepest, Cut cut, Meets meets) const {
+        if (set.size() != count_) return "not built over these primitives";
+        std::vector<std::uint8_t> seen(set.size());
+        std::string fault;
+        std::size_t visited = 0;
+        const auto visit_leaf = [&](const Leaf& leaf, const Cell& cell) {
+            for (std::size_t i = leaf.first; i < std::size_t(leaf.first) + leaf.count; ++i) {
+                if (i >= tree_.items.size() || tree_.items[i] >= set.size())
+                    return void(fault = "an item that is no primitive");
+                seen[tree_.items[i]] = 1;
+                if (!meets(tree_.items[i], cell)) fault = "a primitive in a leaf that it does not meet";
+            }
+        };
+        const auto visit = [&](auto& self, NodeId n, const Cell& cell, int depth) -> void {
+            if (!fault.empty()) return;
+            if (n >= tree_.nodes.size() || ++visited > tree_.nodes.size())
+                return void(fault = "a child that is not there");
+            if (depth > deepest) return void(fault = "deeper than its bound");
+            if (is_leaf(n)) return visit_leaf(leaf(n), cell);
+            const auto [low, high] = cut(n, cell, fault);
+            self(self, low_child(n), low, depth + 1);
+            self(self, high_child(n), high, depth + 1);
+        };
+        if (!empty()) visit(visit, 0, root, 1);
+        for (const auto s : seen)
+            if (!s && fault.empty()) fault = "a primitive is in no leaf";
+        return fault;
+    }
+
+    Box<T, D> bounds_;
+    CutTree<Node> tree_;
+    std::size_t count_ = 0;
+    bool mailbox_ = true;
 };
 
 /// A depth that trees seldom need: 8 + 1.3·log2(n) (Pharr, Jakob, Humphreys, Physically Based
