@@ -118,6 +118,52 @@ TYPED_TEST(Cells, AGridsMemoryGrowsWithTheOccupiedCells) {
     EXPECT_LT(fine.bytes(), fine.node_count() / 2);
 }
 
+/// Whole lines, some along an axis or from cell corner to cell corner.
+TYPED_TEST(Cells, AGridStepsOverEmptyBlocksAndMissesNothing) {
+    using T = TypeParam;
+    const auto compare = [](const auto& set, auto ray_of) {
+        using Set = std::remove_cvref_t<decltype(set)>;
+        constexpr int D = Set::dimension;
+        typename Grid<T, D>::Options options{.cells = {.resolution = D == 3 ? 100 : 1000}};
+        const auto with = build<Grid>(set, options);
+        options.skip_empty = false;
+        const auto without = build<Grid>(set, options);
+        Visits fast, slow;
+        for (std::uint64_t i = 0; i < 1000; ++i) {
+            Random random(9, i);
+            const Ray<T, D> ray = ray_of(with.bounds(), random);
+            Visits a, b;
+            EXPECT_EQ(hit_count(with, ray, KeepAll{}, a), hit_count(without, ray, KeepAll{}, b));
+            EXPECT_EQ(a.leaves, b.leaves) << i;
+            EXPECT_EQ(a.primitives, b.primitives) << i;
+            EXPECT_LE(a.nodes, b.nodes) << i;
+            fast += a, slow += b;
+        }
+        EXPECT_LT(2 * fast.nodes, slow.nodes);
+    };
+    const auto anywhere = [](const auto& bounds, Random& random) {
+        constexpr int D = std::remove_cvref_t<decltype(bounds)>::dimension;
+        const auto from = matrix::point_in(bounds, 0.5, random);
+        Vec<T, D> to = matrix::point_in(bounds, 0.0, random);
+        const int along = static_cast<int>(random.uniform(0, 2 * D));
+        for (int a = 0; a < D && along < D; ++a)
+            if (a != along) to[a] = from[a];
+        return Ray<T, D>{from, to - from};
+    };
+    const auto on_the_lattice = [](const auto& bounds, Random& random) {
+        constexpr int D = std::remove_cvref_t<decltype(bounds)>::dimension;
+        Ray<T, D> ray{bounds.low, bounds.extent()};
+        for (int a = 0; a < D; ++a) {
+            ray.origin[a] += bounds.extent()[a] * T(std::floor(random.uniform(0, 25)) / 25);
+            ray.direction[a] *= T(std::floor(random.uniform(-2, 3)));
+        }
+        return ray;
+    };
+    compare(teapot<T>(2000), anywhere);
+    compare(teapot<T>(2000), on_the_lattice);
+    compare(segments2d<T>(200), anywhere);
+}
+
 TYPED_TEST(Cells, AGridBeyondItsBudgetIsRefused) {
     const auto mesh = soup<TypeParam>(1000);
     for (const double budget : {1e4, 1e6}) {

@@ -37,7 +37,7 @@ inline constexpr const char* structures[] = {
     "kdtree:mailbox=off,intersection_cost=100",
     "grid:resolution=3",
     "grid:resolution=100,insert=box",
-    "grid:heuristic=roots,mailbox=off",
+    "grid:heuristic=roots,mailbox=off,skip_empty=off",
     "two-level-grid:resolution=2,inner_density=10",
     "octree:leaf_size=1",
     "bsp:samples=4,intersection_cost=20,plane_cost=1",

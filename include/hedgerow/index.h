@@ -180,6 +180,9 @@ private:
             else
                 return hedgerow::test_leaf(index.primitives_, probe, leaf, query);
         }
+        void prefetch(const Leaf& leaf) const {
+            if constexpr (packs && requires { index.leaves_.prefetch(leaf); }) index.leaves_.prefetch(leaf);
+        }
         using Scalar = typename P::Scalar;
         static constexpr int dimension = P::dimension;
         std::size_t size() const { return index.size(); }

@@ -4,10 +4,19 @@
 namespace hedgerow {
 
 const std::vector<StructureInfo>& structure_list() {
+    // What several structures have.
+    static const OptionInfo mailbox = {"mailbox", "on|off", "on",
+                                       "test a primitive once a query, in however many cells it stands"};
+    static const OptionInfo insert = {"insert", "exact|box", "exact",
+                                      "where a primitive is entered: cells that it meets, or its box"};
+    static const OptionInfo budget = {"budget", "BYTES", "8e9",
+                                      "a build that would take more memory is refused"};
+    static const OptionInfo empty_bonus = {"empty_bonus", "0..0.99", "0.2",
+                                           "how much less a plane costs that cuts off empty space"};
     static const std::vector<OptionInfo> of_orthtrees = {
         {"leaf_size", "COUNT", "8", "cells of no more primitives are leaves"},
         {"max_depth", "0..32", "20", "how often the first cell may be halved"},
-        {"mailbox", "on|off", "on", "test a primitive once a query, in however many cells it stands"}};
+        mailbox};
     static const std::vector<StructureInfo> list = {
         {"brute-force",
          "no structure: every primitive is tested",
@@ -17,9 +26,10 @@ const std::vector<StructureInfo>& structure_list() {
          {{"density", "NUMBER", "4", "cells a primitive"},
           {"heuristic", "density|roots", "density", "roots: 3 cube roots of n along each axis"},
           {"resolution", "0..1024 (2D: 32768)", "0", "cells on the longest axis; 0: by the heuristic"},
-          {"insert", "exact|box", "exact", "where a primitive is entered: cells that it meets, or its box"},
-          {"budget", "BYTES", "8e9", "a build that would take more memory is refused"},
-          {"mailbox", "on|off", "on", "test a primitive once a query, in however many cells it stands"}}},
+          insert,
+          budget,
+          mailbox,
+          {"skip_empty", "on|off", "on", "rays pass over a block of empty cells in one step"}}},
         {"two-level-grid",
          "a coarse grid, of which each crowded cell is a grid of its own",
          {{"density", "NUMBER", "0.12", "cells a primitive, of the first level"},
@@ -28,9 +38,9 @@ const std::vector<StructureInfo>& structure_list() {
            "of the first level; roots: 3 cube roots of n along each axis"},
           {"resolution", "0..1024 (2D: 32768)", "0",
            "of the first level, on the longest axis; 0: by the heuristic"},
-          {"insert", "exact|box", "exact", "where a primitive is entered: cells that it meets, or its box"},
-          {"budget", "BYTES", "8e9", "a build that would take more memory is refused"},
-          {"mailbox", "on|off", "on", "test a primitive once a query, in however many cells it stands"}}},
+          insert,
+          budget,
+          mailbox}},
         {"kdtree",
          "kd-tree: space cut by axis-aligned planes",
          {{"builder", "sah|binned|median|midpoint", "sah", "how planes are chosen"},
@@ -40,8 +50,8 @@ const std::vector<StructureInfo>& structure_list() {
           {"bins", "2..256", "32", "of the binned builder"},
           {"traversal_cost", "NUMBER", "4", "of an inner node, for the SAH"},
           {"intersection_cost", "NUMBER", "1", "of a primitive, for the SAH"},
-          {"empty_bonus", "0..0.99", "0.2", "how much less a plane costs that cuts off empty space"},
-          {"mailbox", "on|off", "on", "test a primitive once a query, in how many cells it may stand"}}},
+          empty_bonus,
+          mailbox}},
         {"point-kdtree",
          "kd-tree over points, which are themselves the inner nodes; axes in turn",
          {},
@@ -57,8 +67,8 @@ const std::vector<StructureInfo>& structure_list() {
           {"traversal_cost", "NUMBER", "4", "of an inner node across an axis, for the SAH"},
           {"plane_cost", "NUMBER", "6", "of one with any other plane"},
           {"intersection_cost", "NUMBER", "1", "of a primitive"},
-          {"empty_bonus", "0..0.99", "0.2", "how much less a plane costs that cuts off empty space"},
-          {"mailbox", "on|off", "on", "test a primitive once a query, in how many cells it may stand"}}},
+          empty_bonus,
+          mailbox}},
         {"bvh",
          "binary bounding volume hierarchy (the default)",
          {{"volume", "box|sphere|obb|kdop6|kdop14|kdop18|kdop26|cylinder|hull", "box",

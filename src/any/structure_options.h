@@ -125,21 +125,24 @@ inline void read_resolution(OptionReader& in, GridResolution& o, int least, int 
     in.number("density", o.density, 1e-9, 1e6);
     in.number("resolution", o.resolution, least, most);
 }
-template <class T, int D>
-void read_options(OptionReader& in, typename Grid<T, D>::Options& o, std::type_identity<Grid<T, D>>) {
-    read_resolution(in, o.cells, 0, Lattice<D>::most_cells);
+template <class Options>
+void read_entering(OptionReader& in, Options& o) {
     in.choice<GridInsert>("insert", o.insert, {{"exact", GridInsert::exact}, {"box", GridInsert::box}});
     in.number("budget", o.budget, 1e3, 1e15);
     in.flag("mailbox", o.mailbox);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename Grid<T, D>::Options& o, std::type_identity<Grid<T, D>>) {
+    read_resolution(in, o.cells, 0, Lattice<D>::most_cells);
+    read_entering(in, o);
+    in.flag("skip_empty", o.skip_empty);
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename TwoLevelGrid<T, D>::Options& o,
                   std::type_identity<TwoLevelGrid<T, D>>) {
     read_resolution(in, o.cells, 0, Lattice<D>::most_cells);
     in.number("inner_density", o.inner_density, 1e-9, 1e6);
-    in.choice<GridInsert>("insert", o.insert, {{"exact", GridInsert::exact}, {"box", GridInsert::box}});
-    in.number("budget", o.budget, 1e3, 1e15);
-    in.flag("mailbox", o.mailbox);
+    read_entering(in, o);
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename Orthtree<T, D>::Options& o, std::type_identity<Orthtree<T, D>>) {

@@ -41,7 +41,8 @@ struct Lattice {
         return lattice;
     }
 
-    /// Cells are numbered by bricks of 4³ (in the plane 8²): a brick's 64 cells fit the bits of a word.
+    /// Cells are numbered by bricks of 4³ (in the plane 8²), and bricks by blocks of as many bricks: the 64
+    /// cells of a brick, and bricks of a block, fit the bits of a word.
     static constexpr int brick_bits = D == 3 ? 2 : 3;
     /// Along an axis, so that numbers have 30 bits.
     static constexpr std::int32_t most_cells = D == 3 ? 1024 : 32768;
@@ -54,27 +55,28 @@ struct Lattice {
     }
     double plane(std::int32_t i, int axis) const { return low[axis] + product(double(i), size[axis]); }
     std::uint32_t number(const Cell& c) const {
-        std::uint32_t brick = 0, inside = 0;
+        std::uint32_t block = 0, brick = 0, inside = 0;
         for (std::size_t a = D; a-- > 0;) {
             const auto x = static_cast<std::uint32_t>(c[a]);
-            brick = brick * bricks(a) + (x >> brick_bits);
-            inside = inside << brick_bits | (x & ((1u << brick_bits) - 1));
+            block = block * blocks(a) + (x >> 2 * brick_bits);
+            brick = brick << brick_bits | (x >> brick_bits & in_brick);
+            inside = inside << brick_bits | (x & in_brick);
         }
-        return brick << 6 | inside;
+        return block << 12 | brick << 6 | inside;
     }
     Cell cell(std::uint32_t number) const {
         Cell c;
-        std::uint32_t brick = number >> 6, inside = number & 63;
+        std::uint32_t block = number >> 12, brick = number >> 6 & 63, inside = number & 63;
         for (std::size_t a = 0; a < D; ++a) {
-            const std::uint32_t x = inside & ((1u << brick_bits) - 1);
-            c[a] = static_cast<std::int32_t>(brick % bricks(a) << brick_bits | x);
-            brick /= bricks(a), inside >>= brick_bits;
+            c[a] = static_cast<std::int32_t>(
+                (block % blocks(a) << brick_bits | (brick & in_brick)) << brick_bits | (inside & in_brick));
+            block /= blocks(a), brick >>= brick_bits, inside >>= brick_bits;
         }
         return c;
     }
-    std::uint32_t brick_count() const {
+    std::uint32_t block_count() const {
         std::uint32_t n = 1;
-        for (std::size_t a = 0; a < D; ++a) n *= bricks(a);
+        for (std::size_t a = 0; a < D; ++a) n *= blocks(a);
         return n;
     }
     std::size_t cell_count() const {
@@ -92,8 +94,10 @@ struct Lattice {
     }
 
 private:
-    std::uint32_t bricks(std::size_t a) const {
-        return (static_cast<std::uint32_t>(resolution[a]) + (1u << brick_bits) - 1) >> brick_bits;
+    static constexpr std::uint32_t in_brick = (1u << brick_bits) - 1;
+
+    std::uint32_t blocks(std::size_t a) const {
+        return (static_cast<std::uint32_t>(resolution[a]) + (1u << 2 * brick_bits) - 1) >> 2 * brick_bits;
     }
 };
 

@@ -61,7 +61,7 @@ public:
             first[static_cast<std::size_t>(a)] = lattice.coordinate(static_cast<double>(box_.low[a]), a);
             last[static_cast<std::size_t>(a)] = lattice.coordinate(static_cast<double>(box_.high[a]), a);
         }
-        for_each_cell(first, last, [&](const auto& cell) { return visit(cell) == Flow::go_on; });
+        for_each_cell(first, last, [&](const auto& cell) { return visit(cell).flow == Flow::go_on; });
     }
 
 private:

@@ -12,6 +12,16 @@ namespace hedgerow {
 /// Whether a walk goes on after it was offered something.
 enum class Flow : bool { stop, go_on };
 
+/// What a look into a cell of a lattice tells a sweep: whether to go on, and that nothing stands in the whole
+/// block of 2^empty_bits cells along each axis (aligned to multiples of it) in which the cell lies.
+struct Looked {
+    Flow flow;
+    int empty_bits;
+
+    // NOLINTNEXTLINE(google-explicit-constructor): most looks say no more
+    constexpr Looked(Flow f, int empty = 0) : flow(f), empty_bits(empty) {}
+};
+
 /// What a walk by planes carries into the two sides of a cut, and whether anything of the probe within the
 /// limit is there.
 template <class State>

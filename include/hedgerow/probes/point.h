@@ -92,7 +92,7 @@ public:
                 const T at = static_cast<T>(distance2(p, box) * (1 - 0x1p-20));
                 if (at - 4 * std::numeric_limits<T>::denorm_min() > limit()) return true;
                 any = true;
-                return visit(cell) == Flow::go_on;
+                return visit(cell).flow == Flow::go_on;
             });
             if (!go_on || !any) return;
         }

@@ -28,6 +28,7 @@ public:
     using Scalar = T;
     static constexpr int dimension = D;
     using State = Interval<T>;
+    using Cell = typename Lattice<D>::Cell;
 
     /// `more` is added to e, for primitives that err by more than their own test does.
     RayProbe(const Ray<T, D>& ray, const Box<T, D>& scene, T more = T(0)) : ray_(ray) {
@@ -148,9 +149,11 @@ public:
     }
 
     /// Visits the cells along the ray in order (Amanatides and Woo 1987), each crossing computed afresh from
-    /// the cell's integer coordinates, not summed up. `limit()` is asked before each step and `visit(cell)`
-    /// may stop the walk. When the error exceeds half of the inflation of the primitives, the neighbours as
-    /// far as it reaches are visited too (and again from the next cell: such rays pay for their distance).
+    /// the cell's integer coordinates, not summed up. `limit()` is asked before each step, and `visit(cell)`
+    /// may stop the walk, or say that a block of cells is empty: the ray is then followed to where it leaves
+    /// that block, and the cell there is computed from its place (which errs by less than the inflation of
+    /// the primitives). When the error exceeds half of that inflation, the neighbours as far as it reaches
+    /// are visited too (and again from the next cell: such rays pay for their distance).
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
         if (!usable_) return;
@@ -158,40 +161,57 @@ public:
             inverse = map(d, [](double x) { return 1 / x; });
         const Interval<double> in = inside(lattice, o, d, inverse);
         if (!(in.entry <= in.exit)) return;
-        typename Lattice<D>::Cell cell{};
+        Cell cell{};
         for (int a = 0; a < D; ++a)
             cell[static_cast<std::size_t>(a)] = lattice.coordinate(o[a] + product(d[a], in.entry), a);
         const auto reach = neighbours_within_slack(lattice);
-        const bool alone = reach == typename Lattice<D>::Cell{};
+        const bool alone = reach == Cell{};
         // How much earlier, in t, a hit of a cell may lie than the cell's computed entry.
         const double back =
             4 * static_cast<double>(slack_) / max_component(abs(d)) + 0x1p-40 * std::abs(in.entry);
-        // Where the ray leaves the cell along an axis. Only in.exit leads out of the lattice: between its
-        // last plane and that, it is still grazed.
-        const auto leaves = [&](int a) {
+        Cell ahead{}, end = cell;  // a step along each axis, and the last cell that way
+        for (int a = 0; a < D; ++a) {
             const auto i = static_cast<std::size_t>(a);
-            if (d[a] == 0 || cell[i] == (d[a] > 0 ? lattice.resolution[i] - 1 : 0))
-                return std::numeric_limits<double>::infinity();
-            return product(lattice.plane(cell[i] + (d[a] > 0 ? 1 : 0), a) - o[a], inverse[a]);
+            if (d[a] > 0) ahead[i] = 1, end[i] = lattice.resolution[i] - 1;
+            if (d[a] < 0) ahead[i] = -1, end[i] = 0;
+        }
+        // Where the ray leaves a cell along an axis. Only in.exit leads out of the lattice: between its last
+        // plane and that, it is still grazed.
+        const auto leaves = [&](const Cell& c, int a) {
+            const auto i = static_cast<std::size_t>(a);
+            const double t = product(lattice.plane(c[i] + (ahead[i] > 0), a) - o[a], inverse[a]);
+            return c[i] == end[i] ? std::numeric_limits<double>::infinity() : t;
         };
-        Vec<double, D> next;
-        for (int a = 0; a < D; ++a) next[a] = leaves(a);
         double entry = in.entry;
         while (entry - back <= static_cast<double>(limit()) && entry <= in.exit) {
-            auto at = cell, first = cell, last = cell;
-            if (!alone) [[unlikely]] {
-                std::tie(first, last) = block_around(lattice, cell, reach);
-                at = first;
+            std::int32_t empty = 0;  // the bits of a cell's coordinates in which those of its block differ
+            if (alone) [[likely]] {
+                const Looked looked = visit(cell);
+                if (looked.flow == Flow::stop) return;
+                empty = (1 << looked.empty_bits) - 1;
+            } else {
+                const auto [first, last] = block_around(lattice, cell, reach);
+                if (!for_each_cell(first, last, [&](const Cell& c) { return visit(c).flow != Flow::stop; }))
+                    return;
             }
-            do {
-                if (visit(at) == Flow::stop) return;
-            } while (!alone && next_in_block(at, first, last));
-            int step = next[1] < next[0];
-            if constexpr (D == 3) step = next[2] < next[step] ? 2 : step;
-            if (!(next[step] < std::numeric_limits<double>::infinity())) return;
-            cell[static_cast<std::size_t>(step)] += d[step] > 0 ? 1 : -1;
-            entry = std::max(entry, next[step]);
-            next[step] = leaves(step);
+            Cell last;  // of the block, that way
+            Vec<double, D> exit;
+            for (int a = 0; a < D; ++a) {
+                const auto i = static_cast<std::size_t>(a);
+                last[i] = ahead[i] < 0 ? cell[i] & ~empty : std::min(cell[i] | empty, end[i]);
+                exit[a] = leaves(last, a);
+            }
+            int axis = exit[1] < exit[0];
+            if constexpr (D == 3) axis = exit[2] < exit[axis] ? 2 : axis;
+            if (!(exit[axis] < std::numeric_limits<double>::infinity())) return;
+            entry = std::max(entry, exit[axis]);
+            for (int a = 0; a < D && empty != 0; ++a) {
+                const auto i = static_cast<std::size_t>(a);
+                const auto [low, high] = std::minmax(cell[i], last[i]);
+                cell[i] = std::clamp(lattice.coordinate(o[a] + product(d[a], entry), a), low, high);
+            }
+            const auto i = static_cast<std::size_t>(axis);
+            cell[i] = last[i] + ahead[i];
         }
     }
 
@@ -248,8 +268,8 @@ private:
         return in;
     }
     /// How many cells beside its own the error may hide hits in, along each axis: none, as a rule.
-    typename Lattice<D>::Cell neighbours_within_slack(const Lattice<D>& lattice) const {
-        typename Lattice<D>::Cell reach{};
+    Cell neighbours_within_slack(const Lattice<D>& lattice) const {
+        Cell reach{};
         const double wide = static_cast<double>(slack_);
         for (int a = 0; a < D; ++a) {
             if (wide <= product(0.5, lattice.pad[a])) continue;
@@ -259,7 +279,6 @@ private:
         }
         return reach;
     }
-    using Cell = std::array<std::int32_t, static_cast<std::size_t>(D)>;
     static std::pair<Cell, Cell> block_around(const Lattice<D>& lattice, const Cell& cell,
                                               const Cell& reach) {
         std::pair<Cell, Cell> block;

@@ -23,6 +23,7 @@ public:
 
     template <class Probe, class Query>
     Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) {
+        if constexpr (requires { primitives_.prefetch(leaf); }) primitives_.prefetch(leaf);
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             if (on_ && seen(leaf.ids[i])) {
                 count_.skip(leaf.ids[i]);

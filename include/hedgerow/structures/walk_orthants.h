@@ -55,7 +55,7 @@ public:
         Cube<T, D> cell;
     };
 
-    explicit WaitingOrthants(Q& query) : query_(query), probe_(query.probe()) {}
+    WaitingOrthants(const S& tree, Q& query) : tree_(tree), query_(query), probe_(query.probe()) {}
 
     /// Pushes the children that the probe meets within the limit, the nearest last.
     [[gnu::always_inline]] void open(const Entry& e, const OrthantNode* children) {
@@ -94,6 +94,7 @@ private:
             const auto i = static_cast<unsigned>(std::countr_zero(among));
             if constexpr (SubtreeQuery<Q>)
                 if (query_.accept(S::child_id(node.self, i)) != Verdict::open) return;
+            tree_.prefetch(node.children[i]);
             std::construct_at(&stack_[top_++].entry, Entry{node.children[i], state, {middle, node.quarter}});
         } else {
             const auto sides = probe_.cut(state, AxisPlane<T>{axis, node.cell.middle[axis]}, node.limit);
@@ -111,6 +112,7 @@ private:
         }
     }
 
+    const S& tree_;
     Q& query_;
     const typename Q::Probe& probe_;
     int top_ = 0;
@@ -132,7 +134,7 @@ void walk_orthants(const S& tree, Primitives& primitives, Q& query, Count& count
     if (e.node.empty() || !query.probe().within(e.state, query.limit())) return;
     if constexpr (SubtreeQuery<Q>)
         if (query.accept(0) != Verdict::open) return;
-    Waiting waiting(query);
+    Waiting waiting(tree, query);
     do {
         if (e.node.inner()) {
             count.node(e.node.place(), e.state);

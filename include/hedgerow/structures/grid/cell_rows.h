@@ -4,6 +4,7 @@
 #include <bit>
 
 #include <hedgerow/geometry/lattice.h>
+#include <hedgerow/probes/concepts.h>
 #include <hedgerow/structures/references.h>
 
 namespace hedgerow {
@@ -14,9 +15,32 @@ struct CellEntry {
     PrimitiveId id;
 };
 
-/// Empty cells take no room: a brick of 64 cells is there if one of them is occupied, and is found by hashing
-/// its number; a bit for each cell says which are, and the bits before it where its row begins. Memory: 4
-/// bytes an item, 4 an occupied cell, 32 to 48 an occupied brick.
+/// Which of 64 things are there; those that are stand side by side in a list from `first` on.
+struct Present {
+    static constexpr std::uint32_t none = 0xFFFFFFFFu;
+
+    std::uint64_t bits = 0;
+    std::uint32_t first = 0;
+
+    /// Where it stands: after as many as there are bits before its own (its rank; Jacobson 1989).
+    std::uint32_t find(std::uint32_t i) const {
+        const std::uint64_t bit = std::uint64_t(1) << i;
+        if ((bits & bit) == 0) return none;
+        return first + static_cast<std::uint32_t>(std::popcount(bits & (bit - 1)));
+    }
+    /// Calls f(i, place) for each.
+    template <class F>
+    void for_each(F f) const {
+        std::uint32_t place = first;
+        for (std::uint64_t left = bits; left != 0; left &= left - 1, ++place)
+            f(static_cast<std::uint32_t>(std::countr_zero(left)), place);
+    }
+};
+
+/// Empty cells take next to no room: a brick of 64 cells is there if one of them is occupied, and which of 64
+/// bricks are there is said in 16 bytes. Memory: 4 bytes an item, 4 an occupied cell, 16 an occupied brick,
+/// and a byte for every 256 cells, occupied or not: so little that what probes ask of empty space stays in
+/// the cache.
 template <int D>
 class CellRows {
 public:
@@ -26,7 +50,7 @@ public:
     /// bricks), and `pieces` of entries are read twice in their order.
     CellRows(const Lattice<D>& lattice, const std::vector<std::vector<CellEntry>>& pieces)
         : lattice_(lattice) {
-        std::vector<std::uint32_t> ends(lattice.brick_count() + 1, 0);
+        std::vector<std::uint32_t> ends(std::size_t(64) * lattice.block_count() + 1, 0);
         for (const auto& piece : pieces)
             for (const CellEntry& e : piece) ++ends[e.cell >> 6];
         std::uint32_t sum = 0, bricks = 0;
@@ -40,7 +64,7 @@ public:
             for (const CellEntry& e : piece) sorted[ends[e.cell >> 6]++] = e;
         items_.resize(sum);
         bricks_.reserve(bricks);
-        slots_.assign(std::bit_ceil(2 * std::size_t(bricks) + 1), none);
+        blocks_.resize(lattice.block_count());
         std::uint32_t begin = 0;
         for (std::uint32_t number = 0; number + 1 < ends.size(); ++number) {
             if (ends[number] > begin)
@@ -56,25 +80,24 @@ public:
     std::size_t occupied() const { return starts_.empty() ? 0 : starts_.size() - 1; }
     std::size_t bytes() const {
         return items_.capacity() * sizeof(PrimitiveId) + starts_.capacity() * sizeof(std::uint32_t) +
-               bricks_.capacity() * sizeof(Brick) + slots_.capacity() * sizeof(std::uint32_t);
+               (blocks_.capacity() + bricks_.capacity()) * sizeof(Present);
     }
 
-    static constexpr std::uint32_t none = 0xFFFFFFFFu;
+    static constexpr std::uint32_t none = Present::none;
     Leaf leaf(std::uint32_t row) const {
         return {items_.data(), starts_[row], starts_[row + 1] - starts_[row]};
     }
 
-    std::size_t brick_count() const { return bricks_.size(); }
-    /// Calls f(cell, leaf) for the rows of some bricks, in the order of rows.
+    /// Calls f(cell, leaf) for the rows of a block of bricks, in the order of rows.
     template <class F>
-    void for_each_row(std::size_t first_brick, std::size_t last_brick, F f) const {
-        for (std::size_t b = first_brick; b < std::min(last_brick, bricks_.size()); ++b) {
-            std::uint32_t row = bricks_[b].first;
-            for (std::uint64_t left = bricks_[b].occupied; left != 0; left &= left - 1, ++row)
-                f(lattice_.cell(bricks_[b].number << 6 | static_cast<std::uint32_t>(std::countr_zero(left))),
-                  leaf(row));
-        }
+    void for_each_row(std::size_t block, F f) const {
+        blocks_[block].for_each([&](std::uint32_t brick, std::uint32_t at) {
+            bricks_[at].for_each([&](std::uint32_t cell, std::uint32_t row) {
+                f(lattice_.cell(static_cast<std::uint32_t>(block) << 12 | brick << 6 | cell), leaf(row));
+            });
+        });
     }
+    std::size_t block_count() const { return blocks_.size(); }
     /// Keeps only which cells are occupied: the rows are somewhere else.
     void forget_items() {
         items_ = {};
@@ -88,54 +111,47 @@ public:
         /// The row of a cell; `none` if it is empty.
         std::uint32_t row(const typename Lattice<D>::Cell& cell) {
             const std::uint32_t number = rows_.lattice_.number(cell);
-            if (number >> 6 != brick_.number) brick_ = rows_.find(number >> 6);
-            const std::uint64_t bit = std::uint64_t(1) << (number & 63);
-            if ((brick_.occupied & bit) == 0) return none;
-            return brick_.first + static_cast<std::uint32_t>(std::popcount(brick_.occupied & (bit - 1)));
+            if (number >> 6 != at_) {
+                at_ = number >> 6;
+                const Present& block = rows_.blocks_[at_ >> 6];
+                const std::uint32_t brick = block.find(at_ & 63);
+                brick_ = brick == none ? Present{} : rows_.bricks_[brick];
+                empty_bits_ = brick != none ? 0 : Lattice<D>::brick_bits << int(block.bits == 0);
+            }
+            return brick_.find(number & 63);
         }
+        /// After an empty cell: how much around it is empty, its brick or its block of bricks.
+        Looked emptiness() const { return {Flow::go_on, empty_bits_}; }
 
     private:
         const CellRows& rows_;
-        typename CellRows::Brick brick_{none, 0, 0};
+        std::uint32_t at_ = none;
+        Present brick_;
+        int empty_bits_ = 0;
     };
     Cursor cursor() const { return Cursor(*this); }
 
 private:
-    struct Brick {
-        std::uint32_t number, first;  // first: the row of its first occupied cell
-        std::uint64_t occupied;
-    };
-
     void add_brick(std::uint32_t number, std::span<const CellEntry> entries, std::uint32_t first_item) {
         std::uint32_t at[64] = {};
         for (const CellEntry& e : entries) ++at[e.cell & 63];
-        Brick brick{number, static_cast<std::uint32_t>(starts_.size()), 0};
+        Present brick{0, static_cast<std::uint32_t>(starts_.size())};
         for (std::uint32_t cell = 0; cell < 64; ++cell) {
             if (at[cell] == 0) continue;
-            brick.occupied |= std::uint64_t(1) << cell;
+            brick.bits |= std::uint64_t(1) << cell;
             starts_.push_back(first_item);
             first_item += std::exchange(at[cell], first_item);
         }
         for (const CellEntry& e : entries) items_[at[e.cell & 63]++] = e.id;
-        std::size_t slot = first_slot(number);
-        while (slots_[slot] != none) slot = (slot + 1) & (slots_.size() - 1);
-        slots_[slot] = static_cast<std::uint32_t>(bricks_.size());
+        Present& block = blocks_[number >> 6];
+        if (block.bits == 0) block.first = static_cast<std::uint32_t>(bricks_.size());
+        block.bits |= std::uint64_t(1) << (number & 63);
         bricks_.push_back(brick);
-    }
-    /// Fibonacci hashing (Knuth, vol. 3, 6.4).
-    std::size_t first_slot(std::uint32_t number) const {
-        return (number * std::uint64_t(0x9E3779B97F4A7C15)) >> 32 & (slots_.size() - 1);
-    }
-    Brick find(std::uint32_t number) const {
-        for (std::size_t slot = first_slot(number); slots_[slot] != none;
-             slot = (slot + 1) & (slots_.size() - 1))
-            if (bricks_[slots_[slot]].number == number) return bricks_[slots_[slot]];
-        return {number, 0, 0};
     }
 
     Lattice<D> lattice_;
-    std::vector<Brick> bricks_;
-    std::vector<std::uint32_t> slots_;   // of the hash table: positions in bricks_
+    std::vector<Present> blocks_;        // of 64 bricks each, whether there or not
+    std::vector<Present> bricks_;        // that are there
     std::vector<std::uint32_t> starts_;  // of each row, and the end of the last
     BareVector<PrimitiveId> items_;
 };

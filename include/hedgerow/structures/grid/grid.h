@@ -10,7 +10,9 @@ namespace hedgerow {
 
 /// Only occupied cells take room (cell_rows.h). Built in O(n + cells/64) by counting; memory is 4 bytes an
 /// item and some 8 an occupied cell. A ray goes from cell to cell in integer coordinates (Amanatides and Woo
-/// 1987; RayProbe::sweep).
+/// 1987; RayProbe::sweep), and where a brick of 4³ cells or a block of 16³ holds nothing (in the plane 8²,
+/// 64²) it steps over all of it, as in the macro-cells of later grids (Jevans and Wyvill 1989 have a
+/// hierarchy of them).
 template <std::floating_point T, int D>
 class Grid {
 public:
@@ -19,6 +21,8 @@ public:
         GridInsert insert = GridInsert::exact;
         /// Off only to show what it brings.
         bool mailbox = true;
+        /// Rays pass over an empty brick, or block of bricks, in one step. Off only to show what it brings.
+        bool skip_empty = true;
         /// Bytes that a build may take; beyond them it is refused.
         double budget = 8e9;
     };
@@ -61,10 +65,10 @@ public:
             const Place place{lattice().number(cell)};
             count.node(place);
             const std::uint32_t row = cursor.row(cell);
-            if (row == CellRows<D>::none) return Flow::go_on;
+            if (row == CellRows<D>::none) return options_.skip_empty ? cursor.emptiness() : Flow::go_on;
             const Leaf leaf = rows_.leaf(row);
             count.leaf(leaf.count, place);
-            return test_leaf(mailed, query.probe(), leaf, query);
+            return Looked(test_leaf(mailed, query.probe(), leaf, query));
         });
     }
 

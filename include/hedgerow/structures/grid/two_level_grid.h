@@ -83,7 +83,9 @@ public:
         walk_lattice(lattice(), query, [&](const auto& cell) {
             count.node(Place{lattice().number(cell)});
             Flow flow = Flow::go_on;
-            for (const Inner& inner : grids_in(cursor.row(cell)))
+            const std::uint32_t row = cursor.row(cell);
+            if (row == CellRows<D>::none) return cursor.emptiness();
+            for (const Inner& inner : grids_in(row))
                 if (flow == Flow::go_on)
                     flow = walk_lattice(inner.lattice(margin_), query, [&](const auto& c) {
                         const Leaf found = leaf(inner.start_of(c));
@@ -93,7 +95,7 @@ public:
                         count.leaf(found.count, place);
                         return test_leaf(mailed, query.probe(), found, query);
                     });
-            return flow;
+            return Looked(flow);
         });
     }
 
@@ -182,11 +184,10 @@ private:
     template <PrimitiveSet P>
     void divide(const P& set, Executor& executor) {
         const CellEntering entering(set, lattice(), options_.insert, margin_);
-        constexpr std::size_t grain = 64;
-        std::vector<Divided> pieces((rows_.brick_count() + grain - 1) / grain);
+        std::vector<Divided> pieces(rows_.block_count());
         executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)
-                rows_.for_each_row(p * grain, (p + 1) * grain, [&](const Cell& cell, const Leaf& leaf) {
+                rows_.for_each_row(p, [&](const Cell& cell, const Leaf& leaf) {
                     divide_row(entering, cell, leaf, pieces[p]);
                 });
         });

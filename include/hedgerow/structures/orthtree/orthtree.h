@@ -135,6 +135,10 @@ public:
     OrthantNode root() const { return root_; }
     const Cube<T, D>& cell() const { return cell_; }
     const OrthantNode* children(OrthantNode n) const { return store_.group(n.first).child.data(); }
+    void prefetch(OrthantNode n) const {
+        __builtin_prefetch(n.inner() ? static_cast<const void*>(&store_.group(n.first))
+                                     : static_cast<const void*>(store_.list().data() + n.first));
+    }
     Leaf leaf(OrthantNode n) const { return {store_.list().data(), n.first, n.count}; }
     static NodeId child_id(OrthantNode parent, unsigned i) { return 1 + width * parent.first + i; }
 
