@@ -1,5 +1,7 @@
 /// What the structures that cut space share: clipped parts, mailboxes, and what each stands for in memory.
 /// That their answers are right, the matrix and the properties hold.
+#include <set>
+
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
 
@@ -93,6 +95,57 @@ TYPED_TEST(Cells, AMailboxSparesTestsAndNothingElse) {
     compare(visits_of<Grid>(mesh, {.mailbox = true}), visits_of<Grid>(mesh, {.mailbox = false}));
     compare(visits_of<TwoLevelGrid>(mesh, {.mailbox = true}),
             visits_of<TwoLevelGrid>(mesh, {.mailbox = false}));
+}
+
+/// Adds up tests, and the different ones among those of a query.
+template <class Leaf>
+struct DifferentTests {
+    Leaf leaf_at;
+    std::set<PrimitiveId> seen = {};
+    std::uint64_t tests = 0;
+
+    template <class... State>
+    void node(const Place&, const State&...) {}
+    template <class... State>
+    void leaf(std::uint64_t count, const Place& place, const State&...) {
+        const auto leaf = leaf_at(place);
+        tests += count;
+        seen.insert(leaf.ids + leaf.first, leaf.ids + leaf.first + leaf.count);
+    }
+    void own(PrimitiveId) {}
+    void skip(PrimitiveId) { --tests; }
+};
+
+/// Meshes whose ids run in rows, in fans, and anyhow.
+TYPED_TEST(Cells, AMailboxSparesNineInTenRepeatedTests) {
+    using T = TypeParam;
+    const auto spares = [](const auto& index, auto leaf_at) {
+        std::uint64_t needed = 0, made = 0, without = 0;
+        for (std::uint64_t i = 0; i < 500; ++i) {
+            Random random(7, i);
+            const auto from = matrix::point_in(index.bounds(), 0.0, random);
+            const Ray<T, 3> ray{from, matrix::point_in(index.bounds(), 0.0, random) - from};
+            DifferentTests count{leaf_at};
+            closest_hit(index, ray, KeepAll{}, count);
+            needed += count.seen.size(), made += count.tests;
+            Visits visits;
+            closest_hit(index, ray, KeepAll{}, visits);
+            without += visits.primitives + visits.skipped;
+        }
+        EXPECT_LT(needed, without);
+        EXPECT_LT(10 * (made - needed), without - needed) << needed << " " << made << " " << without;
+    };
+    for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000), turned_stadium<T>(20000)}) {
+        const auto tree = build<KdTree>(mesh, {.builder = KdBuilder::binned});
+        spares(tree, [&](const Place& place) { return tree.structure().leaf(place.first); });
+    }
+    // Not the turned stadium: some cells of its grid hold more than a mailbox remembers.
+    for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000)}) {
+        const auto grid = build<Grid>(mesh);
+        spares(grid, [&](const Place& place) {
+            return grid.structure().leaf(grid.structure().lattice().cell(place.first));
+        });
+    }
 }
 
 TYPED_TEST(Cells, ExactEnteringLeavesOutOnlyWhatIsNotThere) {
