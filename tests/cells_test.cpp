@@ -125,7 +125,7 @@ TYPED_TEST(Cells, AMailboxSparesNineInTenRepeatedTests) {
             Random random(7, i);
             const auto from = matrix::point_in(index.bounds(), 0.0, random);
             const Ray<T, 3> ray{from, matrix::point_in(index.bounds(), 0.0, random) - from};
-            DifferentTests count{leaf_at};
+            DifferentTests<decltype(leaf_at)> count{leaf_at};
             closest_hit(index, ray, KeepAll{}, count);
             needed += count.seen.size(), made += count.tests;
             Visits visits;

@@ -129,7 +129,9 @@ TYPED_TEST_SUITE(Volumes, Scalars);
 
 template <class T, int D>
 void expect_points_held() {
-    for (const auto& [name, points] : arrangements<T, D>()) {
+    for (const auto& arrangement : arrangements<T, D>()) {
+        const auto& name = arrangement.name;
+        const auto& points = arrangement.points;
         SCOPED_TRACE(name);
         with_each_volume(points, [&](const auto& list) {
             std::visit(
@@ -148,7 +150,9 @@ TYPED_TEST(Volumes, HoldWhatTheyAreFittedAround) {
 /// Rays that meet a point of the hull at t = 1 or after, from near and far and from inside.
 template <class T, int D>
 void expect_rays_enter() {
-    for (const auto& [name, points] : arrangements<T, D>()) {
+    for (const auto& arrangement : arrangements<T, D>()) {
+        const auto& name = arrangement.name;
+        const auto& points = arrangement.points;
         SCOPED_TRACE(name);
         Box<T, D> box;
         for (const auto& p : points) box.expand(p);
@@ -185,7 +189,9 @@ TYPED_TEST(Volumes, AreEnteredByEveryRayThatMeetsWhatTheyHold) {
 
 template <class T, int D>
 void expect_regions_enter() {
-    for (const auto& [name, points] : arrangements<T, D>()) {
+    for (const auto& arrangement : arrangements<T, D>()) {
+        const auto& name = arrangement.name;
+        const auto& points = arrangement.points;
         SCOPED_TRACE(name);
         Box<T, D> box;
         for (const auto& p : points) box.expand(p);

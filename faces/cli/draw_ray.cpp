@@ -47,7 +47,7 @@ Ray<T, D> ray_of(const DrawArguments& a) {
     Ray<T, D> ray;
     for (int k = 0; k < D; ++k) {
         ray.origin[k] = static_cast<T>(a.ray[static_cast<std::size_t>(k)]);
-        ray.direction[k] = static_cast<T>(a.ray[static_cast<std::size_t>(k + D)]);
+        ray.direction[k] = static_cast<T>(a.ray[std::size_t(k) + std::size_t(D)]);
     }
     if (!(length(Vec<double, D>(ray.direction)) > 0) || !finite(ray.origin) || !finite(ray.direction))
         throw InputError("--ray: the direction must be finite and not zero, the origin finite");

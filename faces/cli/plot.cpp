@@ -111,9 +111,10 @@ std::vector<double> spread(const std::vector<double>& places, double gap, double
         next = at[i] + gap;
     }
     double last = high;
-    for (auto i = order.rbegin(); i != order.rend(); ++i) {
-        at[*i] = std::min(at[*i], last);
-        last = at[*i] - gap;
+    for (std::size_t k = order.size(); k-- > 0;) {
+        double& place = at[order[k]];
+        place = std::min(place, last);
+        last = place - gap;
     }
     return at;
 }

@@ -73,8 +73,8 @@ Vec2d Panel::operator()(const Vec2d& p) const {
     return {middle_[0] + d[0], middle_[1] - d[1]};
 }
 std::vector<Vec2d> Panel::operator()(const std::vector<Vec2d>& points) const {
-    std::vector<Vec2d> all;
-    for (const auto& p : points) all.push_back((*this)(p));
+    std::vector<Vec2d> all(points.size());
+    std::ranges::transform(points, all.begin(), [&](const Vec2d& p) { return (*this)(p); });
     return all;
 }
 Box2d Panel::frame() const {

@@ -82,7 +82,7 @@ public:
 
     Comparison run(std::span<const std::string> structures) {
         Comparison c{{}, noun(primitives_), primitives_.size(), D, {}, true};
-        steps_ = structures.size() * (o_.rounds + 2u);
+        steps_ = structures.size() * (static_cast<std::size_t>(o_.rounds) + 2);
         for (const std::string& s : structures) {
             if (progress_.cancelled()) break;
             contenders_.push_back(contender(s));

@@ -13,6 +13,7 @@ CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>& references, Cor
         .grow(cutter.root(references));
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T and D are arguments of templates
 #define HEDGEROW_BUILD_BSP_TREE(T, D)                                                           \
     template CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>&, CornersOf<T, D>, \
                                                    const BspOptions&, double, Executor&);
@@ -20,5 +21,6 @@ HEDGEROW_BUILD_BSP_TREE(float, 2)
 HEDGEROW_BUILD_BSP_TREE(float, 3)
 HEDGEROW_BUILD_BSP_TREE(double, 2)
 HEDGEROW_BUILD_BSP_TREE(double, 3)
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace hedgerow

@@ -30,11 +30,13 @@ CutTree<KdNode<T>> build_kd_tree(KdCell<T, D> root, PartIn<T, D> part_in, const 
     return grow(KdSahPlanes<T, D>(options.costs, leaf_size));
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T and D are arguments of templates
 #define HEDGEROW_BUILD_KD_TREE(T, D) \
     template CutTree<KdNode<T>> build_kd_tree(KdCell<T, D>, PartIn<T, D>, const KdOptions&, Executor&);
 HEDGEROW_BUILD_KD_TREE(float, 2)
 HEDGEROW_BUILD_KD_TREE(float, 3)
 HEDGEROW_BUILD_KD_TREE(double, 2)
 HEDGEROW_BUILD_KD_TREE(double, 3)
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace hedgerow

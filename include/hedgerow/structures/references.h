@@ -80,9 +80,11 @@ template <PrimitiveSet P, class BoxType>
 bool sound(const P& set, std::size_t i, const BoxType& box) {
     using T = typename P::Scalar;
     bool good = true;
-    for (int k = 0; k < P::dimension; ++k)
-        good &= (box.low[k] <= box.high[k]) &
-                (box.low[k] >= -largest_coordinate<T>)&(box.high[k] <= largest_coordinate<T>);
+    for (int k = 0; k < P::dimension; ++k) {
+        good &= box.low[k] <= box.high[k];
+        good &= box.low[k] >= -largest_coordinate<T>;
+        good &= box.high[k] <= largest_coordinate<T>;
+    }
     if constexpr (requires { set.finite(i); }) good = good && set.finite(i);
     return good;
 }
