@@ -4,6 +4,7 @@
 
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
+#include <hedgerow/trace.h>
 
 #include "contract.h"
 #include "exact.h"
@@ -97,55 +98,29 @@ TYPED_TEST(Cells, AMailboxSparesTestsAndNothingElse) {
             visits_of<TwoLevelGrid>(mesh, {.mailbox = false}));
 }
 
-/// Adds up tests, and the different ones among those of a query.
-template <class Leaf>
-struct DifferentTests {
-    Leaf leaf_at;
-    std::set<PrimitiveId> seen = {};
-    std::uint64_t tests = 0;
-
-    template <class... State>
-    void node(const Place&, const State&...) {}
-    template <class... State>
-    void leaf(std::uint64_t count, const Place& place, const State&...) {
-        const auto leaf = leaf_at(place);
-        tests += count;
-        seen.insert(leaf.ids + leaf.first, leaf.ids + leaf.first + leaf.count);
-    }
-    void own(PrimitiveId) {}
-    void skip(PrimitiveId) { --tests; }
-};
-
 /// Meshes whose ids run in rows, in fans, and anyhow.
 TYPED_TEST(Cells, AMailboxSparesNineInTenRepeatedTests) {
     using T = TypeParam;
-    const auto spares = [](const auto& index, auto leaf_at) {
+    const auto spares = [](const auto& index) {
         std::uint64_t needed = 0, made = 0, without = 0;
         for (std::uint64_t i = 0; i < 500; ++i) {
             Random random(7, i);
             const auto from = matrix::point_in(index.bounds(), 0.0, random);
-            const Ray<T, 3> ray{from, matrix::point_in(index.bounds(), 0.0, random) - from};
-            DifferentTests<decltype(leaf_at)> count{leaf_at};
-            closest_hit(index, ray, KeepAll{}, count);
-            needed += count.seen.size(), made += count.tests;
-            Visits visits;
-            closest_hit(index, ray, KeepAll{}, visits);
-            without += visits.primitives + visits.skipped;
+            const auto way =
+                trace(index, Ray<T, 3>{from, matrix::point_in(index.bounds(), 0.0, random) - from});
+            std::set<PrimitiveId> different;
+            for (const auto& step : way.steps)
+                for (const auto& test : step.tests) different.insert(test.id);
+            needed += different.size(), made += way.visits.primitives;
+            without += way.visits.primitives + way.visits.skipped;
         }
         EXPECT_LT(needed, without);
         EXPECT_LT(10 * (made - needed), without - needed) << needed << " " << made << " " << without;
     };
-    for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000), turned_stadium<T>(20000)}) {
-        const auto tree = build<KdTree>(mesh, {.builder = KdBuilder::binned});
-        spares(tree, [&](const Place& place) { return tree.structure().leaf(place.first); });
-    }
+    for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000), turned_stadium<T>(20000)})
+        spares(build<KdTree>(mesh, {.builder = KdBuilder::binned}));
     // Not the turned stadium: some cells of its grid hold more than a mailbox remembers.
-    for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000)}) {
-        const auto grid = build<Grid>(mesh);
-        spares(grid, [&](const Place& place) {
-            return grid.structure().leaf(grid.structure().lattice().cell(place.first));
-        });
-    }
+    for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000)}) spares(build<Grid>(mesh));
 }
 
 TYPED_TEST(Cells, ExactEnteringLeavesOutOnlyWhatIsNotThere) {

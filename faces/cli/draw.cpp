@@ -1,9 +1,15 @@
 /// hedgerow draw: what a structure looks like, and where rays spend their steps.
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <variant>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 #include <hedgerow/error.h>
 #include <hedgerow/parallel/executor.h>
+#include <hedgerow/render/lettering.h>
 
 #include "draw.h"
 #include "verbs.h"
@@ -26,6 +32,31 @@ int draw(const DrawArguments& a, const Scene<T>& scene) {
 }
 
 }  // namespace
+
+void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what) {
+    if (std::filesystem::path(a.output).extension() != ending)
+        throw InputError(
+            fmt::format("{}: {} is written as {}; let the output end so", a.output, what, ending));
+}
+
+nlohmann::ordered_json facts_of(const NamedStructure& s, std::size_t leaves, int depth) {
+    nlohmann::ordered_json facts = {
+        {"structure", s.name}, {"cells_drawn", s.flat.cells.size()}, {"leaves", leaves}, {"depth", depth}};
+    if (s.flat.overlap) facts["sibling_overlap"] = *s.flat.overlap;
+    return facts;
+}
+
+int letter_scale(const Image& image) {
+    return std::max(1, image.height / 600);
+}
+std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts) {
+    const int letters = image.width / (letter_width * letter_scale(image)) - 2;
+    std::vector<std::string> lines;
+    for (const auto& text : texts)
+        for (auto& line : wrapped(text, static_cast<std::size_t>(std::max(8, letters))))
+            lines.push_back(std::move(line));
+    return lines;
+}
 
 Run add_draw(CLI::App& verb) {
     auto a = std::make_shared<DrawArguments>();

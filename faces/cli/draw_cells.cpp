@@ -1,7 +1,6 @@
 /// Flat pictures of cells, as SVG: of a flat scene, or in a slice.
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -96,19 +95,6 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
 }
 
 }  // namespace
-
-void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what) {
-    if (std::filesystem::path(a.output).extension() != ending)
-        throw InputError(
-            fmt::format("{}: {} is written as {}; let the output end so", a.output, what, ending));
-}
-
-ordered_json facts_of(const NamedStructure& s, std::size_t leaves, int depth) {
-    ordered_json facts = {
-        {"structure", s.name}, {"cells_drawn", s.flat.cells.size()}, {"leaves", leaves}, {"depth", depth}};
-    if (s.flat.overlap) facts["sibling_overlap"] = *s.flat.overlap;
-    return facts;
-}
 
 template <class T>
 int draw_cells(const DrawArguments& a, const Scene<T>& scene) {

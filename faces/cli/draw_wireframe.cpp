@@ -155,18 +155,6 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
 
 }  // namespace
 
-int letter_scale(const Image& image) {
-    return std::max(1, image.height / 600);
-}
-std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts) {
-    const int letters = image.width / (letter_width * letter_scale(image)) - 2;
-    std::vector<std::string> lines;
-    for (const auto& text : texts)
-        for (auto& line : wrapped(text, static_cast<std::size_t>(std::max(8, letters))))
-            lines.push_back(std::move(line));
-    return lines;
-}
-
 template <class T>
 int draw_wireframe(const DrawArguments& a, const Scene<T>& scene) {
     return in_space(a, scene,
