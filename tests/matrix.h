@@ -219,6 +219,28 @@ void expect_equal_regions(const Indexes<T, D>& indexes, std::size_t count) {
     }
 }
 
+/// Every structure's answers over a set, to every query, against those of brute force.
+template <class P>
+void expect_equal(const char* name, const P& set, const Points<typename P::Scalar, P::dimension>& targets) {
+    SCOPED_TRACE(name);
+    Indexes<typename P::Scalar, P::dimension> indexes;
+    indexes.push_back(build_any("brute-force", set));
+    for (const char* spec : structures) {
+        indexes.push_back(build_any(named_for<P>(spec), set));
+        EXPECT_EQ(indexes.back()->validate(), "") << spec;
+    }
+    if constexpr (PointSet<ViewOf<P>>) {
+        indexes.push_back(build_any("point-kdtree", set));
+        EXPECT_EQ(indexes.back()->validate(), "");
+    }
+    if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));
+    if (targets.empty()) return;
+    const std::size_t for_all = in_long_runs(100000, 1500);
+    expect_equal_rays(indexes, targets, 0, for_all);
+    indexes.resize(1 + fast_structures);
+    expect_equal_rays(indexes, targets, for_all, in_long_runs(1000000, for_all));
+}
+
 /// The vertices, and a middle of each triangle's first edge.
 template <class T>
 Points<T, 3> targets_of(const TriangleMesh<T>& mesh) {
@@ -226,6 +248,11 @@ Points<T, 3> targets_of(const TriangleMesh<T>& mesh) {
     for (const auto& t : mesh.triangles)
         targets.push_back(mesh.vertices[t[0]] * T(0.5) + mesh.vertices[t[1]] * T(0.5));
     return targets;
+}
+
+template <class T>
+void expect_equal(const char* name, const TriangleMesh<T>& mesh) {
+    expect_equal(name, mesh, targets_of(mesh));
 }
 
 }  // namespace hedgerow::matrix

@@ -10,31 +10,6 @@ using namespace hedgerow::matrix;
 
 namespace {
 
-template <class P>
-void expect_equal(const char* name, const P& set, const Points<typename P::Scalar, P::dimension>& targets) {
-    SCOPED_TRACE(name);
-    Indexes<typename P::Scalar, P::dimension> indexes;
-    indexes.push_back(build_any("brute-force", set));
-    for (const char* spec : structures) {
-        indexes.push_back(build_any(named_for<P>(spec), set));
-        EXPECT_EQ(indexes.back()->validate(), "") << spec;
-    }
-    if constexpr (PointSet<ViewOf<P>>) {
-        indexes.push_back(build_any("point-kdtree", set));
-        EXPECT_EQ(indexes.back()->validate(), "");
-    }
-    if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));
-    if (targets.empty()) return;
-    const std::size_t for_all = in_long_runs(100000, 1500);
-    expect_equal_rays(indexes, targets, 0, for_all);
-    indexes.resize(1 + fast_structures);
-    expect_equal_rays(indexes, targets, for_all, in_long_runs(1000000, for_all));
-}
-template <class T>
-void expect_equal(const char* name, const TriangleMesh<T>& mesh) {
-    expect_equal(name, mesh, targets_of(mesh));
-}
-
 template <class T>
 TriangleMesh<T> moved(TriangleMesh<T> mesh, double scale, double shift) {
     for (auto& v : mesh.vertices) v = Vec<T, 3>(Vec3d(v) * scale + Vec3d::all(shift));
@@ -54,6 +29,9 @@ TYPED_TEST(Matrix, GeneratedMeshes) {
     expect_equal("soup", soup<T>(2000));
     expect_equal("cube", cube<T>(300));
     expect_equal("Cornell box", cornell_box<T>(32));
+    expect_equal("grass", grass<T>(1000));
+    expect_equal("hairball", hairball<T>(1000));
+    expect_equal("turned stadium", turned_stadium<T>(1000));
 }
 
 TYPED_TEST(Matrix, TinyHugeAndFarMeshes) {

@@ -141,46 +141,6 @@ TEST(Walkers, BarnesHutNearsTheDirectSumAsTheAngleShrinks) {
     check(build<Orthtree>(cloud));
 }
 
-/// A user's own primitives: discs that face z.
-struct Discs {
-    using Scalar = float;
-    static constexpr int dimension = 3;
-    std::vector<Vec3f> centers;
-    float radius;
-
-    std::size_t size() const { return centers.size(); }
-    Box3f bounds(std::size_t i) const {
-        const Vec3f r(radius, radius, 0);
-        return {centers[i] - r, centers[i] + r};
-    }
-    std::optional<Meeting<float>> meet(std::size_t i, const Ray3f& ray) const {
-        const float t = (centers[i][2] - ray.origin[2]) / ray.direction[2];
-        if (!(ray.t_min <= t && t <= ray.t_max)) return std::nullopt;
-        Vec3f from = ray.at(t) - centers[i];
-        from[2] = 0;
-        if (length2(from) > product(radius, radius)) return std::nullopt;
-        return Meeting<float>{t, 0, 0};
-    }
-};
-
-TEST(Walkers, AUsersOwnTypeIsAnswered) {
-    Discs discs{{}, 0.05f};
-    for (const auto& p : points<float>(500).points) discs.centers.push_back(p);
-    const auto oracle = build<BruteForce>(discs);
-    const auto tree = build<Bvh>(discs);
-    const auto grid = build<Grid>(discs);
-    const auto octree = build<Orthtree>(discs);
-    for (std::uint64_t i = 0; i < 2000; ++i) {
-        Random random(4, i);
-        const Vec3f from(random.direction<3>()),
-            to(static_cast<float>(random.uniform()), static_cast<float>(random.uniform()), 0.5f);
-        const Ray3f ray{to + from * 2.f, -from};
-        EXPECT_EQ(closest_hit(oracle, ray), closest_hit(tree, ray));
-        EXPECT_EQ(closest_hit(oracle, ray), closest_hit(grid, ray));
-        EXPECT_EQ(closest_hit(oracle, ray), closest_hit(octree, ray));
-    }
-}
-
 TEST(Walkers, FiltersRefuseWhatTheListOfAllHitsHolds) {
     const auto mesh = soup<float>(500);
     const auto index = build(mesh);

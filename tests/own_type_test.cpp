@@ -1,0 +1,64 @@
+/// A type that the library has never heard of, in every structure: the bits of brute force again.
+#include "../src/any/build_any.h"
+
+#include <hedgerow/scenes/sets.h>
+
+#include "matrix.h"
+
+using namespace hedgerow;
+
+namespace {
+
+/// Discs that face z.
+template <class T>
+struct Discs {
+    using Scalar = T;
+    static constexpr int dimension = 3;
+    std::vector<Vec<T, 3>> centers;
+    T radius;
+
+    std::size_t size() const { return centers.size(); }
+    Box<T, 3> bounds(std::size_t i) const {
+        const Vec<T, 3> r(radius, radius, T(0));
+        return {centers[i] - r, centers[i] + r};
+    }
+    std::optional<Meeting<T>> meet(std::size_t i, const Ray<T, 3>& ray) const {
+        const T t = (centers[i][2] - ray.origin[2]) / ray.direction[2];
+        if (!(ray.t_min <= t && t <= ray.t_max) || !holds(i, ray.at(t))) return std::nullopt;
+        return Meeting<T>{t, T(0), T(0)};
+    }
+    Vec<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
+        Vec<T, 3> from = p - centers[i];
+        from[2] = 0;
+        const T away = length(from);
+        return clamped(away <= radius ? p : centers[i] + from * (radius / away), bounds(i));
+    }
+    bool overlaps(std::size_t i, const Box<T, 3>& box) const {
+        return overlap(box, bounds(i)) && holds(i, clamped(centers[i], box));
+    }
+
+private:
+    /// Whether a place, seen along z, is in the disc.
+    bool holds(std::size_t i, const Vec<T, 3>& p) const {
+        Vec<T, 3> from = p - centers[i];
+        from[2] = 0;
+        return length2(from) <= product(radius, radius);
+    }
+};
+
+template <class T>
+class OwnType : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(OwnType, Scalars);
+
+TYPED_TEST(OwnType, IsAnsweredByEveryStructureAsByBruteForce) {
+    using T = TypeParam;
+    Discs<T> discs{points<T>(300).points, T(0.05)};
+    for (int i = 0; i < 30; ++i) discs.centers.push_back(discs.centers[0]);
+    auto targets = discs.centers;
+    for (auto& p : targets) p[0] += discs.radius;
+    matrix::expect_equal("discs", discs, targets);
+    matrix::expect_equal("one disc", Discs<T>{{{1, 2, 3}}, T(2)}, {{1, 2, 3}, {3, 2, 3}});
+}
+
+}  // namespace
