@@ -277,6 +277,7 @@ TEST(Fits, FollowWhatTheyHold) {
 
 TEST(Hulls, HaveTheFacesOfTheirPoints) {
     std::vector<Vec3d> cube;
+    cube.reserve(9);
     for (int i = 0; i < 8; ++i) cube.push_back(Vec3d(i & 1, i >> 1 & 1, i >> 2) * 100.0 + Vec3d(1e6, 0, 0));
     cube.push_back(Vec3d(1e6 + 50, 50, 50));
     const auto normals = hull_normals(cube);
