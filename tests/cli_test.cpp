@@ -68,7 +68,7 @@ TEST_F(Cli, EveryStructureMakesTheSamePicture) {
     for (const char* shading : {"normals", "depth", "diffuse"}) {
         std::string first;
         for (const char* structure :
-             {"bvh", "kdtree", "grid", "octree", "brute-force", "bvh:builder=midpoint"}) {
+             {"bvh", "wide", "kdtree", "grid", "octree", "brute-force", "bvh:builder=midpoint"}) {
             const auto r =
                 run("render gen:teapot:500 --quiet --size 48x32 --shading " + std::string(shading) +
                     " --structure " + structure + " -o " + file("same.png"));

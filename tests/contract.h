@@ -86,6 +86,7 @@ Answers<T, D> answers(const AnyIndex<T, D>& index, const Questions<T, D>& questi
 template <class P, class F>
 void with_each_structure(const P& set, F f) {
     f(build<Bvh>(set));
+    f(build<WideBvh>(set));
     f(build<KdTree>(set));
     f(build<Grid>(set));
     f(build<Orthtree>(set));

@@ -43,8 +43,8 @@ std::size_t cells_of(const std::string& scene, const std::string& spec) {
 
 TEST_F(Draw, FlatScenesShowEveryCell) {
     for (const char* scene : {"gen:clusters2d:120", "gen:segments2d:80"})
-        for (const char* spec :
-             {"quadtree:leaf_size=3", "kdtree", "grid", "two-level-grid", "bsp", "bvh", "brute-force"}) {
+        for (const char* spec : {"quadtree:leaf_size=3", "kdtree", "grid", "two-level-grid", "bsp", "bvh",
+                                 "wide", "brute-force"}) {
             SCOPED_TRACE(std::string(scene) + " " + spec);
             const auto r =
                 run(std::string("draw ") + scene + " --structure " + spec + " -o " + file("cells.svg"));
@@ -57,7 +57,7 @@ TEST_F(Draw, FlatScenesShowEveryCell) {
 }
 
 TEST_F(Draw, SlicesShowWhatThePlaneCuts) {
-    for (const char* spec : {"octree", "kdtree", "grid", "two-level-grid", "bsp", "bvh"}) {
+    for (const char* spec : {"octree", "kdtree", "grid", "two-level-grid", "bsp", "bvh", "wide"}) {
         SCOPED_TRACE(spec);
         const auto r = run(std::string("draw gen:teapot:300 --slice z=0.4 --structure ") + spec + " -o " +
                            file("slice.svg"));
@@ -112,7 +112,7 @@ TEST_F(Draw, TwoBuildersShowWhatSiblingsShare) {
 
 TEST_F(Draw, ARaysTableIsItsTrace) {
     const std::string ray = " --ray=-0.2,0.31,1,0.35";
-    for (const char* spec : {"quadtree", "kdtree", "grid", "two-level-grid", "bsp", "bvh"}) {
+    for (const char* spec : {"quadtree", "kdtree", "grid", "two-level-grid", "bsp", "bvh", "wide"}) {
         SCOPED_TRACE(spec);
         const auto set = std::get<SegmentSet<float>>(generate<float>(parse_scene_spec("gen:segments2d:80")));
         const auto trace = build_any(spec, set)->trace({{-0.2f, 0.31f}, {1, 0.35f}});

@@ -144,6 +144,11 @@ TYPED_TEST(Executors, EveryExecutorBuildsTheSame) {
         options.reinsertion = 1;
         expect_same_structure<Bvh>(mesh, options);
     }
+    for (const auto builder : wide_builders) {
+        WideOptions options;
+        options.builder = builder, options.reinsertion = 1;
+        expect_same_structure<WideBvh>(mesh, options);
+    }
     expect_same_structure<KdTree>(mesh);
     expect_same_structure<Grid>(mesh);
     expect_same_structure<Orthtree>(mesh);

@@ -207,7 +207,7 @@ void expect_tool_agrees(const Read& read, const char* structure) {
 }
 
 TEST_F(ExrTool, LayersAreWhatTheLibraryAnswers) {
-    for (const char* structure : {"bvh", "kdtree", "grid"}) {
+    for (const char* structure : {"bvh", "wide", "kdtree", "grid"}) {
         const std::string render = std::string("render gen:teapot:500 --size 48x32 --structure ") + structure;
         expect_tool_agrees<float>(written(render), structure);
         expect_tool_agrees<double>(written(render + " --precision double"), structure);

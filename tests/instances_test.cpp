@@ -158,6 +158,7 @@ struct Case {
         expect_some();
         if constexpr (std::is_same_v<T, float>) {
             expect<KdTree, Bvh>("bvh in kdtree");
+            expect<WideBvh, WideBvh>("wide in wide");
             expect<BruteForce, Bvh>("bvh in brute force");
             expect<Bvh, BruteForce>("brute force in bvh");
             expect<KdTree, KdTree>("kdtree in kdtree");

@@ -14,6 +14,9 @@ namespace hedgerow::matrix {
 /// Every structure and builder, by the names that they have in space; the last ones show or stress something
 /// and are slow on large scenes.
 inline constexpr const char* structures[] = {
+    "wide",
+    "wide:width=4",
+    "wide:width=16,builder=fast,max_leaf_size=1",
     "bvh",
     "bvh:builder=sweep",
     "bvh:builder=midpoint",
@@ -51,7 +54,7 @@ inline constexpr const char* structures[] = {
     "bvh:volume=kdop26",
     "bvh:volume=cylinder",
     "bvh:volume=hull,builder=agglomerative"};
-inline constexpr std::size_t fast_structures = 15;
+inline constexpr std::size_t fast_structures = 18;
 
 /// What is called that in space, or stands for it in the plane, among sets of P.
 template <class P>

@@ -28,8 +28,7 @@ struct Discs {
         return Meeting<T>{t, T(0), T(0)};
     }
     Vec<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
-        Vec<T, 3> from = p - centers[i];
-        from[2] = 0;
+        const Vec<T, 3> from = from_axis(i, p);
         const T away = length(from);
         return clamped(away <= radius ? p : centers[i] + from * (radius / away), bounds(i));
     }
@@ -38,11 +37,14 @@ struct Discs {
     }
 
 private:
-    /// Whether a place, seen along z, is in the disc.
-    bool holds(std::size_t i, const Vec<T, 3>& p) const {
+    Vec<T, 3> from_axis(std::size_t i, const Vec<T, 3>& p) const {
         Vec<T, 3> from = p - centers[i];
         from[2] = 0;
-        return length2(from) <= product(radius, radius);
+        return from;
+    }
+    /// Whether a place, seen along z, is in the disc.
+    bool holds(std::size_t i, const Vec<T, 3>& p) const {
+        return length2(from_axis(i, p)) <= product(radius, radius);
     }
 };
 

@@ -20,6 +20,7 @@ auto every_index(const P& set) {
     for (const char* more :
          {"bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts", "bvh:builder=lbvh",
           "bvh:builder=ploc", "bvh:builder=agglomerative", "bvh:reinsertion=2", "bvh:max_leaf_size=1",
+          "wide:width=4,builder=high,reinsertion=2", "wide:width=16,builder=fast,max_leaf_size=1",
           "kdtree:leaf_size=1", "grid:resolution=3", "octree:leaf_size=1", "octree:leaf_size=2,mailbox=off"})
         specs.push_back(named_for<P>(more));
     Indexes<typename P::Scalar, P::dimension> indexes;
@@ -152,10 +153,12 @@ TYPED_TEST(OfEverySet, RefitsAnswerWithTheBitsOfBruteForce) {
     constexpr int D = TypeParam::dimension;
     expect_always([] {
         AnyCase<TypeParam> one;
-        const std::string builder = *gen::element<std::string>(
-            "binned", "sweep", "midpoint", "equal-counts", "lbvh", "ploc", "agglomerative", "spatial-splits");
+        const std::string structure = *gen::element<std::string>(
+            "bvh:builder=binned", "bvh:builder=sweep", "bvh:builder=midpoint", "bvh:builder=equal-counts",
+            "bvh:builder=lbvh", "bvh:builder=ploc", "bvh:builder=agglomerative", "bvh:builder=spatial-splits",
+            "wide:width=4", "wide:width=8", "wide:width=16");
         const auto leaf = std::to_string(*gen::inRange(1, 9).as("max_leaf_size"));
-        const auto index = build_any("bvh:builder=" + builder + ",max_leaf_size=" + leaf, one.set);
+        const auto index = build_any(structure + ",max_leaf_size=" + leaf, one.set);
         for (int step = 0; step < 4; ++step) {
             AnyCase<TypeParam> now;
             items(now.set).resize(one.set.size());

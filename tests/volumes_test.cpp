@@ -84,7 +84,15 @@ std::vector<Arrangement<T, D>> arrangements() {
     return all;
 }
 
-/// Calls f(name, list) with each kind of volume, fitted around the points.
+template <class T, int D, class F>
+void with_each_arrangement(F f) {
+    for (const auto& arrangement : arrangements<T, D>()) {
+        SCOPED_TRACE(arrangement.name);
+        f(arrangement.points);
+    }
+}
+
+/// Calls f(list) with each kind of volume, fitted around the points.
 template <class T, int D, class F>
 void with_each_volume(const Points<T, D>& points, F f) {
     std::vector<Vec<double, D>> wide;
@@ -129,10 +137,7 @@ TYPED_TEST_SUITE(Volumes, Scalars);
 
 template <class T, int D>
 void expect_points_held() {
-    for (const auto& arrangement : arrangements<T, D>()) {
-        const auto& name = arrangement.name;
-        const auto& points = arrangement.points;
-        SCOPED_TRACE(name);
+    with_each_arrangement<T, D>([](const Points<T, D>& points) {
         with_each_volume(points, [&](const auto& list) {
             std::visit(
                 [&](const auto& volumes) {
@@ -140,7 +145,7 @@ void expect_points_held() {
                 },
                 list);
         });
-    }
+    });
 }
 TYPED_TEST(Volumes, HoldWhatTheyAreFittedAround) {
     expect_points_held<TypeParam, 2>();
@@ -150,10 +155,7 @@ TYPED_TEST(Volumes, HoldWhatTheyAreFittedAround) {
 /// Rays that meet a point of the hull at t = 1 or after, from near and far and from inside.
 template <class T, int D>
 void expect_rays_enter() {
-    for (const auto& arrangement : arrangements<T, D>()) {
-        const auto& name = arrangement.name;
-        const auto& points = arrangement.points;
-        SCOPED_TRACE(name);
+    with_each_arrangement<T, D>([](const Points<T, D>& points) {
         Box<T, D> box;
         for (const auto& p : points) box.expand(p);
         const double size = std::max(static_cast<double>(max_component(box.extent())),
@@ -180,7 +182,7 @@ void expect_rays_enter() {
                 EXPECT_LE(at, t);
             }
         });
-    }
+    });
 }
 TYPED_TEST(Volumes, AreEnteredByEveryRayThatMeetsWhatTheyHold) {
     expect_rays_enter<TypeParam, 2>();
@@ -189,10 +191,7 @@ TYPED_TEST(Volumes, AreEnteredByEveryRayThatMeetsWhatTheyHold) {
 
 template <class T, int D>
 void expect_regions_enter() {
-    for (const auto& arrangement : arrangements<T, D>()) {
-        const auto& name = arrangement.name;
-        const auto& points = arrangement.points;
-        SCOPED_TRACE(name);
+    with_each_arrangement<T, D>([](const Points<T, D>& points) {
         Box<T, D> box;
         for (const auto& p : points) box.expand(p);
         with_each_volume(points, [&](const auto& list) {
@@ -217,7 +216,7 @@ void expect_regions_enter() {
                 EXPECT_TRUE((BoxProbe<T, D>(unbounded).enter(volume, T(0), at))) << "box " << i;
             }
         });
-    }
+    });
 }
 TYPED_TEST(Volumes, AreEnteredByPointsAndBoxes) {
     expect_regions_enter<TypeParam, 2>();

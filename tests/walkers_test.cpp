@@ -111,6 +111,7 @@ TEST(Walkers, RangeCountingAcceptsWholeSubtrees) {
     expect_counts(build<Bvh>(cloud), cloud);
     expect_counts(build<KdTree>(cloud), cloud);
     expect_counts(build<Orthtree>(cloud), cloud);
+    expect_counts(build<WideBvh>(cloud), cloud);
 }
 
 template <class I>
@@ -139,6 +140,7 @@ TEST(Walkers, BarnesHutNearsTheDirectSumAsTheAngleShrinks) {
     check(build<Bvh>(cloud));
     check(build<KdTree>(cloud));
     check(build<Orthtree>(cloud));
+    check(build<WideBvh>(cloud));
 }
 
 TEST(Walkers, FiltersRefuseWhatTheListOfAllHitsHolds) {
@@ -188,7 +190,7 @@ TEST(Walkers, VisitsAreCountedOnlyWhenAsked) {
 
 /// A row of walls: what is behind the one that is hit is passed over by every structure.
 TEST(Walkers, PassOverWhatLiesBehindTheHit) {
-    constexpr std::uint32_t walls = 64;
+    constexpr std::uint32_t walls = 512;
     TriangleMesh<float> row;
     for (std::uint32_t i = 0; i < walls; ++i) {
         const auto x = static_cast<float>(i);

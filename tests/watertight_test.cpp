@@ -41,7 +41,7 @@ TYPED_TEST(Watertight, NoRayLeaksOutOfAClosedMesh) {
     using T = TypeParam;
     const auto mesh = boulder<T>();
     const std::size_t count = in_long_runs(10000000, 1000000);
-    for (const char* spec : {"bvh", "bvh:builder=midpoint", "kdtree", "grid", "octree"}) {
+    for (const char* spec : {"bvh", "bvh:builder=midpoint", "wide", "kdtree", "grid", "octree"}) {
         SCOPED_TRACE(spec);
         const auto index = build_any(spec, mesh);
         std::atomic<std::uint64_t> leaks{0}, first_leak{~0ull};

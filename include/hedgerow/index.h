@@ -17,6 +17,7 @@
 #include <hedgerow/queries/nearest.h>
 #include <hedgerow/queries/overlapping.h>
 #include <hedgerow/structures/bvh/bvh.h>
+#include <hedgerow/structures/bvh/wide/kernels.h>
 
 namespace hedgerow {
 
@@ -46,6 +47,11 @@ public:
     using Structure = S;
     using Primitives = P;
     using BoxType = Box<Scalar, dimension>;
+    /// Whether rays may be answered by the processor's vectors (structures/bvh/wide/kernels.h).
+    static constexpr bool by_kernels =
+        std::same_as<P, TriangleMeshView<float>> && requires(const S& s, const TriangleBlocks<float>& b) {
+        WideScene{s.tree(), b.data(), {}};
+    };
 
     /// Borrows what `primitives` looks at; `owner`, if any, keeps it alive.
     Index(P primitives, const typename S::Options& options, Executor& executor,
@@ -133,6 +139,11 @@ public:
             walk(query, count);
             return query.answer();
         });
+    }
+
+    /// What the kernels are told, where these primitives in this structure are what they know.
+    WideScene wide_scene() const requires(by_kernels) {
+        return {structure_.tree(), leaves_.data(), primitives_.faces()};
     }
 
 private:
@@ -234,17 +245,36 @@ using NearOf = Near<typename I::Scalar, I::dimension>;
 
 inline constexpr NoVisits no_visits{};
 
+/// The kernels that are to answer, if any do: they neither filter nor count.
+template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
+const WideKernels* kernels_for(const Index<S, P>&) {
+    if constexpr (Index<S, P>::by_kernels && std::same_as<Filter, KeepAll> &&
+                  std::same_as<Count, const NoVisits>)
+        return wide_kernels();
+    else
+        return nullptr;
+}
+
 /// The hit of least t in [t_min, t_max], if any. `filter(hit)` may refuse; `count` may be a Visits.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
                                                    const Ray<typename P::Scalar, P::dimension>& ray,
                                                    const Filter& filter = {}, Count& count = no_visits) {
+    if constexpr (Index<S, P>::by_kernels)
+        if (const auto* kernels = kernels_for<S, P, Filter, Count>(index)) {
+            const Hit<float> hit =
+                in_ieee_mode([&] { return kernels->closest_hit(index.wide_scene(), ray); });
+            return hit ? std::optional(hit) : std::nullopt;
+        }
     return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
 }
 /// Whether anything is hit.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
              const Filter& filter = {}, Count& count = no_visits) {
+    if constexpr (Index<S, P>::by_kernels)
+        if (const auto* kernels = kernels_for<S, P, Filter, Count>(index))
+            return in_ieee_mode([&] { return kernels->any_hit(index.wide_scene(), ray); });
     return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
 }
 /// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.
@@ -295,6 +325,14 @@ void closest_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scal
                   std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor()) {
     assert(hits.size() >= rays.size());
     executor.for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        if constexpr (Index<S, P>::by_kernels)
+            if (const auto* kernels = kernels_for(index)) {
+                in_ieee_mode([&] {
+                    kernels->closest_hits(index.wide_scene(), rays.subspan(begin, end - begin),
+                                          hits.data() + begin);
+                });
+                return;
+            }
         for (std::size_t i = begin; i < end; ++i)
             hits[i] = closest_hit(index, rays[i]).value_or(Hit<typename P::Scalar>{});
     });
@@ -304,6 +342,14 @@ void any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, 
               std::span<bool> hits, Executor& executor = serial_executor()) {
     assert(hits.size() >= rays.size());
     executor.for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        if constexpr (Index<S, P>::by_kernels)
+            if (const auto* kernels = kernels_for(index)) {
+                in_ieee_mode([&] {
+                    kernels->any_hits(index.wide_scene(), rays.subspan(begin, end - begin),
+                                      hits.data() + begin);
+                });
+                return;
+            }
         for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(index, rays[i]);
     });
 }

@@ -85,7 +85,16 @@ const std::vector<StructureInfo>& structure_list() {
           {"intersection_cost", "NUMBER", "1", "of a primitive, for the SAH"},
           {"max_leaf_size", "COUNT", "8", "larger nodes are always split"},
           {"ordered", "on|off", "on", "visit the nearer child first"},
-          {"culling", "on|off", "on", "pass over what a nearer hit has put out of reach"}}}};
+          {"culling", "on|off", "on", "pass over what a nearer hit has put out of reach"}}},
+        {"wide",
+         "wide bounding volume hierarchy: 4 to 16 children a node, tested at once (the engine)",
+         {{"builder", "fast|medium|high", "medium",
+           "of the binary tree that it is collapsed from: ploc, binned, binned and improved"},
+          {"width", "0|4|8|16", "0", "children a node; 0: what this processor is best at"},
+          {"reinsertion", "PASSES", "10", "most passes of the builder 'high'"},
+          {"traversal_cost", "NUMBER", "2", "of an inner node of the binary tree, for the SAH"},
+          {"intersection_cost", "NUMBER", "1", "of a primitive, for the SAH"},
+          {"max_leaf_size", "1..8", "8", "larger nodes are always split"}}}};
     return list;
 }
 

@@ -31,7 +31,12 @@ public:
     const Box<T, D>& bounds() const override { return index_.bounds(); }
     std::size_t size() const override { return index_.size(); }
     std::size_t bytes() const override { return index_.bytes(); }
-    std::size_t node_count() const override { return index_.structure().node_count(); }
+    std::size_t node_count() const override {
+        if constexpr (requires { index_.structure().used_node_count(); })
+            return index_.structure().used_node_count();
+        else
+            return index_.structure().node_count();
+    }
     std::size_t leaf_count() const override { return index_.structure().leaf_count(); }
     std::size_t item_count() const override {
         if constexpr (requires { index_.structure().item_count(); })
@@ -136,6 +141,7 @@ void for_each_structure(F f) {
     f.template operator()<BspTree>("bsp");
     f.template operator()<Bvh>("bvh");
     f.template operator()<VolumeBvh>(bvh_of_volumes);
+    f.template operator()<WideBvh>("wide");
 }
 
 template <class View>

@@ -194,5 +194,16 @@ void read_options(OptionReader& in, typename VolumeBvh<T, D>::Options& o,
                   std::type_identity<VolumeBvh<T, D>>) {
     read_bvh_options<T, D>(in, o, o.volume);
 }
+template <class T, int D>
+void read_options(OptionReader& in, typename WideBvh<T, D>::Options& o, std::type_identity<WideBvh<T, D>>) {
+    in.choice<WideBuilder>(
+        "builder", o.builder,
+        {{"fast", WideBuilder::fast}, {"medium", WideBuilder::medium}, {"high", WideBuilder::high}});
+    in.choice<int>("width", o.width, {{"0", 0}, {"4", 4}, {"8", 8}, {"16", 16}});
+    in.number("reinsertion", o.reinsertion, 0, 100);
+    in.number("traversal_cost", o.traversal_cost, 0.0, 1e6);
+    in.number("intersection_cost", o.intersection_cost, 1e-6, 1e6);
+    in.number<std::uint32_t>("max_leaf_size", o.max_leaf_size, 1, wide_leaf_size);
+}
 
 }  // namespace hedgerow::detail

@@ -15,6 +15,8 @@ namespace hedgerow {
 
 /// The position of a primitive in its set.
 using PrimitiveId = std::uint32_t;
+/// In a list of places: none stands here.
+inline constexpr PrimitiveId no_primitive = 0xFFFFFFFFu;
 
 template <class P>
 concept PrimitiveSet = requires(const P& p, std::size_t i) {
@@ -127,8 +129,8 @@ auto hit_error(const P& set, const Ray& ray) {
         return typename Ray::Scalar(0);
 }
 /// Where a packed copy of the primitives stands: in the order of the leaves, for structures that hold each
-/// about once, or by id.
-enum class PackedOrder { of_leaves, of_ids };
+/// about once; the same, each leaf a block of its own; or by id.
+enum class PackedOrder { of_leaves, of_blocks, of_ids };
 
 /// Some primitives, by id: `ids[first]` to `ids[first + count − 1]`.
 struct Leaf {

@@ -13,6 +13,7 @@
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/packed_triangles.h>
 #include <hedgerow/primitives/strided.h>
+#include <hedgerow/primitives/triangle_blocks.h>
 
 namespace hedgerow {
 
@@ -42,6 +43,8 @@ public:
     std::uint32_t id(std::size_t i) const {
         return faces_.empty() ? static_cast<std::uint32_t>(i) : faces_[i];
     }
+    /// Those ids; empty where they are the positions.
+    const Strided<std::uint32_t>& faces() const { return faces_; }
     Box<T, 3> bounds(std::size_t i) const { return triangle(i).bounds(); }
     /// A box forgets a NaN; this does not.
     bool finite(std::size_t i) const {
@@ -90,12 +93,20 @@ public:
 
     /// The triangles in the order of a structure's items, or by id: what makes a test one read.
     template <PackedOrder order>
-    PackedTriangles<T, order> pack(std::span<const PrimitiveId> items, Executor& executor) const {
-        const std::size_t count = order == PackedOrder::of_leaves ? items.size() : size();
-        PackedTriangles<T, order> packed(count);
+    auto pack(std::span<const PrimitiveId> items, Executor& executor) const {
+        using Packed =
+            std::conditional_t<order == PackedOrder::of_blocks, TriangleBlocks<T>, PackedTriangles<T, order>>;
+        const std::size_t count = order == PackedOrder::of_ids ? size() : items.size();
+        Packed packed(count);
         executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                const auto id = order == PackedOrder::of_leaves ? items[i] : static_cast<PrimitiveId>(i);
+                const auto id = order == PackedOrder::of_ids ? static_cast<PrimitiveId>(i) : items[i];
+                if constexpr (order == PackedOrder::of_blocks) {
+                    if (id == no_primitive) {
+                        packed.clear(i);
+                        continue;
+                    }
+                }
                 packed.set(i, triangle(id), id);
             }
         });

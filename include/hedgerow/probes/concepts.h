@@ -45,10 +45,13 @@ concept Probe = requires(const P& p, const Box<typename P::Scalar, P::dimension>
 };
 
 /// Enters each volume of a pack one by one: for probes with no faster way. Bit i of the result: at[i] counts.
+/// A pack that may hold fewer than its width says how many.
 template <class P, class Pack>
 unsigned enter_each(const P& probe, const Pack& pack, typename P::Scalar limit, typename P::Scalar* at) {
+    int volumes = Pack::width;
+    if constexpr (requires { pack.size(); }) volumes = pack.size();
     unsigned entered = 0;
-    for (int i = 0; i < Pack::width; ++i)
+    for (int i = 0; i < volumes; ++i)
         entered |= static_cast<unsigned>(probe.enter(pack[i], limit, at[i])) << i;
     return entered;
 }

@@ -5,6 +5,7 @@
 #include <hedgerow/structures/bsp/bsp_tree.h>
 #include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/bvh/volume_bvh.h>
+#include <hedgerow/structures/bvh/wide/wide_bvh.h>
 #include <hedgerow/structures/fold.h>
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/grid/two_level_grid.h>

@@ -1,0 +1,192 @@
+/// From a binary tree to the wide one of least cost that has the same leaves.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include <hedgerow/structures/bvh/build_tree.h>
+#include <hedgerow/structures/bvh/wide/wide_tree.h>
+
+namespace hedgerow {
+
+/// By dynamic programming (Ylitie, Karras and Laine, Efficient incoherent ray traversal on GPUs through
+/// compressed wide BVHs, HPG 2017), but for the leaves, which stay as they are and so weigh nothing. The cost
+/// of a tree is the sum of its inner nodes' areas, as shares of the root's; if that has no area, their
+/// number. O(n · width²), in parallel over subtrees; the places of nodes are given out by one thread. Of a
+/// node's children inner ones and leaves stand in the order of the binary tree. The result is the same for
+/// any number of threads.
+template <std::floating_point T, int D>
+class WideCollapse {
+public:
+    /// Of a tree of at least one leaf, and at most `most_leaves`.
+    WideCollapse(const BuildTree<T, D>& tree, int width, Executor& executor)
+        : tree_(tree),
+          width_(width),
+          row_(static_cast<std::size_t>(width - 1)),
+          executor_(executor),
+          whole_(static_cast<double>(tree.nodes[0].box().half_area())) {}
+
+    /// So that every NodeId and every place among the items has a number.
+    static constexpr std::uint32_t most_leaves = 1u << 28;
+
+    WideTree<T, D> build() {
+        costs_.resize((tree_.leaves - 1) * row_);
+        weigh(root());
+        open(root(), 1);
+        opened_.push_back(children_.size());
+        return laid_out();
+    }
+
+private:
+    /// A node of the binary tree; the inner ones are also numbered, depth first, so that what is known of
+    /// them lies without gaps.
+    struct Node {
+        std::uint32_t place, number;
+    };
+    struct Child {
+        std::uint32_t place;  // in the binary tree
+        WideChild to;
+    };
+    /// least[i]: what a subtree costs at least where it stands as at most i + 1 children of a node above it.
+    using Costs = std::array<float, most_wide - 1>;
+    struct Split {
+        float cost;
+        int left;  // children that go to the left
+    };
+    struct Children {
+        std::array<Node, most_wide> list;
+        std::size_t count = 0;
+
+        void add(Node n) { list[count++] = n; }
+    };
+
+    Node root() const { return {0, 0}; }
+    const BuildNode<T, D>& at(Node n) const { return tree_.nodes[n.place]; }
+    bool leaf(Node n) const { return at(n).count > 0; }
+    Node left(Node n) const { return {at(n).left, n.number + 1}; }
+    Node right(Node n) const { return {at(n).right, n.number + tree_.nodes[at(n).left].leaves()}; }
+
+    // Costs.
+
+    void weigh(Node n) {
+        if (leaf(n)) return;
+        const auto weigh_left = [&] { weigh(left(n)); };
+        const auto weigh_right = [&] { weigh(right(n)); };
+        if (at(n).leaves() > 4096) {
+            executor_.both(weigh_left, weigh_right);
+        } else {
+            weigh_left();
+            weigh_right();
+        }
+        const Costs on_left = costs(left(n)), on_right = costs(right(n));
+        Costs least{};  // nothing, where every leaf may be a child
+        least[0] = cost_of_opening(n) + split(on_left, on_right, width_).cost;
+        const int most = std::min(width_ - 1, static_cast<int>(std::min(at(n).leaves() - 1, 15u)));
+        for (int i = 2; i <= most; ++i) {
+            const auto place = static_cast<std::size_t>(i - 1);
+            least[place] = std::min(least[place - 1], split(on_left, on_right, i).cost);
+        }
+        std::copy_n(least.begin(), row_, costs_.begin() + static_cast<std::ptrdiff_t>(n.number * row_));
+    }
+    /// In float, as all sums: they are kept in it. A node costs something even where it has no area, so that
+    /// there are as few of those as may be.
+    float cost_of_opening(Node n) const {
+        const double share = whole_ > 0 ? static_cast<double>(at(n).box().half_area()) / whole_ : 1;
+        return static_cast<float>(share + 1e-12);
+    }
+    Costs costs(Node n) const {
+        Costs least{};
+        if (!leaf(n))
+            std::copy_n(costs_.begin() + static_cast<std::ptrdiff_t>(n.number * row_), row_, least.begin());
+        return least;
+    }
+    /// The best way to give at least one of so many children to each side.
+    static Split split(const Costs& left, const Costs& right, int children) {
+        Split best{std::numeric_limits<float>::infinity(), 1};
+        for (int i = 1; i < children; ++i) {
+            const float cost =
+                left[static_cast<std::size_t>(i - 1)] + right[static_cast<std::size_t>(children - i - 1)];
+            if (cost < best.cost) best = {cost, i};
+        }
+        return best;
+    }
+
+    // Which nodes there are.
+
+    void open(Node n, int level) {
+        depth_ = std::max(depth_, level + 1);
+        Children below;
+        if (leaf(n))
+            below.add(n);
+        else
+            divide(n, width_, below);
+        const std::size_t first = children_.size();
+        opened_.push_back(first);
+        for (std::size_t i = 0; i < below.count; ++i) {
+            const Node child = below.list[i];
+            children_.push_back(
+                {child.place, leaf(child) ? WideChild::of_leaf(leaves_++) : WideChild::none()});
+        }
+        for (std::size_t i = 0; i < below.count; ++i) {
+            if (leaf(below.list[i])) continue;
+            children_[first + i].to = {static_cast<std::uint32_t>(opened_.size())};
+            open(below.list[i], level + 1);
+        }
+    }
+    /// What a subtree stands as, where it may be so many children.
+    void gather(Node n, int children, Children& found) const {
+        const Costs least = costs(n);
+        while (children > 1 && !(least[static_cast<std::size_t>(children - 1)] <
+                                 least[static_cast<std::size_t>(children - 2)]))
+            --children;
+        if (leaf(n) || children == 1)
+            found.add(n);
+        else
+            divide(n, children, found);
+    }
+    void divide(Node n, int children, Children& found) const {
+        const int on_left = split(costs(left(n)), costs(right(n)), children).left;
+        gather(left(n), on_left, found);
+        gather(right(n), children - on_left, found);
+    }
+
+    // The tree.
+
+    WideTree<T, D> laid_out() const {
+        WideTree<T, D> wide;
+        wide.bounds = at(root()).box();
+        wide.depth = depth_;
+        wide.items.assign(leaves_ * std::size_t(wide_leaf_size), no_primitive);
+        const std::size_t count = opened_.size() - 1;
+        wide.nodes = WideNodes<T, D>(width_, count);
+        executor_.for_each_piece(count, 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t node = begin; node < end; ++node) lay_out(wide, node);
+        });
+        return wide;
+    }
+    void lay_out(WideTree<T, D>& wide, std::size_t node) const {
+        int i = 0;
+        for (std::size_t c = opened_[node]; c < opened_[node + 1]; ++c, ++i) {
+            const Child& child = children_[c];
+            const BuildNode<T, D>& from = tree_.nodes[child.place];
+            wide.nodes.set(node, i, from.box(), child.to, from.count);
+            if (child.to.leaf())
+                std::copy_n(tree_.items.data() + from.first, from.count,
+                            wide.items.data() + std::size_t(wide_leaf_size) * child.to.block());
+        }
+        for (; i < width_; ++i) wide.nodes.set(node, i, Box<T, D>(), WideChild::none(), 0);
+    }
+
+    const BuildTree<T, D>& tree_;
+    int width_;
+    std::size_t row_;  // of costs a node
+    Executor& executor_;
+    double whole_;  // the root's area
+    BareVector<float> costs_;
+    std::vector<Child> children_;      // of all nodes, in turn
+    std::vector<std::size_t> opened_;  // where those of each begin, and the end
+    std::uint32_t leaves_ = 0;
+    int depth_ = 0;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,50 @@
+/// Rays against triangles in a wide BVH, by the processor's vectors: which instruction set, and what it
+/// offers.
+///
+/// The kernels are one source (src/wide/), compiled for every instruction set that the compiler knows
+/// (AVX-512, AVX2, SSE4; NEON) and chosen at run time. All give the same bits as the plain walk does; without
+/// any the plain walk is what answers.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <hedgerow/primitives/triangle_blocks.h>
+#include <hedgerow/queries/hit.h>
+#include <hedgerow/structures/bvh/wide/wide_tree.h>
+
+namespace hedgerow {
+
+/// What a kernel is told of an index: the tree, its leaves' triangles, and the ids that hits report, if they
+/// are not the positions.
+struct WideScene {
+    const WideTree<float, 3>& tree;
+    const TriangleBlock<float>* blocks;
+    Strided<std::uint32_t> faces;
+};
+
+struct WideKernels {
+    std::string_view instruction_set;
+    /// How many children a node has best.
+    int width;
+    /// A ray, or any number of them; where nothing is hit, a Hit that is false.
+    Hit<float> (*closest_hit)(const WideScene&, const Ray<float, 3>&);
+    bool (*any_hit)(const WideScene&, const Ray<float, 3>&);
+    void (*closest_hits)(const WideScene&, std::span<const Ray<float, 3>>, Hit<float>*);
+    void (*any_hits)(const WideScene&, std::span<const Ray<float, 3>>, bool*);
+};
+
+/// The kernels in use, or nullptr for the plain walk. The first call chooses: what the environment names in
+/// HEDGEROW_INSTRUCTION_SET (which is ignored if this processor lacks it), else the best there is.
+const WideKernels* wide_kernels();
+
+/// What this processor and this build have, best first; "plain" is last and always there.
+std::vector<std::string_view> instruction_sets();
+/// Takes another, from now on and for all threads. Throws InputError for one that is not in the list.
+void use_instruction_set(std::string_view name);
+
+/// How many children a node of a new index is given: what the kernels in use are best at.
+int preferred_wide_width();
+
+}  // namespace hedgerow

@@ -1,0 +1,138 @@
+/// A wide BVH as it lies in memory: nodes of 4, 8 or 16 boxes in rows, so that one instruction computes with
+/// a plane of every child.
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include <hedgerow/bare_vector.h>
+#include <hedgerow/geometry/box.h>
+#include <hedgerow/primitives/concepts.h>
+#include <hedgerow/structures/walk_volumes.h>
+
+namespace hedgerow {
+
+/// Leaves hold at most this many primitives, and each begins at a multiple of it among the items.
+inline constexpr std::uint32_t wide_leaf_size = 8;
+/// The most children that a node may have.
+inline constexpr int most_wide = 16;
+
+/// Where a child leads, in one word: the number of an inner node, or of a leaf's block of items with the
+/// highest bit set. Where there is no child it is all ones, and the box is one that nothing enters.
+struct WideChild {
+    std::uint32_t word;
+
+    static constexpr std::uint32_t leaf_bit = 0x80000000u;
+    static constexpr WideChild none() { return {0xFFFFFFFFu}; }
+    static constexpr WideChild of_leaf(std::uint32_t block) { return {block | leaf_bit}; }
+
+    bool empty() const { return word == none().word; }
+    bool leaf() const { return (word & leaf_bit) != 0; }
+    std::uint32_t block() const { return word & ~leaf_bit; }
+};
+
+/// The boxes of one node: of each axis the row of the low planes, then that of the high ones. A row has
+/// `places`, of which the first `boxes` are in use.
+template <std::floating_point T, int D>
+class BoxRows {
+public:
+    using Scalar = T;
+    static constexpr int dimension = D;
+    static constexpr int width = most_wide;  // at most
+
+    BoxRows(const T* rows, int places, int boxes) : rows_(rows), places_(places), boxes_(boxes) {}
+
+    int size() const { return boxes_; }
+    Box<T, D> operator[](int i) const {
+        Box<T, D> b;
+        for (int k = 0; k < D; ++k)
+            b.low[k] = rows_[2 * k * places_ + i], b.high[k] = rows_[(2 * k + 1) * places_ + i];
+        return b;
+    }
+
+private:
+    const T* rows_;
+    int places_, boxes_;
+};
+
+/// Nodes of `width` children, each of which begins a line of the cache: 2·D rows of planes, a row of
+/// WideChild and a row of how many primitives the leaves among them hold. Bytes of a node: width ·
+/// (2·D·sizeof(T) + 8), up to the next 64; in space with float 32 a child.
+template <std::floating_point T, int D>
+class WideNodes {
+public:
+    WideNodes() = default;
+    WideNodes(int width, std::size_t count)
+        : width_(width), stride_(stride_of(width)), count_(count), lines_(count * stride_ / line) {}
+
+    static constexpr std::size_t stride_of(int width) {
+        const std::size_t bytes = static_cast<std::size_t>(width) * (2 * D * sizeof(T) + 8);
+        return (bytes + line - 1) / line * line;
+    }
+    int width() const { return width_; }
+    std::size_t size() const { return count_; }
+    std::size_t stride() const { return stride_; }
+    std::size_t bytes() const { return lines_.capacity() * line; }
+    const std::byte* data() const { return lines_.empty() ? nullptr : lines_[0].data(); }
+    const std::byte* at(std::size_t node) const { return data() + node * stride_; }
+
+    /// Of its children, which come first in the rows.
+    BoxRows<T, D> boxes(std::size_t node) const {
+        return {reinterpret_cast<const T*>(at(node)), width_, children(node)};
+    }
+    /// How many there are. Most nodes are full.
+    int children(std::size_t node) const {
+        int n = width_;
+        while (n > 0 && child(node, n - 1).empty()) --n;
+        return n;
+    }
+    WideChild child(std::size_t node, int i) const { return {words(node)[i]}; }
+    std::uint32_t count(std::size_t node, int i) const { return words(node)[width_ + i]; }
+
+    void set_box(std::size_t node, int i, const Box<T, D>& b) {
+        T* const rows = reinterpret_cast<T*>(place(node));
+        for (int k = 0; k < D; ++k)
+            rows[2 * k * width_ + i] = b.low[k], rows[(2 * k + 1) * width_ + i] = b.high[k];
+    }
+    void set(std::size_t node, int i, const Box<T, D>& box, WideChild child, std::uint32_t count) {
+        set_box(node, i, box);
+        std::uint32_t* const w = reinterpret_cast<std::uint32_t*>(place(node) + boxes_bytes());
+        w[i] = child.word, w[width_ + i] = count;
+    }
+
+private:
+    static constexpr std::size_t line = 64;
+    struct alignas(line) Line {
+        std::byte bytes[line];
+        const std::byte* data() const { return bytes; }
+        std::byte* data() { return bytes; }
+    };
+
+    std::size_t boxes_bytes() const { return static_cast<std::size_t>(width_) * 2 * D * sizeof(T); }
+    std::byte* place(std::size_t node) { return lines_[0].data() + node * stride_; }
+    const std::uint32_t* words(std::size_t node) const {
+        return reinterpret_cast<const std::uint32_t*>(at(node) + boxes_bytes());
+    }
+
+    int width_ = most_wide;
+    std::size_t stride_ = 0, count_ = 0;
+    BareVector<Line> lines_;
+};
+
+/// The whole tree. Node 0 is the root, and parents come before their children. The items of leaf b are
+/// items[8·b] and on; what a leaf does not fill is `no_primitive`. A tree of nothing has no nodes; any other
+/// has an inner root, if need be with a single child.
+template <std::floating_point T, int D>
+struct WideTree {
+    WideNodes<T, D> nodes;
+    std::vector<PrimitiveId> items;
+    Box<T, D> bounds;
+    int depth = 0;  // levels, leaves counted
+
+    bool empty() const { return nodes.size() == 0; }
+    std::size_t leaf_count() const { return items.size() / wide_leaf_size; }
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,126 @@
+// Many rays that go their own ways: while one waits for memory the others compute. Each step of a phase is
+// the same for all rays in it, and has few branches that depend on data, since a wrong guess would cost the
+// neighbours their work too. (Read once for each instruction set.)
+
+template <int W, Wanted wanted>
+class Batch {
+public:
+    explicit Batch(const WideScene& scene) : scene_(scene) {
+        room_ = Stack::room(scene.tree.depth);
+        slots_ = std::min(most_slots, stack_places / room_);
+        start_[0] = reinterpret_cast<const char*>(scene.tree.nodes.data());
+        start_[1] = reinterpret_cast<const char*>(scene.blocks);
+    }
+
+    template <class Answer>
+    void answer(std::span<const Ray<float, 3>> rays, Answer* answers) {
+        asked_ = rays;
+        if (scene_.tree.empty()) {
+            std::fill_n(answers, rays.size(), Answer());
+            return;
+        }
+        int inner = 0, leaf = 0;
+        for (int s = 0; s < slots_; ++s)
+            if (begin(s, answers)) inner_[inner++] = s;
+        while (inner + leaf > 0) {
+            int still = 0;
+            for (int i = 0; i < inner; ++i) {
+                const int s = inner_[i];
+                open_node(s);
+                inner_[still] = leaf_[leaf] = s;
+                const bool at_leaf = (word_[s] & WideChild::leaf_bit) != 0;
+                still += !at_leaf, leaf += at_leaf;
+            }
+            inner = still;
+            if (leaf < enough_leaves && inner > 0) continue;
+            const int leaves = leaf;
+            leaf = 0;
+            for (int i = 0; i < leaves; ++i) {
+                const int s = leaf_[i];
+                bool goes_on = word_[s] != Stack::end && test_leaf(s);
+                if (!goes_on) {
+                    end(s, answers);
+                    goes_on = begin(s, answers);
+                }
+                if (!goes_on) continue;
+                const bool at_leaf = (word_[s] & WideChild::leaf_bit) != 0;
+                leaf_[leaf] = inner_[inner] = s;
+                leaf += at_leaf, inner += !at_leaf;
+            }
+        }
+    }
+
+private:
+    static constexpr int most_slots = 32, enough_leaves = 12;
+    static constexpr int stack_places = most_slots * 256;
+    using Block = TriangleBlock<float>;
+    using Stack = WalkStack<W>;
+    static constexpr std::size_t stride = WideNodes<float, 3>::stride_of(W);
+
+    /// A node, or where its highest bit is set a leaf: found by arithmetic, since a branch would be guessed.
+    HWY_INLINE const char* place_of(std::uint32_t word) const {
+        const std::uint32_t leaf = word >> 31;
+        return start_[leaf] + std::size_t(word & ~WideChild::leaf_bit) * step_[leaf];
+    }
+
+    /// The next usable ray into slot s; the others have their answer at once. False when none is left.
+    template <class Answer>
+    HWY_INLINE bool begin(int s, Answer* answers) {
+        do {
+            if (next_ == asked_.size()) return false;
+            index_[s] = next_;
+            prepare<W>(asked_[next_++], scene_.tree.bounds, ray_[s]);
+            if (!ray_[s].usable) end(s, answers);
+        } while (!ray_[s].usable);
+        Stack stack = stack_of(s);
+        stack.clear();
+        top_[s] = stack.top();
+        word_[s] = 0;
+        return true;
+    }
+    template <class Answer>
+    HWY_INLINE void end(int s, Answer* answers) {
+        if constexpr (wanted == Wanted::closest)
+            answers[index_[s]] = hit_of(scene_, ray_[s]);
+        else
+            answers[index_[s]] = ray_[s].element != Hit<float>::none;
+    }
+
+    HWY_INLINE Stack stack_of(int s) { return {stack_entry_, stack_word_, s * room_, top_[s]}; }
+    HWY_INLINE void pop(int s, Stack& stack) {
+        word_[s] = stack.pop();
+        top_[s] = stack.top();
+        const char* const from = place_of(word_[s]);
+        for (int line = 0; line < 28 * W / 64 || line < 5; ++line) __builtin_prefetch(from + 64 * line);
+    }
+    HWY_INLINE void open_node(int s) {
+        const std::byte* const node = reinterpret_cast<const std::byte*>(start_[0] + word_[s] * stride);
+        Stack stack = stack_of(s);
+        stack.push(Boxes<W>(node, Slabs<W>(ray_[s]), ray_[s].s_limit), children_of<W>(node));
+        pop(s, stack);
+    }
+    /// False when the ray has its answer.
+    HWY_INLINE bool test_leaf(int s) {
+        Stack stack = stack_of(s);
+        if (test_block(scene_.blocks[word_[s] & ~WideChild::leaf_bit], ray_[s])) {
+            if constexpr (wanted == Wanted::any) return false;
+            stack.sweep(ray_[s].s_limit);
+        }
+        pop(s, stack);
+        return word_[s] != Stack::end;
+    }
+
+    const WideScene& scene_;
+    std::span<const Ray<float, 3>> asked_;
+    std::size_t next_ = 0;
+    int slots_, room_;
+    const char* start_[2];  // of nodes and of leaves, and how far they lie apart
+    std::size_t step_[2] = {stride, sizeof(Block)};
+    alignas(64) WideRay ray_[most_slots];
+    std::uint32_t word_[most_slots];
+    int top_[most_slots];
+    std::size_t index_[most_slots];
+    int inner_[2 * most_slots], leaf_[2 * most_slots];
+    std::int32_t stack_entry_[stack_places + 16];
+    std::uint32_t stack_word_[stack_places + 16];
+};

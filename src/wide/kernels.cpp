@@ -1,0 +1,124 @@
+/// The kernels, compiled for each instruction set: Highway's foreach_target reads this file once a set. Of
+/// Highway the headers are used alone, and nothing is linked.
+#if HEDGEROW_HAS_HIGHWAY
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "wide/kernels.cpp"
+// Not worth their code: SSSE3 beside SSE4, and what AVX-512 has gained since its beginnings.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+#include <hedgerow/error.h>
+#include <hedgerow/spelling.h>
+#include <hedgerow/structures/bvh/build_tree.h>
+#include <hedgerow/structures/bvh/wide/kernels.h>
+
+#include "compiled.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+#if HWY_TARGET != HWY_SCALAR
+
+namespace hn = hwy::HWY_NAMESPACE;
+#include "batch-inl.h"
+#include "rays-inl.h"
+#include "single-inl.h"
+#include "stack-inl.h"
+#include "tests-inl.h"
+
+// F<W>::answer, W being the width of the scene's nodes.
+template <template <int> class F, class... Arguments>
+HWY_INLINE auto by_width(const WideScene& scene, Arguments... arguments) {
+    switch (scene.tree.nodes.width()) {
+        case 4:
+            return F<4>::answer(scene, arguments...);
+        case 8:
+            return F<8>::answer(scene, arguments...);
+        default:
+            return F<16>::answer(scene, arguments...);
+    }
+}
+template <Wanted wanted>
+struct Answering {
+    template <int W>
+    struct One {
+        static auto answer(const WideScene& scene, const Ray<float, 3>* asked) {
+            return answer_one<W, wanted>(scene, *asked);
+        }
+    };
+    template <int W>
+    struct Many {
+        template <class Answer>
+        static void answer(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
+            Batch<W, wanted>(scene).answer(rays, answers);
+        }
+    };
+};
+
+Hit<float> closest_hit(const WideScene& scene, const Ray<float, 3>& ray) {
+    return by_width<Answering<Wanted::closest>::template One>(scene, &ray);
+}
+bool any_hit(const WideScene& scene, const Ray<float, 3>& ray) {
+    return by_width<Answering<Wanted::any>::template One>(scene, &ray);
+}
+void closest_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, Hit<float>* hits) {
+    by_width<Answering<Wanted::closest>::template Many>(scene, rays, hits);
+}
+void any_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, bool* hits) {
+    by_width<Answering<Wanted::any>::template Many>(scene, rays, hits);
+}
+
+inline constexpr WideKernels kernels {
+#if HWY_TARGET == HWY_AVX3
+    "avx512", 16,
+#elif HWY_TARGET == HWY_AVX2
+    "avx2", 8,
+#elif HWY_TARGET == HWY_SSE4
+    "sse4", 4,
+#else
+    "neon", 4,
+#endif
+        closest_hit, any_hit, closest_hits, any_hits
+};
+
+#endif  // HWY_TARGET != HWY_SCALAR
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hedgerow::detail {
+
+std::vector<const WideKernels*> compiled_wide_kernels() {
+    std::vector<const WideKernels*> all;
+#if HWY_TARGETS & HWY_AVX3
+    all.push_back(&N_AVX3::kernels);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    all.push_back(&N_AVX2::kernels);
+#endif
+#if HWY_TARGETS & HWY_SSE4
+    all.push_back(&N_SSE4::kernels);
+#endif
+#if HWY_TARGETS & HWY_NEON
+    all.push_back(&N_NEON::kernels);
+#endif
+    return all;
+}
+
+}  // namespace hedgerow::detail
+#endif
+
+#else
+#include "compiled.h"
+
+std::vector<const hedgerow::WideKernels*> hedgerow::detail::compiled_wide_kernels() {
+    return {};
+}
+#endif

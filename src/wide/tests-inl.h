@@ -1,0 +1,190 @@
+// A ray against the boxes of a node, and against the triangles of a leaf. (Read once for each instruction
+// set.)
+
+template <class D>
+HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(&bits));
+    return static_cast<unsigned>(bits);
+}
+
+// The floats of a row of W, or of as many of them as a vector holds.
+template <int W>
+using Floats = hn::CappedTag<float, W>;
+
+// What of a ray boxes ask, in all lanes.
+template <int W>
+struct Slabs {
+    using V = hn::Vec<Floats<W>>;
+
+    V inverse[3], enter_at[3], leave_at[3], s_min;
+    std::size_t near_row[3];
+
+    HWY_INLINE explicit Slabs(const WideRay& ray) {
+        constexpr Floats<W> f;
+        for (int k = 0; k < 3; ++k) {
+            inverse[k] = hn::Set(f, ray.inverse[k]);
+            enter_at[k] = hn::Set(f, ray.enter_at[k]);
+            leave_at[k] = hn::Set(f, ray.leave_at[k]);
+            near_row[k] = ray.near_row[k];
+        }
+        s_min = hn::Set(f, ray.s_min);
+    }
+};
+
+// The boxes of W children: those entered, as bits, and where (s).
+template <int W>
+struct Boxes {
+    static constexpr Floats<W> f{};
+    using V = hn::Vec<Floats<W>>;
+    static constexpr int lanes = static_cast<int>(hn::MaxLanes(f)), parts = W / lanes;
+
+    V entry[parts];
+    hn::Mask<Floats<W>> entered[parts];
+
+    HWY_INLINE Boxes(const std::byte* node, const Slabs<W>& ray, float s_limit) {
+        for (int p = 0; p < parts; ++p) {
+            const auto near_s = [&](int k) {
+                const V planes = row(node, ray.near_row[k], p);
+                return hn::MulSub(planes, ray.inverse[k], ray.enter_at[k]);
+            };
+            const auto far_s = [&](int k) {
+                const V planes = row(node, ray.near_row[k] ^ (4 * W), p);
+                return hn::MulSub(planes, ray.inverse[k], ray.leave_at[k]);
+            };
+            const V exit = hn::Min(hn::Min(far_s(0), far_s(1)), hn::Min(far_s(2), hn::Set(f, s_limit)));
+            entry[p] = hn::Max(hn::Max(near_s(0), near_s(1)), hn::Max(near_s(2), ray.s_min));
+            entered[p] = hn::Le(entry[p], exit);
+        }
+    }
+    HWY_INLINE unsigned bits() const {
+        unsigned all = 0;
+        for (int p = 0; p < parts; ++p) all |= bits_of(f, entered[p]) << (p * lanes);
+        return all;
+    }
+    HWY_INLINE void store(float* at) const {
+        for (int p = 0; p < parts; ++p) hn::Store(entry[p], f, at + p * lanes);
+    }
+
+private:
+    static HWY_INLINE V row(const std::byte* node, std::size_t at, int part) {
+        return hn::Load(f, reinterpret_cast<const float*>(node + at) + part * lanes);
+    }
+};
+
+template <int W>
+HWY_INLINE const std::uint32_t* children_of(const std::byte* node) {
+    return reinterpret_cast<const std::uint32_t*>(node + 24 * W);
+}
+
+// A block's triangles in as many parts as they take vectors.
+inline constexpr int block_lanes = static_cast<int>(hn::MaxLanes(Floats<8>()));
+inline constexpr int block_parts = 8 / block_lanes;
+
+// What the exact pass finds: t, u and v of those triangles whose bit is set.
+struct alignas(64) Meetings {
+    float t[8], u[8], v[8];
+};
+
+// meet_exactly (geometry/entry.h), of several triangles at once: the same operations in the same order. Of
+// the candidates those that are met.
+template <class F>
+HWY_INLINE unsigned meet_exactly_in(F f, const hn::Vec<F> (&x)[3], const hn::Vec<F> (&y)[3],
+                                    const hn::Vec<F> (&z)[3], float direction_z, Meetings& m, int at) {
+    using D = hn::Rebind<double, F>;
+    const D d;
+    using W = hn::Vec<D>;
+    W X[3], Y[3], Z[3];
+    for (int c = 0; c < 3; ++c)
+        X[c] = hn::PromoteTo(d, x[c]), Y[c] = hn::PromoteTo(d, y[c]), Z[c] = hn::PromoteTo(d, z[c]);
+    const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(X[p], Y[q]), hn::Mul(Y[p], X[q])); };
+    const W u = edge(2, 1), v = edge(0, 2), w = edge(1, 0);
+    const W zero = hn::Zero(d);
+    const auto none_below = hn::Ge(hn::Min(u, hn::Min(v, w)), zero);
+    const auto none_above = hn::Le(hn::Max(u, hn::Max(v, w)), zero);
+    const W det = hn::Add(hn::Add(u, v), w);
+    const auto met = hn::AndNot(hn::Eq(det, zero), hn::Or(none_below, none_above));
+    const W wa = hn::Div(u, det), wb = hn::Div(v, det), wc = hn::Div(w, det);
+    const W height = hn::Add(hn::Add(hn::Mul(wa, Z[0]), hn::Mul(wb, Z[1])), hn::Mul(wc, Z[2]));
+    hn::StoreU(hn::DemoteTo(f, hn::Div(height, hn::Set(d, static_cast<double>(direction_z)))), f, m.t + at);
+    hn::StoreU(hn::DemoteTo(f, wb), f, m.u + at);
+    hn::StoreU(hn::DemoteTo(f, wc), f, m.v + at);
+    return bits_of(d, met);
+}
+
+// Tests the triangles of a block; what is nearer than the ray's hit (or as near, and of a lower number)
+// becomes the hit. True if there was one.
+HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
+    constexpr Floats<8> f;
+    using V = hn::Vec<Floats<8>>;
+    const float* const corners = &block.corner[0][0][0];
+    bool found = false;
+    for (int part = 0; part < block_parts; ++part) {
+        V x[3], y[3], z[3];
+        const int at = part * block_lanes;
+        for (int c = 0; c < 3; ++c) {
+            const auto from_origin = [&](int k) {
+                return hn::Sub(hn::Load(f, corners + ray.row[k] + 8 * c + at), hn::Set(f, ray.origin[k]));
+            };
+            z[c] = from_origin(2);
+            x[c] = hn::Sub(from_origin(0), hn::Mul(hn::Set(f, ray.shear[0]), z[c]));
+            y[c] = hn::Sub(from_origin(1), hn::Mul(hn::Set(f, ray.shear[1]), z[c]));
+        }
+        // A filter: a rounded difference of rounded products has the right sign or is 0. What is not filled
+        // is NaN and fails every comparison.
+        const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
+        const V u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(f);
+        auto kept = hn::Or(hn::Ge(hn::Min(u, hn::Min(v, w)), zero), hn::Le(hn::Max(u, hn::Max(v, w)), zero));
+        // A triangle lies between its corners: one that does not reach into the interval is not looked at
+        // closer.
+        const V forward = hn::Set(f, std::copysign(1.0f, ray.z));
+        const V a = hn::Mul(z[0], forward), b = hn::Mul(z[1], forward), c = hn::Mul(z[2], forward);
+        kept = hn::And(kept, hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), hn::Set(f, ray.s_limit)),
+                                     hn::Ge(hn::Max(a, hn::Max(b, c)), hn::Set(f, ray.s_low))));
+        unsigned candidates = bits_of(f, kept);
+        if (candidates == 0) continue;
+
+        Meetings m;
+        constexpr int exact_lanes = static_cast<int>(hn::MaxLanes(hn::CappedTag<double, 8>()));
+        if constexpr (exact_lanes >= block_lanes) {
+            candidates &= meet_exactly_in(f, x, y, z, ray.z, m, 0);
+        } else {
+            constexpr hn::CappedTag<float, exact_lanes> h;
+            alignas(64) float rows[9][8];
+            for (int k = 0; k < 3; ++k) {
+                hn::Store(x[k], f, rows[k]);
+                hn::Store(y[k], f, rows[3 + k]);
+                hn::Store(z[k], f, rows[6 + k]);
+            }
+            unsigned met = 0;
+            for (int i = 0; i < block_lanes; i += exact_lanes) {
+                if ((candidates >> i & ((1u << exact_lanes) - 1)) == 0) continue;
+                hn::Vec<decltype(hn::CappedTag<float, exact_lanes>())> X[3], Y[3], Z[3];
+                for (int k = 0; k < 3; ++k)
+                    X[k] = hn::Load(h, rows[k] + i), Y[k] = hn::Load(h, rows[3 + k] + i),
+                    Z[k] = hn::Load(h, rows[6 + k] + i);
+                met |= meet_exactly_in(h, X, Y, Z, ray.z, m, i) << i;
+            }
+            candidates &= met;
+        }
+        for (; candidates != 0; candidates &= candidates - 1) {
+            const int i = std::countr_zero(candidates);
+            const float t = m.t[i];
+            const std::uint32_t id = block.id[at + i];
+            if (!(t >= ray.t_min) || !(t <= ray.t_limit) || t > std::numeric_limits<float>::max()) continue;
+            if (t == ray.t_limit && id > ray.element) continue;
+            ray.t_limit = t;
+            ray.u = m.u[i], ray.v = m.v[i];
+            ray.element = id;
+            found = true;
+        }
+    }
+    if (found) ray.s_limit = s_limit_of(ray.t_limit, ray.z_length);
+    return found;
+}
+
+HWY_INLINE Hit<float> hit_of(const WideScene& scene, const WideRay& ray) {
+    if (ray.element == Hit<float>::none) return {};
+    const std::uint32_t id = scene.faces.empty() ? ray.element : scene.faces[ray.element];
+    return {ray.t_limit, ray.u, ray.v, id, 0, 0, ray.element};
+}

@@ -1,0 +1,265 @@
+/// The engine: every instruction set that this machine has gives the bits of brute force, one ray at a time
+/// and in batches of any size, on trees of any width.
+#include "matrix.h"
+
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/bvh/wide/wide_bvh.h>
+
+using namespace hedgerow;
+using namespace hedgerow::matrix;
+
+namespace {
+
+using Mesh = TriangleMesh<float>;
+
+/// Takes an instruction set, and the one before when it goes.
+class Using {
+public:
+    explicit Using(std::string_view set)
+        : before_(wide_kernels() ? wide_kernels()->instruction_set : "plain") {
+        use_instruction_set(set);
+    }
+    ~Using() { use_instruction_set(before_); }
+    Using(const Using&) = delete;
+    Using& operator=(const Using&) = delete;
+
+private:
+    std::string_view before_;
+};
+
+/// What the engine answers to rays: in a batch, and one at a time.
+struct Answers {
+    std::vector<Hit<float>> batch, one;
+    std::vector<char> any_batch, any_one;
+
+    template <class Index>
+    Answers(const Index& index, std::span<const Ray3f> rays) : batch(rays.size()) {
+        closest_hits(index, rays, std::span(batch));
+        const std::unique_ptr<bool[]> any(new bool[rays.size() + 1]);
+        any_hits(index, rays, {any.get(), rays.size()});
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            one.push_back(closest_hit(index, rays[i]).value_or(Hit<float>()));
+            any_batch.push_back(any[i]);
+            any_one.push_back(any_hit(index, rays[i]));
+        }
+    }
+};
+
+void expect_hits(std::span<const Hit<float>> want, const Answers& got) {
+    for (std::size_t i = 0; i < want.size(); ++i) {
+        ASSERT_EQ(want[i], got.batch[i])
+            << "in a batch, ray " << i << ": t " << want[i].t << " and " << got.batch[i].t;
+        ASSERT_EQ(want[i], got.one[i])
+            << "alone, ray " << i << ": t " << want[i].t << " and " << got.one[i].t;
+        ASSERT_EQ(bool(want[i]), bool(got.any_batch[i])) << "any, in a batch, ray " << i;
+        ASSERT_EQ(bool(want[i]), bool(got.any_one[i])) << "any, alone, ray " << i;
+    }
+}
+
+/// All sets × widths × builders, on `count` rays of every kind.
+void expect_brute_force(const char* name, const Mesh& mesh, std::size_t count) {
+    SCOPED_TRACE(name);
+    const auto brute = build<BruteForce>(mesh);
+    const auto targets = targets_of(mesh);
+    std::vector<Ray3f> rays;
+    for (std::size_t i = 0; i < count && !targets.empty(); ++i)
+        rays.push_back(ray_of(brute.bounds(), targets, i));
+    if (targets.empty()) rays.push_back({Vec3f(0, 0, 0), Vec3f(1, 2, 3)});
+    std::vector<Hit<float>> want(rays.size());
+    closest_hits(brute, std::span<const Ray3f>(rays), std::span(want), default_executor());
+    for (const int width : {4, 8, 16})
+        for (const auto builder : wide_builders) {
+            WideOptions options;
+            options.width = width;
+            options.builder = builder;
+            options.max_leaf_size = builder == WideBuilder::fast ? 3 : 8;
+            const auto index = build<WideBvh>(mesh, options);
+            ASSERT_EQ(index.validate(), "");
+            for (const auto set : instruction_sets()) {
+                SCOPED_TRACE(std::string(set) + ", width " + std::to_string(width));
+                const Using use(set);
+                expect_hits(want, Answers(index, rays));
+                if (testing::Test::HasFatalFailure()) return;
+            }
+        }
+}
+
+/// Triangles each so much larger than the last that no box is shared: the deepest tree there is.
+Mesh chain(int count) {
+    Mesh mesh;
+    for (int i = 0; i < count; ++i) {
+        const float at = std::ldexp(1.0f, i - count / 2);
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), {{at, 0, 0}, {at, at * 0.5f, 0}, {at, 0, at * 0.5f}});
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+}
+
+TEST(Wide, GeneratedMeshesAsBruteForce) {
+    expect_brute_force("soup", soup<float>(500), 1500);
+    expect_brute_force("stadium", teapot_in_stadium<float>(2000), 1000);
+    expect_brute_force("hairball", hairball<float>(1500), 1000);
+    expect_brute_force("terrain", terrain<float>(2000), 1000);
+}
+
+TEST(Wide, TinyHugeAndFarMeshesAsBruteForce) {
+    for (const float scale : {1e-30f, 1e-12f, 1e12f, 1e17f}) {
+        Mesh mesh = soup<float>(200);
+        for (auto& v : mesh.vertices) v = v * scale;
+        expect_brute_force("scaled", mesh, 1000);
+    }
+    Mesh far = soup<float>(200);
+    for (auto& v : far.vertices) v = v + Vec3f(1e4f, -3e3f, 1e5f);
+    expect_brute_force("far", far, 1000);
+}
+
+TEST(Wide, DegenerateMeshesAsBruteForce) {
+    expect_brute_force("empty", {}, 0);
+    Mesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0.5f}, {0, 1, 0.75f}, {1, 1, 1.25f}};  // in a plane, and no flat box
+    mesh.triangles = {{0, 1, 2}};
+    expect_brute_force("one", mesh, 500);
+    mesh.triangles.assign(100, {0, 1, 2});
+    expect_brute_force("coincident", mesh, 500);
+    mesh.triangles.assign(30, {0, 0, 0});
+    mesh.triangles.resize(60, {0, 1, 1});
+    mesh.triangles.resize(70, {0, 1, 2});
+    expect_brute_force("of no area", mesh, 500);
+    mesh.triangles = {{0, 1, 2}, {1, 3, 2}};
+    expect_brute_force("coplanar", mesh, 500);
+    expect_brute_force("chain", chain(90), 500);
+}
+
+TEST(Wide, BatchesOfAnySize) {
+    const auto mesh = teapot_in_stadium<float>(1000);
+    const auto targets = targets_of(mesh);
+    for (const int width : {4, 8, 16}) {
+        WideOptions options;
+        options.width = width;
+        const auto index = build<WideBvh>(mesh, options);
+        for (const auto set : instruction_sets())
+            for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 17u, 31u, 33u, 64u, 65u, 257u, 5000u}) {
+                SCOPED_TRACE(std::string(set) + " " + std::to_string(count));
+                std::vector<Ray3f> rays(count);
+                for (std::size_t i = 0; i < count; ++i) rays[i] = ray_of(index.bounds(), targets, 7 * i);
+                std::vector<Hit<float>> want;
+                for (const auto& r : rays) {
+                    NoVisits none;
+                    want.push_back(closest_hit(index, r, KeepAll{}, none).value_or(Hit<float>()));
+                }
+                const Using use(set);
+                expect_hits(want, Answers(index, rays));
+                if (testing::Test::HasFatalFailure()) return;
+            }
+    }
+}
+
+/// Rays that go together: by a camera, from a light, and parallel ones.
+TEST(Wide, CoherentRays) {
+    const auto mesh = teapot_in_stadium<float>(3000);
+    const auto index = build<WideBvh>(mesh);
+    const Vec3f center = index.bounds().center(), size = index.bounds().extent();
+    std::vector<Ray3f> rays;
+    for (int view = 0; view < 8; ++view)
+        for (int y = 0; y < 48; ++y)
+            for (int x = 0; x < 48; ++x) {
+                const Vec3f eye =
+                    center + Vec3f(view & 1 ? 1 : -1, view & 2 ? 1 : -1, view & 4 ? 1 : -1) * length(size);
+                const Vec3f beside(float(x) / 48 - 0.5f, float(y) / 48 - 0.5f, 0.1f * float(view - 4));
+                Ray3f ray{eye, center - eye + beside * length(size)};
+                if (view == 3) ray.origin = ray.origin + beside, ray.direction = center - eye;
+                if (x % 16 == 5) ray.t_max = 0.9f;
+                rays.push_back(ray);
+            }
+    std::vector<Hit<float>> want;
+    for (const auto& r : rays) {
+        NoVisits none;
+        want.push_back(closest_hit(index, r, KeepAll{}, none).value_or(Hit<float>()));
+    }
+    for (const auto set : instruction_sets()) {
+        SCOPED_TRACE(set);
+        const Using use(set);
+        expect_hits(want, Answers(index, rays));
+    }
+}
+
+TEST(Wide, UnusableRaysHitNothing) {
+    const auto mesh = soup<float>(300);
+    const auto index = build<WideBvh>(mesh);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                    infinity = std::numeric_limits<float>::infinity();
+    const Vec3f o(0.5f, 0.5f, -1), d(0, 0, 1);
+    std::vector<Ray3f> rays = {{o, {0, 0, 0}},   {o, {nan, 0, 1}},       {o, {0, infinity, 1}},
+                               {{nan, 0, 0}, d}, {{0, 0, infinity}, d},  {{0, 1e20f, 0}, d},
+                               {o, d, nan, 1},   {o, d, 0, nan},         {o, d, 2, 1},
+                               {o, d, 0, -1},    {o, Vec3f::all(1e-40f)}};
+    for (const auto set : instruction_sets()) {
+        const Using use(set);
+        expect_hits(std::vector<Hit<float>>(rays.size()), Answers(index, rays));
+    }
+}
+
+TEST(Wide, HitsReportFaces) {
+    Mesh mesh = soup<float>(300);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) mesh.faces.push_back(i / 2);
+    const auto index = build<WideBvh>(mesh);
+    const auto targets = targets_of(mesh);
+    std::size_t found = 0;
+    for (const auto set : instruction_sets()) {
+        const Using use(set);
+        std::vector<Ray3f> rays(500);
+        for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = ray_of(index.bounds(), targets, i);
+        const Answers answers(index, rays);
+        for (const auto& hits : {answers.batch, answers.one})
+            for (const auto& h : hits)
+                if (h) {
+                    EXPECT_EQ(h.primitive, h.element / 2);
+                    ++found;
+                }
+    }
+    EXPECT_GT(found, 100u);
+}
+
+TEST(Wide, InstructionSetsAreListedAndChosen) {
+    const auto sets = instruction_sets();
+    ASSERT_FALSE(sets.empty());
+    EXPECT_EQ(sets.back(), "plain");
+    for (const auto set : sets) {
+        const Using use(set);
+        EXPECT_EQ(wide_kernels() ? wide_kernels()->instruction_set : "plain", set);
+        EXPECT_EQ(build<WideBvh>(soup<float>(10)).structure().options().width, preferred_wide_width());
+    }
+    EXPECT_THROW(use_instruction_set("avx1024"), InputError);
+}
+
+/// Many rays: the sets against each other, and no leak at edges and vertices of a closed mesh.
+TEST(Wide, InstructionSetsAgreeOnManyRays) {
+    for (const auto& mesh : {teapot_in_stadium<float>(20000), hairball<float>(20000), soup<float>(20000)}) {
+        const auto targets = targets_of(mesh);
+        const auto plain = build<Bvh>(mesh);
+        const std::size_t count = in_long_runs(10000000, 30000), at_once = 10000;
+        std::vector<Hit<float>> want(at_once), got(at_once);
+        std::vector<Ray3f> rays(at_once);
+        for (const int width : {8, 16}) {
+            WideOptions options;
+            options.width = width;
+            const auto index = build<WideBvh>(mesh, options);
+            for (std::size_t begin = 0; begin < count; begin += at_once) {
+                for (std::size_t i = 0; i < at_once; ++i)
+                    rays[i] = ray_of(index.bounds(), targets, begin + i);
+                closest_hits(plain, std::span<const Ray3f>(rays), std::span(want), default_executor());
+                for (const auto set : instruction_sets()) {
+                    if (set == "plain") continue;
+                    const Using use(set);
+                    closest_hits(index, std::span<const Ray3f>(rays), std::span(got), default_executor());
+                    for (std::size_t i = 0; i < at_once; ++i)
+                        ASSERT_EQ(want[i], got[i]) << set << ", width " << width << ", ray " << begin + i;
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
