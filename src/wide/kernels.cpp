@@ -27,11 +27,16 @@ namespace hedgerow::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
 namespace hn = hwy::HWY_NAMESPACE;
-#include "batch-inl.h"
+// Each builds on those before it.
+// clang-format off
 #include "rays-inl.h"
-#include "single-inl.h"
-#include "stack-inl.h"
 #include "tests-inl.h"
+#include "stack-inl.h"
+#include "single-inl.h"
+#include "packet-inl.h"
+#include "batch-inl.h"
+#include "many-inl.h"
+// clang-format on
 
 // F<W>::answer, W being the width of the scene's nodes.
 template <template <int> class F, class... Arguments>
@@ -57,7 +62,7 @@ struct Answering {
     struct Many {
         template <class Answer>
         static void answer(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
-            Batch<W, wanted>(scene).answer(rays, answers);
+            answer_many<W, wanted>(scene, rays, answers);
         }
     };
 };

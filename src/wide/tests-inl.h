@@ -42,6 +42,7 @@ struct Boxes {
     V entry[parts];
     hn::Mask<Floats<W>> entered[parts];
 
+    HWY_INLINE Boxes() = default;
     HWY_INLINE Boxes(const std::byte* node, const Slabs<W>& ray, float s_limit) {
         for (int p = 0; p < parts; ++p) {
             const auto near_s = [&](int k) {
@@ -65,8 +66,6 @@ struct Boxes {
     HWY_INLINE void store(float* at) const {
         for (int p = 0; p < parts; ++p) hn::Store(entry[p], f, at + p * lanes);
     }
-
-private:
     static HWY_INLINE V row(const std::byte* node, std::size_t at, int part) {
         return hn::Load(f, reinterpret_cast<const float*>(node + at) + part * lanes);
     }
@@ -77,96 +76,111 @@ HWY_INLINE const std::uint32_t* children_of(const std::byte* node) {
     return reinterpret_cast<const std::uint32_t*>(node + 24 * W);
 }
 
-// A block's triangles in as many parts as they take vectors.
-inline constexpr int block_lanes = static_cast<int>(hn::MaxLanes(Floats<8>()));
-inline constexpr int block_parts = 8 / block_lanes;
+// The corners of as many triangles as f has lanes, or of one as so many rays see it, in the sheared space of
+// the ray.
+template <class F>
+struct Corners {
+    using V = hn::Vec<F>;
+    V x[3], y[3], z[3];
 
-// What the exact pass finds: t, u and v of those triangles whose bit is set.
-struct alignas(64) Meetings {
-    float t[8], u[8], v[8];
+    // By what is left of a corner, along the ray's axis k, when the origin is taken off.
+    template <class FromOrigin>
+    HWY_INLINE Corners(FromOrigin from_origin, V shear_x, V shear_y) {
+        for (int c = 0; c < 3; ++c) {
+            z[c] = from_origin(2, c);
+            x[c] = hn::Sub(from_origin(0, c), hn::Mul(shear_x, z[c]));
+            y[c] = hn::Sub(from_origin(1, c), hn::Mul(shear_y, z[c]));
+        }
+    }
+    // A filter: a rounded difference of rounded products has the right sign or is 0. And a triangle lies
+    // between its corners: one that does not reach into the interval is not looked at closer. What is not
+    // filled is NaN and fails every comparison.
+    HWY_INLINE hn::Mask<F> may_meet(F f, V direction_z, V s_low, V s_limit) const {
+        const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
+        const V u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(f);
+        const auto forward = [&](V along) { return hn::Xor(along, hn::And(direction_z, hn::Set(f, -0.0f))); };
+        const V a = forward(z[0]), b = forward(z[1]), c = forward(z[2]);
+        return hn::And(
+            hn::Or(hn::Ge(hn::Min(u, hn::Min(v, w)), zero), hn::Le(hn::Max(u, hn::Max(v, w)), zero)),
+            hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), s_limit), hn::Ge(hn::Max(a, hn::Max(b, c)), s_low)));
+    }
 };
 
-// meet_exactly (geometry/entry.h), of several triangles at once: the same operations in the same order. Of
-// the candidates those that are met.
-template <class F>
-HWY_INLINE unsigned meet_exactly_in(F f, const hn::Vec<F> (&x)[3], const hn::Vec<F> (&y)[3],
-                                    const hn::Vec<F> (&z)[3], float direction_z, Meetings& m, int at) {
-    using D = hn::Rebind<double, F>;
-    const D d;
-    using W = hn::Vec<D>;
+// What the exact pass finds: t, u and v in the lanes that are met.
+struct alignas(64) Meetings {
+    float t[16], u[16], v[16];
+};
+
+// meet_exactly (geometry/entry.h), in the lanes of d: the same operations in the same order.
+template <class D, class V, class W>
+HWY_INLINE unsigned meet_exactly_in(D d, const V (&x)[3], const V (&y)[3], const V (&z)[3], W direction_z,
+                                    Meetings& m, int at) {
+    const hn::Rebind<float, D> f;
     W X[3], Y[3], Z[3];
     for (int c = 0; c < 3; ++c)
         X[c] = hn::PromoteTo(d, x[c]), Y[c] = hn::PromoteTo(d, y[c]), Z[c] = hn::PromoteTo(d, z[c]);
     const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(X[p], Y[q]), hn::Mul(Y[p], X[q])); };
-    const W u = edge(2, 1), v = edge(0, 2), w = edge(1, 0);
-    const W zero = hn::Zero(d);
+    const W u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(d);
     const auto none_below = hn::Ge(hn::Min(u, hn::Min(v, w)), zero);
     const auto none_above = hn::Le(hn::Max(u, hn::Max(v, w)), zero);
     const W det = hn::Add(hn::Add(u, v), w);
     const auto met = hn::AndNot(hn::Eq(det, zero), hn::Or(none_below, none_above));
     const W wa = hn::Div(u, det), wb = hn::Div(v, det), wc = hn::Div(w, det);
     const W height = hn::Add(hn::Add(hn::Mul(wa, Z[0]), hn::Mul(wb, Z[1])), hn::Mul(wc, Z[2]));
-    hn::StoreU(hn::DemoteTo(f, hn::Div(height, hn::Set(d, static_cast<double>(direction_z)))), f, m.t + at);
+    hn::StoreU(hn::DemoteTo(f, hn::Div(height, direction_z)), f, m.t + at);
     hn::StoreU(hn::DemoteTo(f, wb), f, m.u + at);
     hn::StoreU(hn::DemoteTo(f, wc), f, m.v + at);
     return bits_of(d, met);
+}
+// Of the candidates those that are met, by as many doubles at a time as there are. `direction_z(d, i)` is
+// that of the lanes from i on.
+template <class F, class DirectionZ>
+HWY_INLINE unsigned meet_exactly_among(F f, const Corners<F>& corners, unsigned candidates,
+                                       DirectionZ direction_z, Meetings& m) {
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
+    constexpr hn::CappedTag<double, lanes> d;
+    constexpr int exact_lanes = static_cast<int>(hn::MaxLanes(d));
+    if constexpr (exact_lanes == lanes) {
+        return candidates & meet_exactly_in(d, corners.x, corners.y, corners.z, direction_z(d, 0), m, 0);
+    } else {
+        constexpr hn::Rebind<float, hn::CappedTag<double, lanes>> part;
+        alignas(64) float rows[3][3][lanes];
+        for (int c = 0; c < 3; ++c) {
+            hn::Store(corners.x[c], f, rows[0][c]);
+            hn::Store(corners.y[c], f, rows[1][c]);
+            hn::Store(corners.z[c], f, rows[2][c]);
+        }
+        unsigned met = 0;
+        for (int i = 0; i < lanes; i += exact_lanes) {
+            if ((candidates >> i & ((1u << exact_lanes) - 1)) == 0) continue;
+            hn::Vec<std::remove_const_t<decltype(part)>> at[3][3];
+            for (int k = 0; k < 3; ++k)
+                for (int c = 0; c < 3; ++c) at[k][c] = hn::Load(part, rows[k][c] + i);
+            met |= meet_exactly_in(d, at[0], at[1], at[2], direction_z(d, i), m, i) << i;
+        }
+        return candidates & met;
+    }
 }
 
 // Tests the triangles of a block; what is nearer than the ray's hit (or as near, and of a lower number)
 // becomes the hit. True if there was one.
 HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
-    constexpr Floats<8> f;
-    using V = hn::Vec<Floats<8>>;
-    const float* const corners = &block.corner[0][0][0];
+    using F = Floats<8>;
+    constexpr F f;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
+    const float* const rows = &block.corner[0][0][0];
     bool found = false;
-    for (int part = 0; part < block_parts; ++part) {
-        V x[3], y[3], z[3];
-        const int at = part * block_lanes;
-        for (int c = 0; c < 3; ++c) {
-            const auto from_origin = [&](int k) {
-                return hn::Sub(hn::Load(f, corners + ray.row[k] + 8 * c + at), hn::Set(f, ray.origin[k]));
-            };
-            z[c] = from_origin(2);
-            x[c] = hn::Sub(from_origin(0), hn::Mul(hn::Set(f, ray.shear[0]), z[c]));
-            y[c] = hn::Sub(from_origin(1), hn::Mul(hn::Set(f, ray.shear[1]), z[c]));
-        }
-        // A filter: a rounded difference of rounded products has the right sign or is 0. What is not filled
-        // is NaN and fails every comparison.
-        const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
-        const V u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(f);
-        auto kept = hn::Or(hn::Ge(hn::Min(u, hn::Min(v, w)), zero), hn::Le(hn::Max(u, hn::Max(v, w)), zero));
-        // A triangle lies between its corners: one that does not reach into the interval is not looked at
-        // closer.
-        const V forward = hn::Set(f, std::copysign(1.0f, ray.z));
-        const V a = hn::Mul(z[0], forward), b = hn::Mul(z[1], forward), c = hn::Mul(z[2], forward);
-        kept = hn::And(kept, hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), hn::Set(f, ray.s_limit)),
-                                     hn::Ge(hn::Max(a, hn::Max(b, c)), hn::Set(f, ray.s_low))));
-        unsigned candidates = bits_of(f, kept);
+    for (int at = 0; at < 8; at += lanes) {
+        const auto from_origin = [&](int k, int c) {
+            return hn::Sub(hn::Load(f, rows + ray.row[k] + 8 * c + at), hn::Set(f, ray.origin[k]));
+        };
+        const Corners<F> corners(from_origin, hn::Set(f, ray.shear[0]), hn::Set(f, ray.shear[1]));
+        unsigned candidates = bits_of(
+            f, corners.may_meet(f, hn::Set(f, ray.z), hn::Set(f, ray.s_low), hn::Set(f, ray.s_limit)));
         if (candidates == 0) continue;
-
         Meetings m;
-        constexpr int exact_lanes = static_cast<int>(hn::MaxLanes(hn::CappedTag<double, 8>()));
-        if constexpr (exact_lanes >= block_lanes) {
-            candidates &= meet_exactly_in(f, x, y, z, ray.z, m, 0);
-        } else {
-            constexpr hn::CappedTag<float, exact_lanes> h;
-            alignas(64) float rows[9][8];
-            for (int k = 0; k < 3; ++k) {
-                hn::Store(x[k], f, rows[k]);
-                hn::Store(y[k], f, rows[3 + k]);
-                hn::Store(z[k], f, rows[6 + k]);
-            }
-            unsigned met = 0;
-            for (int i = 0; i < block_lanes; i += exact_lanes) {
-                if ((candidates >> i & ((1u << exact_lanes) - 1)) == 0) continue;
-                hn::Vec<decltype(hn::CappedTag<float, exact_lanes>())> X[3], Y[3], Z[3];
-                for (int k = 0; k < 3; ++k)
-                    X[k] = hn::Load(h, rows[k] + i), Y[k] = hn::Load(h, rows[3 + k] + i),
-                    Z[k] = hn::Load(h, rows[6 + k] + i);
-                met |= meet_exactly_in(h, X, Y, Z, ray.z, m, i) << i;
-            }
-            candidates &= met;
-        }
+        const auto z = [&](auto d, int) { return hn::Set(d, static_cast<double>(ray.z)); };
+        candidates = meet_exactly_among(f, corners, candidates, z, m);
         for (; candidates != 0; candidates &= candidates - 1) {
             const int i = std::countr_zero(candidates);
             const float t = m.t[i];

@@ -1,0 +1,38 @@
+// Which kernel many rays want: packets of those that go the same way, as long as that pays, and the phased
+// batch for all others. (Read once for each instruction set.)
+
+template <class T>
+HWY_INLINE void prefetch_all(const T* from, std::size_t count) {
+    for (std::size_t at = 0; at < count * sizeof(T); at += 64)
+        __builtin_prefetch(reinterpret_cast<const char*>(from) + at);
+}
+
+template <int W, Wanted wanted, class Answer>
+void answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
+    constexpr std::size_t size = Packet<W, wanted>::size;
+    // Packets pay where a leaf is entered by so many rays of one; it is known after so many leaves.
+    constexpr std::size_t rays_a_leaf = 6, enough_leaves = 256;
+    std::size_t waiting = 0, next = 0;  // rays from `waiting` to `next` go their own ways
+    const auto answer_waiting = [&] {
+        if (waiting < next)
+            Batch<W, wanted>(scene).answer(rays.subspan(waiting, next - waiting), answers + waiting);
+    };
+    if (!scene.tree.empty() && !getenv("NOPACKET")) {
+        Packet<W, wanted> packet(scene);
+        while (rays.size() - next >= size) {
+            if (packet.leaves() > enough_leaves && packet.rays_in_leaves() < rays_a_leaf * packet.leaves())
+                break;
+            if (packet.take(rays.data() + next)) {
+                answer_waiting();
+                // What comes next, while this packet computes.
+                prefetch_all(rays.data() + next + size, size);
+                prefetch_all(answers + next + size, size);
+                packet.answer(answers + next);
+                waiting = next + size;
+            }
+            next += size;
+        }
+    }
+    next = rays.size();
+    answer_waiting();
+}

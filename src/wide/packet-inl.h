@@ -1,0 +1,324 @@
+// Rays that go the same way, 64 at a time: which children any of them may enter is asked once for all, by
+// intervals of what their slabs are made of (Boulos, Wald, Benthin, RT 2008; Reshetov, Soupikov, Hurley,
+// SIGGRAPH 2005), and a child is entered with those rays that do enter it. (Read once for each instruction
+// set.)
+
+template <int W, Wanted wanted>
+class Packet {
+public:
+    static constexpr int size = 64;
+
+    explicit Packet(const WideScene& scene) : scene_(scene) {}
+
+    /// Takes `size` rays, if they go the same way: the same axis is the longest of all, and along each axis
+    /// all go up or all down.
+    HWY_INLINE bool take(const Ray<float, 3>* rays) {
+        if (!alike(rays[0], rays[size / 3]) || !alike(rays[0], rays[2 * size / 3]) ||
+            !alike(rays[0], rays[size - 1]))
+            return false;
+        z_axis_ = max_axis(rays[0].direction);
+        for (int k = 0; k < 3; ++k) {
+            axis_[k] = (z_axis_ + 1 + k) % 3;
+            down_[k] = std::signbit(rays[0].direction[k]);
+            near_row_[k] = static_cast<std::size_t>(2 * k + down_[k]) * 4 * W;
+        }
+        bool good = true;
+        for (int at = 0; at < size && good; at += lanes) good = prepare_rays(rays, at);
+        if (good) take_intervals();
+        return good;
+    }
+    template <class Answer>
+    HWY_INLINE void answer(Answer* answers) {
+        trace();
+        for (int i = 0; i < size; ++i) {
+            const std::uint32_t element = element_[i];
+            if constexpr (wanted == Wanted::any) {
+                answers[i] = element != Hit<float>::none;
+            } else if (element == Hit<float>::none) {
+                answers[i] = {};
+            } else {
+                const std::uint32_t id = scene_.faces.empty() ? element : scene_.faces[element];
+                answers[i] = {t_limit_[i], u_[i], v_[i], id, 0, 0, element};
+            }
+        }
+    }
+    /// Leaves entered so far, and rays that entered them.
+    std::size_t leaves() const { return leaves_; }
+    std::size_t rays_in_leaves() const { return rays_in_leaves_; }
+
+private:
+    using F = Floats<16>;
+    using V = hn::Vec<F>;
+    using M = hn::Mask<F>;
+    static constexpr F f{};
+    static constexpr int lanes = static_cast<int>(hn::MaxLanes(f)), parts = size / lanes;
+    using Stack = WalkStack<W>;
+
+    /// A first look at the signs of two rays' directions.
+    static HWY_INLINE bool alike(const Ray<float, 3>& a, const Ray<float, 3>& b) {
+        bool same = true;
+        for (int k = 0; k < 3; ++k) same &= std::signbit(a.direction[k]) == std::signbit(b.direction[k]);
+        return same;
+    }
+
+    /// As `prepare` (rays-inl.h), rays in lanes; false if some ray is not like the first.
+    HWY_INLINE bool prepare_rays(const Ray<float, 3>* rays, int at) {
+        constexpr hn::RebindToSigned<F> i32;
+        const auto index = hn::ShiftLeft<3>(hn::Iota(i32, at));
+        const float* const words = reinterpret_cast<const float*>(rays);
+        const auto field = [&](int w) { return hn::GatherIndex(f, words + w, index); };
+        const auto all = [&](float x) { return hn::Set(f, x); };
+        const V zero = hn::Zero(f);
+        V o[3], d[3], length[3], far_off = zero, reach = zero;
+        M good = hn::Eq(zero, zero);
+        for (int k = 0; k < 3; ++k) {
+            o[k] = field(k);
+            const V given = field(3 + k), distance = hn::Abs(o[k]);
+            d[k] = hn::IfThenZeroElse(hn::Lt(hn::Abs(given), all(std::numeric_limits<float>::min())), given);
+            length[k] = hn::Abs(d[k]);
+            const M is_down = hn::Lt(d[k], zero);
+            good = hn::And(good, down_[k] ? is_down : hn::Ge(d[k], zero));
+            good = hn::And(good, hn::And(hn::Le(length[k], all(std::numeric_limits<float>::max())),
+                                         hn::Le(distance, all(largest_coordinate<float>))));
+            far_off = hn::Max(far_off, distance);
+            reach = hn::Max(reach, hn::Max(hn::Abs(hn::Sub(all(scene_.tree.bounds.low[k]), o[k])),
+                                           hn::Abs(hn::Sub(all(scene_.tree.bounds.high[k]), o[k]))));
+        }
+        const V longest = length[z_axis_], z = d[z_axis_], given_min = field(6), t_max = field(7);
+        for (int k = 0; k < 3; ++k)  // the first of the longest, as max_axis has it
+            if (k != z_axis_)
+                good = hn::And(good, k < z_axis_ ? hn::Lt(length[k], longest) : hn::Le(length[k], longest));
+        const V t_min = hn::IfThenZeroElse(hn::Lt(given_min, zero), given_min);
+        good = hn::And(good, hn::And(hn::Gt(longest, zero), hn::Le(t_min, t_max)));
+
+        const V room = hn::Mul(all(underflow), hn::Add(all(1.0f), longest));
+        const V slack = hn::MulAdd(all(16 * unit_roundoff<float>), reach,
+                                   hn::MulAdd(all(4 * unit_roundoff<float>), far_off, room));
+        for (int k = 0; k < 3; ++k) {
+            const V inverse = hn::CopySign(hn::Min(hn::Div(longest, length[k]), all(0x1p60f)), d[k]);
+            const V outward = hn::CopySign(slack, d[k]);
+            const V enter = hn::Add(o[k], outward), leave = hn::Sub(o[k], outward);
+            hn::Store(inverse, f, inverse_[k] + at);
+            hn::Store(enter, f, enter_[k] + at);
+            hn::Store(leave, f, leave_[k] + at);
+            hn::Store(hn::Mul(enter, inverse), f, enter_at_[k] + at);
+            hn::Store(hn::Mul(leave, inverse), f, leave_at_[k] + at);
+            hn::Store(o[axis_[k]], f, origin_[k] + at);
+        }
+        for (int k = 0; k < 2; ++k) hn::Store(hn::Div(d[axis_[k]], z), f, shear_[k] + at);
+        hn::Store(z, f, z_ + at);
+        const V s_low = hn::Sub(hn::Mul(hn::Mul(t_min, longest), all(1 - wider)), room);
+        hn::Store(s_low, f, s_low_ + at);
+        hn::Store(hn::Max(s_low, zero), f, s_min_ + at);
+        hn::Store(limit_of(t_max, longest), f, s_limit_ + at);
+        hn::Store(longest, f, z_length_ + at);
+        hn::Store(t_min, f, t_min_ + at);
+        hn::Store(t_max, f, t_limit_ + at);
+        const hn::RebindToUnsigned<F> u32;
+        hn::Store(hn::Set(u32, Hit<float>::none), u32, element_ + at);
+        return hn::AllTrue(f, good);
+    }
+    static HWY_INLINE V limit_of(V t, V z_length) {
+        return hn::MulAdd(hn::Mul(t, z_length), hn::Set(f, 1 + wider),
+                          hn::Mul(hn::Set(f, underflow), hn::Add(hn::Set(f, 1.0f), z_length)));
+    }
+
+    struct Range {
+        float low, high;
+    };
+    static HWY_INLINE Range range_of(const float* values) {
+        V low = hn::Load(f, values), high = low;
+        for (int at = lanes; at < size; at += lanes) {
+            const V x = hn::Load(f, values + at);
+            low = hn::Min(low, x), high = hn::Max(high, x);
+        }
+        return {hn::GetLane(hn::MinOfLanes(f, low)), hn::GetLane(hn::MaxOfLanes(f, high))};
+    }
+    HWY_INLINE void take_intervals() {
+        common_origin_ = true;
+        for (int k = 0; k < 3; ++k) {
+            const Range enter = range_of(enter_[k]), leave = range_of(leave_[k]),
+                        origin = range_of(origin_[k]);
+            inverses_[k] = range_of(inverse_[k]);
+            enters_[k] = down_[k] ? enter.low : enter.high;
+            leaves_at_[k] = down_[k] ? leave.high : leave.low;
+            common_origin_ &= origin.low == origin.high;
+        }
+        for (int k = 0; k < 2; ++k) shears_[k] = range_of(shear_[k]);
+        s_first_ = range_of(s_min_).low;
+        s_last_ = range_of(s_limit_).high;
+    }
+
+    /// The children that some ray may enter, and where the first of them does at the earliest.
+    HWY_INLINE Boxes<W> boxes_of(const std::byte* node) const {
+        using B = Floats<W>;
+        constexpr B b;
+        Boxes<W> boxes;
+        for (int p = 0; p < Boxes<W>::parts; ++p) {
+            hn::Vec<B> near_s[3], far_s[3];
+            for (int k = 0; k < 3; ++k) {
+                const auto low = hn::Set(b, inverses_[k].low), high = hn::Set(b, inverses_[k].high);
+                const auto ahead = hn::Sub(Boxes<W>::row(node, near_row_[k], p), hn::Set(b, enters_[k]));
+                const auto behind =
+                    hn::Sub(Boxes<W>::row(node, near_row_[k] ^ (4 * W), p), hn::Set(b, leaves_at_[k]));
+                near_s[k] = hn::Min(hn::Mul(ahead, low), hn::Mul(ahead, high));
+                far_s[k] = hn::Max(hn::Mul(behind, low), hn::Mul(behind, high));
+            }
+            boxes.entry[p] = hn::Max(hn::Max(near_s[0], near_s[1]), hn::Max(near_s[2], hn::Set(b, s_first_)));
+            boxes.entered[p] = hn::Le(
+                boxes.entry[p], hn::Min(hn::Min(far_s[0], far_s[1]), hn::Min(far_s[2], hn::Set(b, s_last_))));
+        }
+        return boxes;
+    }
+    /// Which rays from `at` on enter child i of a node.
+    HWY_INLINE M enters(const std::byte* node, int i, int at) const {
+        V near_s[3], far_s[3];
+        for (int k = 0; k < 3; ++k) {
+            const float* const near_row = reinterpret_cast<const float*>(node + near_row_[k]);
+            const float* const far_row = reinterpret_cast<const float*>(node + (near_row_[k] ^ (4 * W)));
+            const V inverse = hn::Load(f, inverse_[k] + at);
+            near_s[k] = hn::MulSub(hn::Set(f, near_row[i]), inverse, hn::Load(f, enter_at_[k] + at));
+            far_s[k] = hn::MulSub(hn::Set(f, far_row[i]), inverse, hn::Load(f, leave_at_[k] + at));
+        }
+        return hn::Le(hn::Max(hn::Max(near_s[0], near_s[1]), hn::Max(near_s[2], hn::Load(f, s_min_ + at))),
+                      hn::Min(hn::Min(far_s[0], far_s[1]), hn::Min(far_s[2], hn::Load(f, s_limit_ + at))));
+    }
+
+    /// Children stand on the stack by their node and place in it, so that their boxes are found.
+    HWY_INLINE void open(Stack& stack, std::uint32_t number) {
+        const std::byte* const node = scene_.tree.nodes.at(number);
+        alignas(64) std::uint32_t places[W];
+        for (std::uint32_t i = 0; i < W; ++i) places[i] = number * W + i;
+        stack.push(boxes_of(node), places);
+    }
+    HWY_INLINE void trace() {
+        constexpr int room = (bvh_max_depth + 1) * (W - 1) + 2 * W + 16;
+        std::int32_t entries[room];
+        std::uint32_t words[room];
+        Stack stack(entries, words, 0, 0);
+        stack.clear();
+        open(stack, 0);
+        for (std::uint32_t place = stack.pop(); place != Stack::end; place = stack.pop()) {
+            const std::byte* const node = scene_.tree.nodes.at(place / W);
+            const int child = static_cast<int>(place % W);
+            const std::uint32_t word = children_of<W>(node)[child];
+            if ((word & WideChild::leaf_bit) == 0) {
+                __builtin_prefetch(scene_.tree.nodes.at(word));
+                bool any = false;
+                for (int p = 0; p < parts && !any; ++p)
+                    any = !hn::AllFalse(f, enters(node, child, p * lanes));
+                if (any) open(stack, word);
+                continue;
+            }
+            std::uint64_t active = 0;
+            for (int p = 0; p < parts; ++p)
+                active |= std::uint64_t(bits_of(f, enters(node, child, p * lanes))) << (p * lanes);
+            if (active == 0) continue;
+            ++leaves_;
+            rays_in_leaves_ += static_cast<std::size_t>(std::popcount(active));
+            if (!test_leaf(scene_.blocks[word & ~WideChild::leaf_bit], active)) continue;
+            s_last_ = range_of(s_limit_).high;
+            if (s_last_ < 0) return;  // any hit: all have theirs
+            stack.sweep(s_last_);
+        }
+    }
+
+    /// True if some ray was hit.
+    HWY_INLINE bool test_leaf(const TriangleBlock<float>& block, std::uint64_t active) {
+        alignas(64) float corner[3][3][8];  // by the rays' axes, without the origin where they share it
+        unsigned triangles = seen_of(block, corner);
+        bool found = false;
+        for (; triangles != 0; triangles &= triangles - 1) {
+            const int i = std::countr_zero(triangles);
+            for (int p = 0; p < parts; ++p) {
+                constexpr unsigned every = static_cast<unsigned>((1ull << lanes) - 1);
+                const unsigned here = static_cast<unsigned>(active >> (p * lanes)) & every;
+                if (here != 0) found |= test_triangle(corner, block.id[i], i, p * lanes, here);
+            }
+        }
+        return found;
+    }
+    /// The corners by the rays' axes, and which triangles some ray may meet: not those all whose corners lie,
+    /// for every ray, on the same side of it. What is asked is what the test of a ray computes, for the rays
+    /// of least and of most shear, between which rounding keeps all others.
+    HWY_INLINE unsigned seen_of(const TriangleBlock<float>& block, float (&corner)[3][3][8]) const {
+        using E = Floats<8>;
+        constexpr E e;
+        unsigned seen = 0;
+        for (int at = 0; at < 8; at += static_cast<int>(hn::MaxLanes(e))) {
+            hn::Vec<E> c[3][3];
+            for (int k = 0; k < 3; ++k)
+                for (int i = 0; i < 3; ++i) {
+                    c[k][i] = hn::Load(e, block.corner[axis_[k]][i] + at);
+                    if (common_origin_) c[k][i] = hn::Sub(c[k][i], hn::Set(e, origin_[k][0]));
+                    hn::Store(c[k][i], e, corner[k][i] + at);
+                }
+            auto kept = hn::Eq(c[0][0], c[0][0]);  // not NaN
+            for (int k = 0; k < 2 && common_origin_; ++k) {
+                auto least = hn::Set(e, std::numeric_limits<float>::infinity()), most = hn::Neg(least);
+                for (int i = 0; i < 3; ++i)
+                    for (const float shear : {shears_[k].low, shears_[k].high}) {
+                        const auto x = hn::Sub(c[k][i], hn::Mul(hn::Set(e, shear), c[2][i]));
+                        least = hn::Min(least, x), most = hn::Max(most, x);
+                    }
+                kept = hn::And(kept, hn::And(hn::Le(least, hn::Zero(e)), hn::Ge(most, hn::Zero(e))));
+            }
+            seen |= bits_of(e, kept) << at;
+        }
+        return seen;
+    }
+    HWY_INLINE bool test_triangle(const float (&corner)[3][3][8], std::uint32_t id, int i, int at,
+                                  unsigned active) {
+        const auto from_origin = [&](int k, int c) {
+            const V x = hn::Set(f, corner[k][c][i]);
+            return common_origin_ ? x : hn::Sub(x, hn::Load(f, origin_[k] + at));
+        };
+        const Corners<F> corners(from_origin, hn::Load(f, shear_[0] + at), hn::Load(f, shear_[1] + at));
+        unsigned candidates =
+            active & bits_of(f, corners.may_meet(f, hn::Load(f, z_ + at), hn::Load(f, s_low_ + at),
+                                                 hn::Load(f, s_limit_ + at)));
+        if (candidates == 0) return false;
+        Meetings m;
+        const auto z = [&](auto d, int from) {
+            return hn::PromoteTo(d, hn::Load(hn::Rebind<float, decltype(d)>(), z_ + at + from));
+        };
+        candidates = meet_exactly_among(f, corners, candidates, z, m);
+        // What is nearer, or as near and of a lower number.
+        constexpr hn::RebindToUnsigned<F> u32;
+        const V t = hn::Load(f, m.t), limit = hn::Load(f, t_limit_ + at);
+        const M lower = hn::RebindMask(f, hn::Lt(hn::Set(u32, id), hn::Load(u32, element_ + at)));
+        M better = hn::And(hn::Ge(t, hn::Load(f, t_min_ + at)),
+                           hn::Le(t, hn::Set(f, std::numeric_limits<float>::max())));
+        better = hn::And(better, hn::Or(hn::Lt(t, limit), hn::And(hn::Eq(t, limit), lower)));
+        candidates &= bits_of(f, better);
+        if (candidates == 0) return false;
+        const std::uint64_t bits = candidates;
+        better = hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits));
+        hn::BlendedStore(t, better, f, t_limit_ + at);
+        hn::BlendedStore(hn::Load(f, m.u), better, f, u_ + at);
+        hn::BlendedStore(hn::Load(f, m.v), better, f, v_ + at);
+        hn::BlendedStore(hn::BitCast(f, hn::Set(u32, id)), better, f,
+                         reinterpret_cast<float*>(element_) + at);
+        const V s_limit =
+            wanted == Wanted::any ? hn::Set(f, -1.0f) : limit_of(t, hn::Load(f, z_length_ + at));
+        hn::BlendedStore(s_limit, better, f, s_limit_ + at);
+        return true;
+    }
+
+    const WideScene& scene_;
+    std::size_t leaves_ = 0, rays_in_leaves_ = 0;
+    // Of the rays: see WideRay.
+    alignas(64) float inverse_[3][size], enter_[3][size], leave_[3][size], enter_at_[3][size],
+        leave_at_[3][size];
+    alignas(64) float origin_[3][size], shear_[2][size], z_[size], z_length_[size];
+    alignas(64) float s_low_[size], s_min_[size], s_limit_[size], t_min_[size], t_limit_[size], u_[size],
+        v_[size];
+    alignas(64) std::uint32_t element_[size];
+    // Of all together.
+    int z_axis_, axis_[3];
+    bool down_[3], common_origin_;
+    std::size_t near_row_[3];
+    Range inverses_[3], shears_[2];
+    float enters_[3], leaves_at_[3];  // the origins, e outward, that bring boxes nearest and farthest
+    float s_first_, s_last_;
+};
