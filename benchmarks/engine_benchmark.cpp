@@ -69,7 +69,6 @@ void traces(const TriangleMesh<float>& mesh, int width, Means& means) {
         WideOptions options;
         options.builder = builder;
         options.width = width;
-        if (getenv("TC")) options.traversal_cost = atof(getenv("TC"));
         engines.push_back(build<WideBvh>(mesh, options));
     }
     std::printf("  width %d, %.1f bytes a triangle\n", engines[0].structure().options().width,
@@ -157,7 +156,7 @@ int main(int count, char** arguments) {
     for (const auto& name : names) {
         const auto mesh = scene(name);
         std::printf("%s: %zu triangles\n", name.substr(name.rfind('/') + 1).c_str(), mesh.size());
-        if (!getenv("NB")) builds(mesh, means);
+        builds(mesh, means);
         traces(mesh, width, means);
     }
     std::printf("Geometric means (rates: ours to theirs; builds: our time to theirs)\n");

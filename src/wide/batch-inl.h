@@ -96,7 +96,11 @@ private:
     HWY_INLINE void open_node(int s) {
         const std::byte* const node = reinterpret_cast<const std::byte*>(start_[0] + word_[s] * stride);
         Stack stack = stack_of(s);
-        stack.push(Boxes<W>(node, Slabs<W>(ray_[s]), ray_[s].s_limit), children_of<W>(node));
+        const Boxes<W> boxes(node, Slabs<W>(ray_[s]), ray_[s].s_limit);
+        if constexpr (wanted == Wanted::any)
+            stack.push_unsorted(boxes, children_of<W>(node));
+        else
+            stack.push(boxes, children_of<W>(node));
         pop(s, stack);
     }
     /// False when the ray has its answer.

@@ -3,8 +3,9 @@
 #if HEDGEROW_HAS_HIGHWAY
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "wide/kernels.cpp"
-// Not worth their code: SSSE3 beside SSE4, and what AVX-512 has gained since its beginnings.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+// Not worth their code: SSSE3 beside SSE4, and what AVX-512 has gained since its beginnings. And vectors
+// whose length is not known (SVE) cannot be members.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include <hwy/highway.h>

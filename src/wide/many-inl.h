@@ -17,16 +17,17 @@ void answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, An
         if (waiting < next)
             Batch<W, wanted>(scene).answer(rays.subspan(waiting, next - waiting), answers + waiting);
     };
-    if (!scene.tree.empty() && !getenv("NOPACKET")) {
+    if (!scene.tree.empty()) {
         Packet<W, wanted> packet(scene);
         while (rays.size() - next >= size) {
             if (packet.leaves() > enough_leaves && packet.rays_in_leaves() < rays_a_leaf * packet.leaves())
                 break;
             if (packet.take(rays.data() + next)) {
                 answer_waiting();
-                // What comes next, while this packet computes.
-                prefetch_all(rays.data() + next + size, size);
-                prefetch_all(answers + next + size, size);
+                if (rays.size() - next >= 2 * size) {  // what comes next, while this packet computes
+                    prefetch_all(rays.data() + next + size, size);
+                    prefetch_all(answers + next + size, size);
+                }
                 packet.answer(answers + next);
                 waiting = next + size;
             }

@@ -27,6 +27,11 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
                     word = children[first];
                     continue;
                 }
+                if constexpr (wanted == Wanted::any) {
+                    stack.push_unsorted(boxes, children);
+                    word = stack.pop();
+                    continue;
+                }
                 if ((others & (others - 1)) == 0) {
                     alignas(64) float at[W];
                     boxes.store(at);

@@ -77,6 +77,20 @@ public:
         }
     }
 
+    // The same in any order, and without their entries: for who stops at the first hit.
+    HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
+        if constexpr (Boxes<W>::parts == 1) {
+            constexpr hn::RebindToSigned<Floats<W>> i32;
+            const auto mask = hn::RebindMask(i32, boxes.entered[0]);
+            hn::StoreU(hn::Compress(hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children)), mask),
+                       i32, reinterpret_cast<std::int32_t*>(words_) + top_);
+            top_ += static_cast<int>(hn::CountTrue(i32, mask));
+        } else {
+            for (unsigned entered = boxes.bits(); entered != 0; entered &= entered - 1)
+                words_[top_++] = children[std::countr_zero(entered)];
+        }
+    }
+
 private:
     HWY_INLINE void push_sorted(const Boxes<W>& boxes, const std::uint32_t* children) {
         constexpr hn::RebindToSigned<Floats<W>> i32;

@@ -152,7 +152,7 @@ struct Lanes<float> {
     static Lanes load(const float* p) { return {vld1q_f32(p)}; }
     template <int D>
     static Lanes of(const Vec<float, D>& a) {
-        return {{a[0], a[1], D == 3 ? a[D - 1] : 0.0f, 0.0f}};
+        return {float32x4_t{a[0], a[1], D == 3 ? a[D - 1] : 0.0f, 0.0f}};
     }
     static Lanes load_pairs(const float* p, const float* q) {
         return {vcombine_f32(vld1_f32(p), vld1_f32(q))};

@@ -1,0 +1,84 @@
+/// What scripts/cross runs on this processor and, emulated, on others: the engine with every instruction set
+/// that there is against brute force, and a sum over the bits of all hits, which must be the same wherever it
+/// is printed.
+#include <bit>
+#include <cstdio>
+#include <memory>
+
+#include <hedgerow/index.h>
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/random.h>
+#include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/bvh/wide/wide_bvh.h>
+
+using namespace hedgerow;
+
+namespace {
+
+std::vector<Ray3f> rays_through(const Box3f& box, const TriangleMesh<float>& mesh, std::size_t count) {
+    std::vector<Ray3f> rays;
+    for (std::size_t i = 0; i < count; ++i) {
+        Random random(5, i / 64 % 2 == 0 ? i : i / 64);  // every other 64 begin in one point
+        Vec3f p, q;
+        for (int k = 0; k < 3; ++k) {
+            p[k] = box.low[k] + (box.high[k] - box.low[k]) * (3 * static_cast<float>(random.uniform()) - 1);
+            q[k] = box.low[k] + (box.high[k] - box.low[k]) * static_cast<float>(random.uniform());
+        }
+        if (i / 64 % 2 == 1) q = q + box.extent() * (0.002f * static_cast<float>(i % 64));
+        if (i % 7 == 0) q = mesh.vertices[random.bits() % mesh.vertices.size()];
+        rays.push_back({p, q - p});
+        if (i % 11 == 0) rays.back().direction[static_cast<int>(i) % 3] = 0;
+    }
+    return rays;
+}
+
+void add(std::uint64_t& sum, std::uint32_t word) {
+    sum = (sum ^ word) * 0x100000001B3u;  // FNV-1a, by words
+}
+
+/// False if some set differs from brute force.
+bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count) {
+    const auto brute = build<BruteForce>(mesh);
+    const auto rays = rays_through(brute.bounds(), mesh, count);
+    std::vector<Hit<float>> want(count), got(count);
+    closest_hits(brute, std::span<const Ray3f>(rays), std::span(want));
+    const std::unique_ptr<bool[]> any(new bool[count]);
+    std::uint64_t sum = 0xCBF29CE484222325u;
+    std::size_t found = 0;
+    for (const auto& h : want) {
+        for (const float x : {h.t, h.u, h.v}) add(sum, std::bit_cast<std::uint32_t>(x));
+        add(sum, h.element);
+        found += static_cast<bool>(h);
+    }
+    std::printf("%-10s %zu of %zu rays hit, sum %016llx\n", name, found, count,
+                static_cast<unsigned long long>(sum));
+    for (const int width : {4, 8, 16}) {
+        WideOptions options;
+        options.width = width;
+        const auto index = build<WideBvh>(mesh, options);
+        for (const auto set : instruction_sets()) {
+            use_instruction_set(set);
+            closest_hits(index, std::span<const Ray3f>(rays), std::span(got));
+            any_hits(index, std::span<const Ray3f>(rays), {any.get(), count});
+            for (std::size_t i = 0; i < count; ++i) {
+                const auto one = closest_hit(index, rays[i]).value_or(Hit<float>());
+                if (got[i] == want[i] && one == want[i] && any[i] == static_cast<bool>(want[i])) continue;
+                std::printf("%s, width %d: ray %zu differs\n", std::string(set).c_str(), width, i);
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+int main() {
+    std::string sets;
+    for (const auto set : instruction_sets()) sets += " " + std::string(set);
+    std::fprintf(stderr, "instruction sets:%s\n", sets.c_str());
+    const bool good =
+        agrees("soup", soup<float>(300), 6400) && agrees("stadium", teapot_in_stadium<float>(1000), 3200) &&
+        agrees("hairball", hairball<float>(1000), 3200) && agrees("terrain", terrain<float>(1000), 3200);
+    return good ? 0 : 1;
+}
