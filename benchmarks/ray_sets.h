@@ -119,7 +119,7 @@ struct RaySet {
 /// Primary rays of a size × size picture, one diffuse ray from each of their hits, and n random ones.
 inline std::vector<RaySet> ray_sets(const TriangleMesh<float>& mesh, const Box3f& box, int size,
                                     std::size_t n) {
-    const auto index = build(mesh);
+    const auto index = build<Bvh>(mesh);
     auto primary = primary_rays(box, size);
     std::vector<Hit<float>> hits(primary.size());
     closest_hits(index, std::span<const Ray3f>(primary), std::span<Hit<float>>(hits));

@@ -13,11 +13,11 @@ namespace {
 constexpr int repeats = 7;
 
 void builds(const TriangleMesh<float>& mesh) {
-    const double one = median_seconds(repeats, [&] { build(mesh); });
+    const double one = median_seconds(repeats, [&] { build<Bvh>(mesh); });
     double two;
     {
         const ThreadLimit limit(2);
-        two = median_seconds(repeats, [&] { build(mesh, default_executor()); });
+        two = median_seconds(repeats, [&] { build<Bvh>(mesh, {}, default_executor()); });
     }
     std::printf("  binned build  %7.1f ms on one thread, %7.1f ms on two: %.2f x as fast\n", one * 1e3,
                 two * 1e3, one / two);
@@ -29,7 +29,7 @@ void builds(const TriangleMesh<float>& mesh) {
 }
 
 void traces(const TriangleMesh<float>& mesh) {
-    const auto index = build(mesh);
+    const auto index = build<Bvh>(mesh);
     std::printf("  %.1f bytes a triangle, depth %d, SAH cost %.1f\n",
                 double(index.bytes()) / double(mesh.size()), index.structure().depth(),
                 index.structure().sah_cost());

@@ -64,7 +64,7 @@ double counted_cost(const SahOptions& unit, const AnyIndex<float, 3>& index, con
 }
 
 void prediction(const TriangleMesh<float>& mesh, const RaySet& primary) {
-    const auto index = build(mesh);
+    const auto index = build<Bvh>(mesh);
     const auto any = build_any("bvh", mesh);
     const auto lines = random_lines(index.bounds(), 100000);
     const SahOptions& unit = index.structure().options();

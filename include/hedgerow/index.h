@@ -1,6 +1,7 @@
 /// A structure built over primitives, and the questions it answers.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include <hedgerow/queries/overlapping.h>
 #include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/bvh/wide/kernels.h>
+#include <hedgerow/structures/bvh/wide/wide_bvh.h>
 
 namespace hedgerow {
 
@@ -228,10 +230,10 @@ auto build(P&& primitives,
         return Index<Structure, View>(std::move(view), options, executor, std::move(owner));
     }
 }
-/// The default structure.
+/// The default structure: the engine.
 template <class P>
 auto build(P&& primitives, Executor& executor = serial_executor()) {
-    return build<Bvh>(std::forward<P>(primitives), {}, executor);
+    return build<WideBvh>(std::forward<P>(primitives), {}, executor);
 }
 
 template <class I>
@@ -319,39 +321,51 @@ std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, 
     return index.template answer<Overlapping<P>>(count, box, found);
 }
 
-/// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false.
-template <class S, class P>
-void closest_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
-                  std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor()) {
-    assert(hits.size() >= rays.size());
-    executor.for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
+namespace detail {
+/// Rays `begin` to `end` of a batch by `by_kernels(kernels, scene, begin, end)` where kernels answer, else
+/// `one(i)` each; in pieces over the executor.
+template <class S, class P, class ByKernels, class One>
+KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& executor, ByKernels by_kernels,
+                       One one) {
+    std::atomic<std::size_t> phased{0}, packets{0};
+    executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
         if constexpr (Index<S, P>::by_kernels)
             if (const auto* kernels = kernels_for(index)) {
-                in_ieee_mode([&] {
-                    kernels->closest_hits(index.wide_scene(), rays.subspan(begin, end - begin),
-                                          hits.data() + begin);
-                });
+                const KernelUse use =
+                    in_ieee_mode([&] { return by_kernels(*kernels, index.wide_scene(), begin, end); });
+                phased += use.phased, packets += use.packets;
                 return;
             }
-        for (std::size_t i = begin; i < end; ++i)
-            hits[i] = closest_hit(index, rays[i]).value_or(Hit<typename P::Scalar>{});
+        for (std::size_t i = begin; i < end; ++i) one(i);
     });
+    return {count - phased - packets, phased, packets};
+}
+}  // namespace detail
+
+/// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false. Returns which
+/// algorithms answered (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a
+/// WideBvh go ray by ray.
+template <class S, class P>
+KernelUse closest_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
+                       std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor()) {
+    assert(hits.size() >= rays.size());
+    return detail::answer_batch(
+        index, rays.size(), executor,
+        [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
+            return kernels.closest_hits(wide, rays.subspan(begin, end - begin), hits.data() + begin);
+        },
+        [&](std::size_t i) { hits[i] = closest_hit(index, rays[i]).value_or(Hit<typename P::Scalar>{}); });
 }
 template <class S, class P>
-void any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
-              std::span<bool> hits, Executor& executor = serial_executor()) {
+KernelUse any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
+                   std::span<bool> hits, Executor& executor = serial_executor()) {
     assert(hits.size() >= rays.size());
-    executor.for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        if constexpr (Index<S, P>::by_kernels)
-            if (const auto* kernels = kernels_for(index)) {
-                in_ieee_mode([&] {
-                    kernels->any_hits(index.wide_scene(), rays.subspan(begin, end - begin),
-                                      hits.data() + begin);
-                });
-                return;
-            }
-        for (std::size_t i = begin; i < end; ++i) hits[i] = any_hit(index, rays[i]);
-    });
+    return detail::answer_batch(
+        index, rays.size(), executor,
+        [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
+            return kernels.any_hits(wide, rays.subspan(begin, end - begin), hits.data() + begin);
+        },
+        [&](std::size_t i) { hits[i] = any_hit(index, rays[i]); });
 }
 
 }  // namespace hedgerow

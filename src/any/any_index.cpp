@@ -89,7 +89,7 @@ const std::vector<StructureInfo>& structure_list() {
         {"wide",
          "wide bounding volume hierarchy: 4 to 16 children a node, tested at once (the engine)",
          {{"builder", "fast|medium|high", "medium",
-           "of the binary tree that it is collapsed from: ploc, binned, binned and improved"},
+           "of the binary tree that it is collapsed from: lbvh, binned, binned and improved"},
           {"width", "0|4|8|16", "0", "children a node; 0: what this processor is best at"},
           {"reinsertion", "PASSES", "10", "most passes of the builder 'high'"},
           {"traversal_cost", "NUMBER", "2", "of an inner node of the binary tree, for the SAH"},

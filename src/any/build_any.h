@@ -8,16 +8,6 @@
 
 namespace hedgerow::detail {
 
-/// Calls f(i, count) for each i, with that query's count or with none.
-template <class F>
-void for_each_query(std::size_t n, std::span<Visits> visits, F f) {
-    if (visits.empty()) {
-        for (std::size_t i = 0; i < n; ++i) f(i, no_visits);
-    } else {
-        for (std::size_t i = 0; i < n; ++i) f(i, visits[i]);
-    }
-}
-
 template <class S, class P>
 class Holder final : public AnyIndex<typename P::Scalar, P::dimension> {
 public:
@@ -49,15 +39,15 @@ public:
 
     void closest_hits(std::span<const Ray<T, D>> rays, std::span<Hit<T>> hits,
                       std::span<Visits> visits) const override {
-        for_each_query(rays.size(), visits, [&](std::size_t i, auto& count) {
-            hits[i] = closest_hit(index_, rays[i], KeepAll{}, count).value_or(Hit<T>{});
-        });
+        if (visits.empty()) return void(hedgerow::closest_hits(index_, rays, hits));
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            hits[i] = closest_hit(index_, rays[i], KeepAll{}, visits[i]).value_or(Hit<T>{});
     }
     void any_hits(std::span<const Ray<T, D>> rays, std::span<bool> hits,
                   std::span<Visits> visits) const override {
-        for_each_query(rays.size(), visits, [&](std::size_t i, auto& count) {
-            hits[i] = any_hit(index_, rays[i], KeepAll{}, count);
-        });
+        if (visits.empty()) return void(hedgerow::any_hits(index_, rays, hits));
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            hits[i] = any_hit(index_, rays[i], KeepAll{}, visits[i]);
     }
     // Counting costs these some percent: less than another instance of each would cost the compiler.
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits) const override {

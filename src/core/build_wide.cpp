@@ -18,7 +18,7 @@ void require(bool good, const char* name, V value, const char* wanted) {
 
 BvhOptions binary(const WideOptions& options) {
     BvhOptions o;
-    o.builder = options.builder == WideBuilder::fast ? BvhBuilder::ploc : BvhBuilder::binned;
+    o.builder = options.builder == WideBuilder::fast ? BvhBuilder::lbvh : BvhBuilder::binned;
     o.reinsertion = options.builder == WideBuilder::high ? options.reinsertion : 0;
     o.max_leaf_size = options.max_leaf_size;
     o.traversal_cost = options.traversal_cost;

@@ -51,7 +51,7 @@ public:
     }
 
 private:
-    static constexpr int most_slots = 32, enough_leaves = 12;
+    static constexpr int most_slots = 32, enough_leaves = 16;
     static constexpr int stack_places = most_slots * 256;
     using Block = TriangleBlock<float>;
     using Stack = WalkStack<W>;

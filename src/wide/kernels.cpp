@@ -62,8 +62,9 @@ struct Answering {
     template <int W>
     struct Many {
         template <class Answer>
-        static void answer(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
-            answer_many<W, wanted>(scene, rays, answers);
+        static KernelUse answer(const WideScene& scene, std::span<const Ray<float, 3>> rays,
+                                Answer* answers) {
+            return answer_many<W, wanted>(scene, rays, answers);
         }
     };
 };
@@ -74,11 +75,11 @@ Hit<float> closest_hit(const WideScene& scene, const Ray<float, 3>& ray) {
 bool any_hit(const WideScene& scene, const Ray<float, 3>& ray) {
     return by_width<Answering<Wanted::any>::template One>(scene, &ray);
 }
-void closest_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, Hit<float>* hits) {
-    by_width<Answering<Wanted::closest>::template Many>(scene, rays, hits);
+KernelUse closest_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, Hit<float>* hits) {
+    return by_width<Answering<Wanted::closest>::template Many>(scene, rays, hits);
 }
-void any_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, bool* hits) {
-    by_width<Answering<Wanted::any>::template Many>(scene, rays, hits);
+KernelUse any_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, bool* hits) {
+    return by_width<Answering<Wanted::any>::template Many>(scene, rays, hits);
 }
 
 inline constexpr WideKernels kernels {

@@ -8,14 +8,16 @@ HWY_INLINE void prefetch_all(const T* from, std::size_t count) {
 }
 
 template <int W, Wanted wanted, class Answer>
-void answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
+KernelUse answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
     constexpr std::size_t size = Packet<W, wanted>::size;
     // Packets pay where a leaf is entered by so many rays of one; it is known after so many leaves.
     constexpr std::size_t rays_a_leaf = 6, enough_leaves = 256;
+    KernelUse use;
     std::size_t waiting = 0, next = 0;  // rays from `waiting` to `next` go their own ways
     const auto answer_waiting = [&] {
         if (waiting < next)
             Batch<W, wanted>(scene).answer(rays.subspan(waiting, next - waiting), answers + waiting);
+        use.phased += next - waiting;
     };
     if (!scene.tree.empty()) {
         Packet<W, wanted> packet(scene);
@@ -29,6 +31,7 @@ void answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, An
                     prefetch_all(answers + next + size, size);
                 }
                 packet.answer(answers + next);
+                use.packets += size;
                 waiting = next + size;
             }
             next += size;
@@ -36,4 +39,5 @@ void answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, An
     }
     next = rays.size();
     answer_waiting();
+    return use;
 }

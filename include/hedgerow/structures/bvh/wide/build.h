@@ -6,7 +6,7 @@
 
 namespace hedgerow {
 
-/// The binary tree that a wide one is collapsed from, by the time to build: PLOC, binned SAH, and that
+/// The binary tree that a wide one is collapsed from, by the time to build: linear, binned SAH, and that
 /// improved by reinsertion.
 enum class WideBuilder { fast, medium, high };
 inline constexpr WideBuilder wide_builders[] = {WideBuilder::fast, WideBuilder::medium, WideBuilder::high};

@@ -24,6 +24,16 @@ struct WideScene {
     Strided<std::uint32_t> faces;
 };
 
+/// How many rays of a batch were answered by which algorithm.
+struct KernelUse {
+    std::size_t single = 0, phased = 0, packets = 0;
+
+    KernelUse& operator+=(const KernelUse& more) {
+        single += more.single, phased += more.phased, packets += more.packets;
+        return *this;
+    }
+};
+
 struct WideKernels {
     std::string_view instruction_set;
     /// How many children a node has best.
@@ -31,8 +41,8 @@ struct WideKernels {
     /// A ray, or any number of them; where nothing is hit, a Hit that is false.
     Hit<float> (*closest_hit)(const WideScene&, const Ray<float, 3>&);
     bool (*any_hit)(const WideScene&, const Ray<float, 3>&);
-    void (*closest_hits)(const WideScene&, std::span<const Ray<float, 3>>, Hit<float>*);
-    void (*any_hits)(const WideScene&, std::span<const Ray<float, 3>>, bool*);
+    KernelUse (*closest_hits)(const WideScene&, std::span<const Ray<float, 3>>, Hit<float>*);
+    KernelUse (*any_hits)(const WideScene&, std::span<const Ray<float, 3>>, bool*);
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses: what the environment names in
