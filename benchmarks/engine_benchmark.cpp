@@ -43,7 +43,7 @@ private:
 
 using Contender = std::function<std::size_t()>;
 
-void builds(const TriangleMesh<float>& mesh, Means& means) {
+void builds(const TriangleMesh<float>& mesh, [[maybe_unused]] Means& means) {
     std::map<std::string, double> ours;
     for (const auto& [name, builder] : {std::pair<std::string, WideBuilder>{"fast", WideBuilder::fast},
                                         {"medium", WideBuilder::medium},
@@ -63,7 +63,7 @@ void builds(const TriangleMesh<float>& mesh, Means& means) {
     }
 }
 
-void traces(const TriangleMesh<float>& mesh, int width, Means& means) {
+void traces(const TriangleMesh<float>& mesh, int width, [[maybe_unused]] Means& means) {
     std::vector<Engine> engines;
     for (const auto builder : {WideBuilder::medium, WideBuilder::high}) {
         WideOptions options;
@@ -78,7 +78,9 @@ void traces(const TriangleMesh<float>& mesh, int width, Means& means) {
     for (const auto quality : {RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_HIGH})
         embrees.push_back(std::make_unique<Embree>(mesh, false, 1, quality));
 #endif
-    for (const auto& [name, rays] : ray_sets(mesh, engines[0].bounds(), 1024, 1 << 19)) {
+    for (const auto& set : ray_sets(mesh, engines[0].bounds(), 1024, 1 << 19)) {
+        const std::string& name = set.name;
+        const std::vector<Ray3f>& rays = set.rays;
         const std::span<const Ray3f> asked(rays);
         std::vector<Hit<float>> hits(rays.size());
         const std::unique_ptr<bool[]> any(new bool[rays.size()]);

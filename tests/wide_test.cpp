@@ -185,6 +185,32 @@ TEST(Wide, CoherentRays) {
     }
 }
 
+/// A batch says by what it was answered.
+TEST(Wide, KernelsAreChosenByWhatRaysDo) {
+    const auto mesh = teapot_in_stadium<float>(3000);
+    const auto index = build<WideBvh>(mesh);
+    const auto targets = targets_of(mesh);
+    std::vector<Ray3f> apart(1000), together(1000);
+    for (std::size_t i = 0; i < apart.size(); ++i) {
+        apart[i] = ray_of(index.bounds(), targets, i);
+        const float x = 0.001f * static_cast<float>(i % 32), y = 0.001f * static_cast<float>(i / 32);
+        together[i] = {index.bounds().center(), Vec3f(0.2f + x, 0.9f, 0.3f + y)};
+    }
+    std::vector<Hit<float>> hits(1000);
+    const auto use = [&](const auto& of, const std::vector<Ray3f>& rays) {
+        return closest_hits(of, std::span<const Ray3f>(rays), std::span(hits));
+    };
+    for (const auto set : instruction_sets()) {
+        SCOPED_TRACE(set);
+        const Using instructions(set);
+        const bool plain = set == "plain";
+        EXPECT_EQ(use(index, apart).phased, plain ? 0u : 1000u);
+        EXPECT_EQ(use(index, together).packets, plain ? 0u : 960u);
+        EXPECT_EQ(use(index, together).single, plain ? 1000u : 0u);
+        EXPECT_EQ(use(build<Bvh>(mesh), apart).single, 1000u);
+    }
+}
+
 TEST(Wide, UnusableRaysHitNothing) {
     const auto mesh = soup<float>(300);
     const auto index = build<WideBvh>(mesh);
