@@ -92,7 +92,7 @@ const std::vector<StructureInfo>& structure_list() {
            "of the binary tree that it is collapsed from: lbvh, binned, binned and improved"},
           {"width", "0|4|8|16", "0", "children a node; 0: what this processor is best at"},
           {"reinsertion", "PASSES", "10", "most passes of the builder 'high'"},
-          {"traversal_cost", "NUMBER", "2", "of an inner node of the binary tree, for the SAH"},
+          {"traversal_cost", "NUMBER", "4", "of an inner node of the binary tree, for the SAH"},
           {"intersection_cost", "NUMBER", "1", "of a primitive, for the SAH"},
           {"max_leaf_size", "1..8", "8", "larger nodes are always split"}}}};
     return list;
