@@ -63,10 +63,11 @@ private:
 
     /// As `prepare` (rays-inl.h), rays in lanes; false if some ray is not like the first.
     HWY_INLINE bool prepare_rays(const Ray<float, 3>* rays, int at) {
-        constexpr hn::RebindToSigned<F> i32;
-        const auto index = hn::ShiftLeft<3>(hn::Iota(i32, at));
-        const float* const words = reinterpret_cast<const float*>(rays);
-        const auto field = [&](int w) { return hn::GatherIndex(f, words + w, index); };
+        alignas(64) float fields[8][lanes];
+        const float* const words = reinterpret_cast<const float*>(rays + at);
+        for (int i = 0; i < lanes; ++i)
+            for (int w = 0; w < 8; ++w) fields[w][i] = words[8 * i + w];
+        const auto field = [&](int w) { return hn::Load(f, fields[w]); };
         const auto all = [&](float x) { return hn::Set(f, x); };
         const V zero = hn::Zero(f);
         V o[3], d[3], length[3], far_off = zero, reach = zero;
@@ -223,17 +224,31 @@ private:
         }
     }
 
-    /// True if some ray was hit.
+    /// True if some ray was hit. All rays are held against all triangles first, without a branch.
     HWY_INLINE bool test_leaf(const TriangleBlock<float>& block, std::uint64_t active) {
         alignas(64) float corner[3][3][8];  // by the rays' axes, without the origin where they share it
-        unsigned triangles = seen_of(block, corner);
+        const unsigned triangles = seen_of(block, corner);
+        std::uint64_t candidates[8];
+        for (unsigned left = triangles; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            std::uint64_t rays = 0;
+            for (int at = 0; at < size; at += lanes) {
+                const M kept = corners_of(corner, i, at)
+                                   .may_meet(f, hn::Load(f, z_ + at), hn::Load(f, s_low_ + at),
+                                             hn::Load(f, s_limit_ + at));
+                rays |= std::uint64_t(bits_of(f, kept)) << at;
+            }
+            candidates[i] = rays & active;
+        }
         bool found = false;
-        for (; triangles != 0; triangles &= triangles - 1) {
-            const int i = std::countr_zero(triangles);
-            for (int p = 0; p < parts; ++p) {
-                constexpr unsigned every = static_cast<unsigned>((1ull << lanes) - 1);
-                const unsigned here = static_cast<unsigned>(active >> (p * lanes)) & every;
-                if (here != 0) found |= test_triangle(corner, block.id[i], i, p * lanes, here);
+        for (unsigned left = triangles; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            for (std::uint64_t rays = candidates[i]; rays != 0;) {
+                const int at = std::countr_zero(rays) / lanes * lanes;
+                constexpr std::uint64_t every = (std::uint64_t(1) << lanes) - 1;
+                found |= meet(corners_of(corner, i, at), block.id[i], at,
+                              static_cast<unsigned>(rays >> at & every));
+                rays &= ~(every << at);
             }
         }
         return found;
@@ -267,23 +282,21 @@ private:
         }
         return seen;
     }
-    HWY_INLINE bool test_triangle(const float (&corner)[3][3][8], std::uint32_t id, int i, int at,
-                                  unsigned active) {
+    HWY_INLINE Corners<F> corners_of(const float (&corner)[3][3][8], int i, int at) const {
         const auto from_origin = [&](int k, int c) {
             const V x = hn::Set(f, corner[k][c][i]);
             return common_origin_ ? x : hn::Sub(x, hn::Load(f, origin_[k] + at));
         };
-        const Corners<F> corners(from_origin, hn::Load(f, shear_[0] + at), hn::Load(f, shear_[1] + at));
-        unsigned candidates =
-            active & bits_of(f, corners.may_meet(f, hn::Load(f, z_ + at), hn::Load(f, s_low_ + at),
-                                                 hn::Load(f, s_limit_ + at)));
-        if (candidates == 0) return false;
+        return Corners<F>(from_origin, hn::Load(f, shear_[0] + at), hn::Load(f, shear_[1] + at));
+    }
+    /// Of the candidates among the rays from `at` on, those that are hit nearer than before (or as near, and
+    /// the triangle has a lower number) have this triangle as their hit.
+    HWY_INLINE bool meet(const Corners<F>& corners, std::uint32_t id, int at, unsigned candidates) {
         Meetings m;
         const auto z = [&](auto d, int from) {
             return hn::PromoteTo(d, hn::Load(hn::Rebind<float, decltype(d)>(), z_ + at + from));
         };
         candidates = meet_exactly_among(f, corners, candidates, z, m);
-        // What is nearer, or as near and of a lower number.
         constexpr hn::RebindToUnsigned<F> u32;
         const V t = hn::Load(f, m.t), limit = hn::Load(f, t_limit_ + at);
         const M lower = hn::RebindMask(f, hn::Lt(hn::Set(u32, id), hn::Load(u32, element_ + at)));
