@@ -5,6 +5,7 @@
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
 #include <hedgerow/structures/bvh/wide/wide_bvh.h>
+#include <hedgerow/structures/grid/grid.h>
 
 using namespace hedgerow;
 using namespace hedgerow::matrix;
@@ -225,6 +226,31 @@ TEST(Wide, UnusableRaysHitNothing) {
         const Using use(set);
         expect_hits(std::vector<Hit<float>>(rays.size()), Answers(index, rays));
     }
+}
+
+TEST(Wide, ArraysOfDifferentLengthsAreRefused) {
+    const auto mesh = soup<float>(100);
+    const std::vector<Ray3f> rays(10, Ray3f{{0, 0, 0}, {1, 1, 1}});
+    std::vector<Hit<float>> hits(9);
+    bool any[9];
+    const auto wide = build<WideBvh>(mesh);
+    const auto binary = build<Bvh>(mesh);
+    EXPECT_THROW(closest_hits(wide, std::span<const Ray3f>(rays), std::span(hits)), InputError);
+    EXPECT_THROW(any_hits(wide, std::span<const Ray3f>(rays), std::span(any)), InputError);
+    EXPECT_THROW(closest_hits(binary, std::span<const Ray3f>(rays), std::span(hits)), InputError);
+}
+
+/// So many primitives that their list alone would take 64 GB.
+struct TooMany {
+    using Scalar = float;
+    static constexpr int dimension = 3;
+    std::size_t size() const { return (std::size_t(1) << 31) + 1; }
+    Box3f bounds(std::size_t) const { return {Vec3f::all(0), Vec3f::all(1)}; }
+};
+TEST(Wide, TooManyPrimitivesAreRefusedBeforeMemoryIsSpent) {
+    EXPECT_THROW(build<WideBvh>(TooMany()), InputError);
+    EXPECT_THROW(build<Bvh>(TooMany()), InputError);
+    EXPECT_THROW(build<Grid>(TooMany()), InputError);
 }
 
 TEST(Wide, HitsReportFaces) {

@@ -322,6 +322,12 @@ std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, 
 }
 
 namespace detail {
+inline void expect_room(std::size_t rays, std::size_t answers) {
+    if (answers < rays)
+        throw InputError("there are " + std::to_string(rays) + " rays, but room for " +
+                         std::to_string(answers) +
+                         " answers: make the array of answers as long as that of rays");
+}
 /// Rays `begin` to `end` of a batch by `by_kernels(kernels, scene, begin, end)` where kernels answer, else
 /// `one(i)` each; in pieces over the executor.
 template <class S, class P, class ByKernels, class One>
@@ -342,13 +348,14 @@ KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& ex
 }
 }  // namespace detail
 
-/// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false. Returns which
-/// algorithms answered (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a
-/// WideBvh go ray by ray.
+/// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false. Throws
+/// InputError, and writes nothing, if there are fewer places for answers than rays. Returns which algorithms
+/// answered (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a WideBvh go
+/// ray by ray.
 template <class S, class P>
 KernelUse closest_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
                        std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor()) {
-    assert(hits.size() >= rays.size());
+    detail::expect_room(rays.size(), hits.size());
     return detail::answer_batch(
         index, rays.size(), executor,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
@@ -359,7 +366,7 @@ KernelUse closest_hits(const Index<S, P>& index, std::span<const Ray<typename P:
 template <class S, class P>
 KernelUse any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
                    std::span<bool> hits, Executor& executor = serial_executor()) {
-    assert(hits.size() >= rays.size());
+    detail::expect_room(rays.size(), hits.size());
     return detail::answer_batch(
         index, rays.size(), executor,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {

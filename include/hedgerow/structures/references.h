@@ -102,13 +102,19 @@ using ReferenceList = BareVector<Reference<T, D>>;
 namespace detail {
 inline constexpr std::size_t run = 4096;
 
+/// How many primitives there are; throws InputError if they are too many, before memory is spent on them.
+template <PrimitiveSet P>
+std::size_t count_of(const P& set) {
+    const std::size_t n = set.size();
+    if (n > 0x80000000u)
+        throw InputError("an index holds at most 2^31 primitives, and was given " + std::to_string(n));
+    return n;
+}
 /// Calls f(i, box) for every primitive, those of a run one after the other.
 template <PrimitiveSet P, class F>
 void for_each_sound_box(const P& set, Executor& executor, F f) {
     using T = typename P::Scalar;
     const std::size_t n = set.size();
-    if (n > 0x80000000u)
-        throw InputError("an index holds at most 2^31 primitives, and was given " + std::to_string(n));
     if constexpr (requires { set.validate(); }) set.validate();
     std::atomic<std::size_t> first_bad{n};
     executor.for_each_piece((n + run - 1) / run, 1, [&](std::size_t begin, std::size_t end) {
@@ -130,7 +136,7 @@ void for_each_sound_box(const P& set, Executor& executor, F f) {
 template <PrimitiveSet P>
 auto references_of(const P& set, Executor& executor) {
     using R = Reference<typename P::Scalar, P::dimension>;
-    ReferenceList<typename P::Scalar, P::dimension> references(set.size());
+    ReferenceList<typename P::Scalar, P::dimension> references(detail::count_of(set));
     detail::for_each_sound_box(set, executor, [&](std::size_t i, const auto& box) {
         references[i] = R(box, static_cast<PrimitiveId>(i));
     });
@@ -139,7 +145,7 @@ auto references_of(const P& set, Executor& executor) {
 /// Their bounds; throws as `references_of`.
 template <PrimitiveSet P>
 auto bounds_of(const P& set, Executor& executor) {
-    std::vector<Box<typename P::Scalar, P::dimension>> of_runs(set.size() / detail::run + 1);
+    std::vector<Box<typename P::Scalar, P::dimension>> of_runs(detail::count_of(set) / detail::run + 1);
     detail::for_each_sound_box(set, executor,
                                [&](std::size_t i, const auto& box) { of_runs[i / detail::run].expand(box); });
     for (const auto& box : of_runs) of_runs[0].expand(box);
