@@ -13,8 +13,11 @@ namespace hedgerow::benchmark {
 /// Embree, robust or not: its single-ray calls, and its calls of 16.
 class Embree {
 public:
-    Embree(const TriangleMesh<float>& mesh, bool robust, int threads, RTCBuildQuality quality) {
-        device_ = rtcNewDevice(("threads=" + std::to_string(threads)).c_str());
+    /// `isa` is the most that it may use, as its `max_isa` has it; empty for all.
+    Embree(const TriangleMesh<float>& mesh, bool robust, int threads, RTCBuildQuality quality,
+           const std::string& isa = "") {
+        const std::string most = isa.empty() ? "" : ",max_isa=" + isa;
+        device_ = rtcNewDevice(("threads=" + std::to_string(threads) + most).c_str());
         scene_ = rtcNewScene(device_);
         rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
         rtcSetSceneBuildQuality(scene_, quality);

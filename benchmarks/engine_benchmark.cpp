@@ -41,6 +41,12 @@ private:
     std::map<std::string, std::pair<double, int>> of_;
 };
 
+/// What Embree may use besides: the same instruction set.
+[[maybe_unused]] std::string embree_isa() {
+    const std::string_view ours = wide_kernels() != nullptr ? wide_kernels()->instruction_set : "plain";
+    return ours == "avx2" ? "avx2" : ours == "sse4" ? "sse4.2" : "";
+}
+
 using Contender = std::function<std::size_t()>;
 
 void builds(const TriangleMesh<float>& mesh, [[maybe_unused]] Means& means) {
@@ -76,7 +82,7 @@ void traces(const TriangleMesh<float>& mesh, int width, [[maybe_unused]] Means& 
 #ifdef HEDGEROW_HAS_EMBREE
     std::vector<std::unique_ptr<Embree>> embrees;
     for (const auto quality : {RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_HIGH})
-        embrees.push_back(std::make_unique<Embree>(mesh, false, 1, quality));
+        embrees.push_back(std::make_unique<Embree>(mesh, false, 1, quality, embree_isa()));
 #endif
     for (const auto& set : ray_sets(mesh, engines[0].bounds(), 1024, 1 << 19)) {
         const std::string& name = set.name;
