@@ -61,25 +61,20 @@ public:
     }
     // Takes off what a hit has put out of reach, so that nothing has to be asked when it is popped.
     HWY_INLINE void sweep(float s_limit) {
-        constexpr hn::ScalableTag<std::int32_t> i32;
-        constexpr int lanes = static_cast<int>(hn::MaxLanes(i32));
-        const auto beyond = hn::Set(i32, std::bit_cast<std::int32_t>(s_limit) + 1);
-        std::int32_t* const words = reinterpret_cast<std::int32_t*>(words_);
+        const std::int32_t limit = std::bit_cast<std::int32_t>(s_limit);
         const int top = top_;
         top_ = bottom_ + 1;
-        for (int i = top_; i < top; i += lanes) {
-            const auto entry = hn::LoadU(i32, entries_ + i), word = hn::LoadU(i32, words + i);
-            const auto keep =
-                hn::And(hn::FirstN(i32, static_cast<std::size_t>(top - i)), hn::Lt(entry, beyond));
-            hn::StoreU(hn::Compress(entry, keep), i32, entries_ + top_);
-            hn::StoreU(hn::Compress(word, keep), i32, words + top_);
-            top_ += static_cast<int>(hn::CountTrue(i32, keep));
+        for (int i = top_; i < top; ++i) {
+            const std::int32_t entry = entries_[i];
+            entries_[top_] = entry, words_[top_] = words_[i];
+            top_ += entry <= limit;
         }
     }
-
     // The same in any order, and without their entries: for who stops at the first hit.
     HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
-        if constexpr (Boxes<W>::parts == 1) {
+        if constexpr (Boxes<W>::parts == 1 && !compresses) {
+            push_sorted(boxes, children);  // which takes less than a compress by table
+        } else if constexpr (Boxes<W>::parts == 1) {
             constexpr hn::RebindToSigned<Floats<W>> i32;
             const auto mask = hn::RebindMask(i32, boxes.entered[0]);
             hn::StoreU(hn::Compress(hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children)), mask),
@@ -92,6 +87,9 @@ public:
     }
 
 private:
+    // Whether compress is an instruction.
+    static constexpr bool compresses = HWY_TARGET == HWY_AVX3;
+
     HWY_INLINE void push_sorted(const Boxes<W>& boxes, const std::uint32_t* children) {
         constexpr hn::RebindToSigned<Floats<W>> i32;
         // The lowest bits of a key tell the child.
