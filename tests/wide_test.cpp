@@ -194,7 +194,8 @@ TEST(Wide, KernelsAreChosenByWhatRaysDo) {
     std::vector<Ray3f> apart(1000), together(1000);
     for (std::size_t i = 0; i < apart.size(); ++i) {
         apart[i] = ray_of(index.bounds(), targets, i);
-        const float x = 0.001f * static_cast<float>(i % 32), y = 0.001f * static_cast<float>(i / 32);
+        const std::size_t column = i % 32, row = i / 32;
+        const float x = 0.001f * static_cast<float>(column), y = 0.001f * static_cast<float>(row);
         together[i] = {index.bounds().center(), Vec3f(0.2f + x, 0.9f, 0.3f + y)};
     }
     std::vector<Hit<float>> hits(1000);
