@@ -45,18 +45,7 @@ public:
         std::size_t found = 0;
         for (const Ray3f& r : rays) {
             RTCRayHit h;
-            h.ray = {r.origin[0],
-                     r.origin[1],
-                     r.origin[2],
-                     r.t_min,
-                     r.direction[0],
-                     r.direction[1],
-                     r.direction[2],
-                     0,
-                     r.t_max,
-                     0xFFFFFFFFu,
-                     0,
-                     0};
+            h.ray = ray_of(r);
             h.hit.geomID = RTC_INVALID_GEOMETRY_ID;
             rtcIntersect1(scene_, &context, &h);
             found += h.hit.geomID != RTC_INVALID_GEOMETRY_ID;
@@ -68,18 +57,7 @@ public:
         rtcInitIntersectContext(&context);
         std::size_t found = 0;
         for (const Ray3f& r : rays) {
-            RTCRay ray = {r.origin[0],
-                          r.origin[1],
-                          r.origin[2],
-                          r.t_min,
-                          r.direction[0],
-                          r.direction[1],
-                          r.direction[2],
-                          0,
-                          r.t_max,
-                          0xFFFFFFFFu,
-                          0,
-                          0};
+            RTCRay ray = ray_of(r);
             rtcOccluded1(scene_, &context, &ray);
             found += ray.tfar < 0;
         }
@@ -127,6 +105,12 @@ public:
     double build_seconds = 0;
 
 private:
+    static RTCRay ray_of(const Ray3f& r) {
+        return {
+            r.origin[0], r.origin[1], r.origin[2], r.t_min, r.direction[0], r.direction[1], r.direction[2], 0,
+            r.t_max,     0xFFFFFFFFu, 0,           0};
+    }
+
     RTCDevice device_;
     RTCScene scene_;
     std::vector<Vec3f> vertices_;
