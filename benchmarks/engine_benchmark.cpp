@@ -50,20 +50,19 @@ private:
 using Contender = std::function<std::size_t()>;
 
 void builds(const TriangleMesh<float>& mesh, [[maybe_unused]] Means& means) {
-    std::map<std::string, double> ours;
     for (const auto& [name, builder] : {std::pair<std::string, WideBuilder>{"fast", WideBuilder::fast},
                                         {"medium", WideBuilder::medium},
                                         {"high", WideBuilder::high}}) {
         WideOptions options;
         options.builder = builder;
-        ours[name] = median_seconds(3, [&] { build<WideBvh>(mesh, options); });
-        std::printf("  %-6s build %8.1f ms", name.c_str(), ours[name] * 1e3);
+        const double ours = median_seconds(3, [&] { build<WideBvh>(mesh, options); });
+        std::printf("  %-6s build %8.1f ms", name.c_str(), ours * 1e3);
 #ifdef HEDGEROW_HAS_EMBREE
         const auto quality = builder == WideBuilder::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
         const double theirs = embree_build_seconds(3, mesh, quality);
         std::printf(", Embree %s %8.1f ms: ours takes %.2f of it",
-                    quality == RTC_BUILD_QUALITY_HIGH ? "high" : "medium", theirs * 1e3, ours[name] / theirs);
-        means.add("build " + name, ours[name] / theirs);
+                    quality == RTC_BUILD_QUALITY_HIGH ? "high" : "medium", theirs * 1e3, ours / theirs);
+        means.add("build " + name, ours / theirs);
 #endif
         std::printf("\n");
     }

@@ -47,6 +47,17 @@ struct Answers {
     }
 };
 
+/// What the plain walk answers, whatever kernels there are: they do not count.
+template <class Index>
+std::vector<Hit<float>> hits_of_the_walk(const Index& index, std::span<const Ray3f> rays) {
+    std::vector<Hit<float>> hits;
+    for (const auto& r : rays) {
+        Visits visits;
+        hits.push_back(closest_hit(index, r, KeepAll{}, visits).value_or(Hit<float>()));
+    }
+    return hits;
+}
+
 void expect_hits(std::span<const Hit<float>> want, const Answers& got) {
     for (std::size_t i = 0; i < want.size(); ++i) {
         ASSERT_EQ(want[i], got.batch[i])
@@ -145,11 +156,7 @@ TEST(Wide, BatchesOfAnySize) {
                 SCOPED_TRACE(std::string(set) + " " + std::to_string(count));
                 std::vector<Ray3f> rays(count);
                 for (std::size_t i = 0; i < count; ++i) rays[i] = ray_of(index.bounds(), targets, 7 * i);
-                std::vector<Hit<float>> want;
-                for (const auto& r : rays) {
-                    NoVisits none;
-                    want.push_back(closest_hit(index, r, KeepAll{}, none).value_or(Hit<float>()));
-                }
+                const auto want = hits_of_the_walk(index, rays);
                 const Using use(set);
                 expect_hits(want, Answers(index, rays));
                 if (testing::Test::HasFatalFailure()) return;
@@ -174,11 +181,7 @@ TEST(Wide, CoherentRays) {
                 if (x % 16 == 5) ray.t_max = 0.9f;
                 rays.push_back(ray);
             }
-    std::vector<Hit<float>> want;
-    for (const auto& r : rays) {
-        NoVisits none;
-        want.push_back(closest_hit(index, r, KeepAll{}, none).value_or(Hit<float>()));
-    }
+    const auto want = hits_of_the_walk(index, rays);
     for (const auto set : instruction_sets()) {
         SCOPED_TRACE(set);
         const Using use(set);

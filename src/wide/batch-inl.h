@@ -15,10 +15,6 @@ public:
     template <class Answer>
     void answer(std::span<const Ray<float, 3>> rays, Answer* answers) {
         asked_ = rays;
-        if (scene_.tree.empty()) {
-            std::fill_n(answers, rays.size(), Answer());
-            return;
-        }
         int inner = 0, leaf = 0;
         for (int s = 0; s < slots_; ++s)
             if (begin(s, answers)) inner_[inner++] = s;
@@ -125,6 +121,6 @@ private:
     int top_[most_slots];
     std::size_t index_[most_slots];
     int inner_[2 * most_slots], leaf_[2 * most_slots];
-    std::int32_t stack_entry_[stack_places + 16];
-    std::uint32_t stack_word_[stack_places + 16];
+    std::int32_t stack_entry_[stack_places];
+    std::uint32_t stack_word_[stack_places];
 };

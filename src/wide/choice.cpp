@@ -4,7 +4,6 @@
 #include <string>
 
 #include <hedgerow/error.h>
-#include <hedgerow/spelling.h>
 #include <hedgerow/structures/bvh/wide/kernels.h>
 
 #include "compiled.h"

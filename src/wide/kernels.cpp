@@ -13,11 +13,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 
-#include <hedgerow/error.h>
-#include <hedgerow/spelling.h>
 #include <hedgerow/structures/bvh/build_tree.h>
 #include <hedgerow/structures/bvh/wide/kernels.h>
 

@@ -9,6 +9,10 @@ HWY_INLINE void prefetch_all(const T* from, std::size_t count) {
 
 template <int W, Wanted wanted, class Answer>
 KernelUse answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
+    if (scene.tree.empty()) {
+        std::fill_n(answers, rays.size(), Answer());
+        return {0, rays.size(), 0};
+    }
     constexpr std::size_t size = Packet<W, wanted>::size;
     // Packets pay where a leaf is entered by so many rays of one; it is known after so many leaves.
     constexpr std::size_t rays_a_leaf = 6, enough_leaves = 256;
@@ -19,23 +23,20 @@ KernelUse answer_many(const WideScene& scene, std::span<const Ray<float, 3>> ray
             Batch<W, wanted>(scene).answer(rays.subspan(waiting, next - waiting), answers + waiting);
         use.phased += next - waiting;
     };
-    if (!scene.tree.empty()) {
-        Packet<W, wanted> packet(scene);
-        while (rays.size() - next >= size) {
-            if (packet.leaves() > enough_leaves && packet.rays_in_leaves() < rays_a_leaf * packet.leaves())
-                break;
-            if (packet.take(rays.data() + next)) {
-                answer_waiting();
-                if (rays.size() - next >= 2 * size) {  // what comes next, while this packet computes
-                    prefetch_all(rays.data() + next + size, size);
-                    prefetch_all(answers + next + size, size);
-                }
-                packet.answer(answers + next);
-                use.packets += size;
-                waiting = next + size;
-            }
-            next += size;
+    Packet<W, wanted> packet(scene);
+    const auto pays = [&] {
+        return packet.leaves() <= enough_leaves || packet.rays_in_leaves() >= rays_a_leaf * packet.leaves();
+    };
+    for (; rays.size() - next >= size && pays(); next += size) {
+        if (!packet.take(rays.data() + next)) continue;
+        answer_waiting();
+        if (rays.size() - next >= 2 * size) {  // what comes next, while this packet computes
+            prefetch_all(rays.data() + next + size, size);
+            prefetch_all(answers + next + size, size);
         }
+        packet.answer(answers + next);
+        use.packets += size;
+        waiting = next + size;
     }
     next = rays.size();
     answer_waiting();

@@ -31,15 +31,10 @@ public:
     HWY_INLINE void answer(Answer* answers) {
         trace();
         for (int i = 0; i < size; ++i) {
-            const std::uint32_t element = element_[i];
-            if constexpr (wanted == Wanted::any) {
-                answers[i] = element != Hit<float>::none;
-            } else if (element == Hit<float>::none) {
-                answers[i] = {};
-            } else {
-                const std::uint32_t id = scene_.faces.empty() ? element : scene_.faces[element];
-                answers[i] = {t_limit_[i], u_[i], v_[i], id, 0, 0, element};
-            }
+            if constexpr (wanted == Wanted::any)
+                answers[i] = element_[i] != Hit<float>::none;
+            else
+                answers[i] = hit_of(scene_, t_limit_[i], u_[i], v_[i], element_[i]);
         }
     }
     /// Leaves entered so far, and rays that entered them.
@@ -193,7 +188,7 @@ private:
         stack.push(boxes_of(node), places);
     }
     HWY_INLINE void trace() {
-        constexpr int room = (bvh_max_depth + 1) * (W - 1) + 2 * W + 16;
+        constexpr int room = Stack::room(bvh_max_depth + 1);
         std::int32_t entries[room];
         std::uint32_t words[room];
         Stack stack(entries, words, 0, 0);

@@ -6,7 +6,7 @@ enum class Wanted { closest, any };
 template <int W, Wanted wanted>
 bool trace_one(const WideScene& scene, WideRay& ray) {
     using Stack = WalkStack<W>;
-    constexpr int room = (bvh_max_depth + 1) * (W - 1) + 2 * W + 16;
+    constexpr int room = Stack::room(bvh_max_depth + 1);
     std::int32_t entries[room];
     std::uint32_t words[room];
     Stack stack(entries, words, 0, 0);

@@ -36,13 +36,12 @@ class WalkStack {
 public:
     static constexpr std::uint32_t end = WideChild::none().word;
     // Places that a tree's walk takes: what is pushed is written as whole vectors.
-    static int room(int depth) { return (depth * (W - 1) + 2 * W + 15) / 16 * 16; }
+    static constexpr int room(int depth) { return (depth * (W - 1) + 2 * W + 15) / 16 * 16; }
 
     HWY_INLINE WalkStack(std::int32_t* entries, std::uint32_t* words, int bottom, int top)
         : entries_(entries), words_(words), bottom_(bottom), top_(top) {}
     HWY_INLINE void clear() {
         words_[bottom_] = end;
-        entries_[bottom_] = 0;
         top_ = bottom_ + 1;
     }
     HWY_INLINE int top() const { return top_; }
@@ -59,17 +58,6 @@ public:
         else
             push_each(boxes, children);
     }
-    // Takes off what a hit has put out of reach, so that nothing has to be asked when it is popped.
-    HWY_INLINE void sweep(float s_limit) {
-        const std::int32_t limit = std::bit_cast<std::int32_t>(s_limit);
-        const int top = top_;
-        top_ = bottom_ + 1;
-        for (int i = top_; i < top; ++i) {
-            const std::int32_t entry = entries_[i];
-            entries_[top_] = entry, words_[top_] = words_[i];
-            top_ += entry <= limit;
-        }
-    }
     // The same in any order, and without their entries: for who stops at the first hit.
     HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
         if constexpr (Boxes<W>::parts == 1 && !compresses) {
@@ -83,6 +71,17 @@ public:
         } else {
             for (unsigned entered = boxes.bits(); entered != 0; entered &= entered - 1)
                 words_[top_++] = children[std::countr_zero(entered)];
+        }
+    }
+    // Takes off what a hit has put out of reach, so that nothing has to be asked when it is popped.
+    HWY_INLINE void sweep(float s_limit) {
+        const std::int32_t limit = std::bit_cast<std::int32_t>(s_limit);
+        const int top = top_;
+        top_ = bottom_ + 1;
+        for (int i = top_; i < top; ++i) {
+            const std::int32_t entry = entries_[i];
+            entries_[top_] = entry, words_[top_] = words_[i];
+            top_ += entry <= limit;
         }
     }
 

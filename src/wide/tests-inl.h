@@ -197,8 +197,11 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
     return found;
 }
 
+HWY_INLINE Hit<float> hit_of(const WideScene& scene, float t, float u, float v, std::uint32_t element) {
+    if (element == Hit<float>::none) return {};
+    const std::uint32_t id = scene.faces.empty() ? element : scene.faces[element];
+    return {t, u, v, id, 0, 0, element};
+}
 HWY_INLINE Hit<float> hit_of(const WideScene& scene, const WideRay& ray) {
-    if (ray.element == Hit<float>::none) return {};
-    const std::uint32_t id = scene.faces.empty() ? ray.element : scene.faces[ray.element];
-    return {ray.t_limit, ray.u, ray.v, id, 0, 0, ray.element};
+    return hit_of(scene, ray.t_limit, ray.u, ray.v, ray.element);
 }
