@@ -18,6 +18,7 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
         if ((word & WideChild::leaf_bit) == 0) {
             const std::byte* const node = nodes + word * WideNodes<float, 3>::stride_of(W);
             const std::uint32_t* const children = children_of<W>(node);
+            __builtin_prefetch(children);
             const Boxes<W> boxes(node, slabs, ray.s_limit);
             const unsigned entered = boxes.bits(), others = entered & (entered - 1);
             if (entered != 0) {
@@ -28,8 +29,7 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
                     continue;
                 }
                 if constexpr (wanted == Wanted::any) {
-                    stack.push_unsorted(boxes, children);
-                    word = stack.pop();
+                    word = stack.push_others_unsorted(boxes, children);
                     continue;
                 }
                 if ((others & (others - 1)) == 0) {
@@ -41,7 +41,8 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
                     word = children[swap ? second : first];
                     continue;
                 }
-                stack.push(boxes, children);
+                word = stack.push_others(boxes, children);
+                continue;
             }
         } else {
             if (word == Stack::end) return ray.element != Hit<float>::none;

@@ -54,24 +54,44 @@ public:
     // The children that were entered, the nearest on top.
     HWY_INLINE void push(const Boxes<W>& boxes, const std::uint32_t* children) {
         if constexpr (Boxes<W>::parts == 1)
-            push_sorted(boxes, children);
+            push_sorted(hn::RebindMask(i32, boxes.entered[0]), keys_of(boxes), children);
         else
             push_each(boxes, children);
     }
-    // The same in any order, and without their entries: for who stops at the first hit.
-    HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
-        if constexpr (Boxes<W>::parts == 1 && !compresses) {
-            push_sorted(boxes, children);  // which takes less than a compress by table
-        } else if constexpr (Boxes<W>::parts == 1) {
-            constexpr hn::RebindToSigned<Floats<W>> i32;
-            const auto mask = hn::RebindMask(i32, boxes.entered[0]);
-            hn::StoreU(hn::Compress(hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children)), mask),
-                       i32, reinterpret_cast<std::int32_t*>(words_) + top_);
-            top_ += static_cast<int>(hn::CountTrue(i32, mask));
+    // The same but for the nearest, whose word is returned: it is known before the others are sorted, so that
+    // the walk can go on meanwhile.
+    HWY_INLINE std::uint32_t push_others(const Boxes<W>& boxes, const std::uint32_t* children) {
+        if constexpr (Boxes<W>::parts == 1) {
+            const auto entered = hn::RebindMask(i32, boxes.entered[0]);
+            const Lanes keys = keys_of(boxes);
+            const Lanes nearest = hn::MinOfLanes(
+                i32, hn::IfThenElse(entered, keys, hn::Set(i32, std::numeric_limits<std::int32_t>::max())));
+            push_sorted(hn::And(entered, hn::Ne(keys, nearest)), keys, children);
+            return children[hn::GetLane(nearest) & (W - 1)];
         } else {
-            for (unsigned entered = boxes.bits(); entered != 0; entered &= entered - 1)
-                words_[top_++] = children[std::countr_zero(entered)];
+            push_each(boxes, children);
+            return pop();
         }
+    }
+    // Both in any order, and without their entries: for who stops at the first hit.
+    HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
+        if constexpr (Boxes<W>::parts > 1)
+            put_each_unsorted(boxes.bits(), children);
+        else if constexpr (compresses)
+            put_unsorted(hn::RebindMask(i32, boxes.entered[0]), children);
+        else
+            push(boxes, children);  // a sort takes less than a compress by table
+    }
+    HWY_INLINE std::uint32_t push_others_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
+        if constexpr (Boxes<W>::parts == 1 && !compresses) return push_others(boxes, children);
+        const unsigned entered = boxes.bits();
+        const int last = std::bit_width(entered) - 1;
+        const std::uint64_t others = entered ^ (1u << last);
+        if constexpr (Boxes<W>::parts > 1)
+            put_each_unsorted(static_cast<unsigned>(others), children);
+        else
+            put_unsorted(hn::LoadMaskBits(i32, reinterpret_cast<const std::uint8_t*>(&others)), children);
+        return children[last];
     }
     // Takes off what a hit has put out of reach, so that nothing has to be asked when it is popped.
     HWY_INLINE void sweep(float s_limit) {
@@ -88,34 +108,59 @@ public:
 private:
     // Whether compress is an instruction.
     static constexpr bool compresses = HWY_TARGET == HWY_AVX3;
+    static constexpr hn::RebindToSigned<Floats<W>> i32{};
+    using Lanes = hn::Vec<hn::RebindToSigned<Floats<W>>>;
 
-    HWY_INLINE void push_sorted(const Boxes<W>& boxes, const std::uint32_t* children) {
-        constexpr hn::RebindToSigned<Floats<W>> i32;
-        // The lowest bits of a key tell the child.
-        const auto lane = hn::Iota(i32, 0), low = hn::Set(i32, W - 1), none = hn::Set(i32, -1);
-        const auto mask = hn::RebindMask(i32, boxes.entered[0]);
-        auto key =
-            hn::IfThenElse(mask, hn::Or(hn::AndNot(low, hn::BitCast(i32, boxes.entry[0])), lane), none);
-        const int count = static_cast<int>(hn::CountTrue(i32, mask));
-        const auto child = hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children));
-        if constexpr (W == 16) {
-            if (count <= 8) [[likely]] {
-                constexpr hn::Half<hn::RebindToSigned<Floats<W>>> half;
-                const auto few =
-                    hn::IfThenElse(hn::FirstN(half, static_cast<std::size_t>(count)),
-                                   hn::LowerHalf(half, hn::Compress(key, mask)), hn::Set(half, -1));
-                key = hn::ZeroExtendVector(i32, sorted_descending(half, few));
-                return put(half, count, hn::LowerHalf(half, key),
-                           hn::LowerHalf(half, ordered(i32, child, key)));
-            }
+    // The lowest bits of a key tell the child.
+    static HWY_INLINE Lanes keys_of(const Boxes<W>& boxes) {
+        const auto entry = hn::BitCast(i32, boxes.entry[0]);
+        return hn::Or(hn::AndNot(hn::Set(i32, W - 1), entry), hn::Iota(i32, 0));
+    }
+    HWY_INLINE void push_sorted(hn::Mask<decltype(i32)> entered, Lanes keys, const std::uint32_t* children) {
+        const Lanes child = hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children));
+        const int count = static_cast<int>(hn::CountTrue(i32, entered));
+        if constexpr (compresses && W == 16) {
+            const Lanes few = hn::Compress(keys, entered);
+            if (count <= 4) [[likely]]
+                return put_sorted(hn::Half<hn::Half<decltype(i32)>>(), few, count, child);
+            if (count <= 8) [[likely]]
+                return put_sorted(hn::Half<decltype(i32)>(), few, count, child);
         }
-        key = sorted_descending(i32, key);
-        put(i32, count, key, ordered(i32, child, key));
+        const Lanes sorted = sorted_descending(i32, hn::IfThenElse(entered, keys, hn::Set(i32, -1)));
+        put(i32, count, sorted, ordered(child, sorted));
+    }
+    HWY_INLINE void put_unsorted(hn::Mask<decltype(i32)> entered, const std::uint32_t* children) {
+        const Lanes child = hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children));
+        hn::StoreU(hn::Compress(child, entered), i32, reinterpret_cast<std::int32_t*>(words_) + top_);
+        top_ += static_cast<int>(hn::CountTrue(i32, entered));
+    }
+    HWY_INLINE void put_each_unsorted(unsigned entered, const std::uint32_t* children) {
+        for (; entered != 0; entered &= entered - 1) words_[top_++] = children[std::countr_zero(entered)];
+    }
+    // Sorts and puts the first `count` keys, in as many lanes as D has.
+    template <class D>
+    HWY_INLINE void put_sorted(D d, Lanes keys, int count, Lanes children) {
+        const auto some = hn::FirstN(d, static_cast<std::size_t>(count));
+        const auto sorted = sorted_descending(d, hn::IfThenElse(some, lowest(d, keys), hn::Set(d, -1)));
+        put(d, count, sorted, lowest(d, ordered(children, widened(i32, sorted))));
+    }
+    template <class D, class V>
+    static HWY_INLINE hn::Vec<D> lowest(D d, V v) {
+        if constexpr (std::is_same_v<hn::Vec<D>, V>)
+            return v;
+        else
+            return lowest(d, hn::LowerHalf(v));
+    }
+    template <class D, class V>
+    static HWY_INLINE hn::Vec<D> widened(D d, V v) {
+        if constexpr (std::is_same_v<hn::Vec<D>, V>)
+            return v;
+        else
+            return hn::ZeroExtendVector(d, widened(hn::Half<D>(), v));
     }
     // The children in the order of their keys.
-    template <class D, class V>
-    static HWY_INLINE V ordered(D d, V children, V keys) {
-        return hn::TableLookupLanes(children, hn::IndicesFromVec(d, hn::And(keys, hn::Set(d, W - 1))));
+    static HWY_INLINE Lanes ordered(Lanes children, Lanes keys) {
+        return hn::TableLookupLanes(children, hn::IndicesFromVec(i32, hn::And(keys, hn::Set(i32, W - 1))));
     }
     template <class D, class V>
     HWY_INLINE void put(D d, int count, V keys, V children) {
