@@ -51,18 +51,19 @@ using Vec2d = Vec<double, 2>;
 using Vec3f = Vec<float, 3>;
 using Vec3d = Vec<double, 3>;
 
-/// Applies f to each component (or pair of components).
+/// Applies f to each component (or pair of components). (No loops: at -O2 g++ 12 keeps them, and the vectors
+/// in memory.)
 template <class T, int D, class F>
 constexpr Vec<T, D> map(const Vec<T, D>& a, F f) {
-    Vec<T, D> r;
-    for (int i = 0; i < D; ++i) r[i] = f(a[i]);
-    return r;
+    if constexpr (D == 1) return Vec<T, D>(f(a[0]));
+    if constexpr (D == 2) return {f(a[0]), f(a[1])};
+    if constexpr (D == 3) return {f(a[0]), f(a[1]), f(a[2])};
 }
 template <class T, int D, class F>
 constexpr Vec<T, D> map(const Vec<T, D>& a, const Vec<T, D>& b, F f) {
-    Vec<T, D> r;
-    for (int i = 0; i < D; ++i) r[i] = f(a[i], b[i]);
-    return r;
+    if constexpr (D == 1) return Vec<T, D>(f(a[0], b[0]));
+    if constexpr (D == 2) return {f(a[0], b[0]), f(a[1], b[1])};
+    if constexpr (D == 3) return {f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])};
 }
 
 template <class T, int D>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <span>
 #include <type_traits>
 
@@ -33,7 +32,7 @@ public:
         Packed& p = triangles_[i];
         for (int k = 0; k < 3; ++k)
             p.row[3 * k] = t.a[k], p.row[3 * k + 1] = t.b[k], p.row[3 * k + 2] = t.c[k];
-        p.row[9] = std::bit_cast<T>(static_cast<Bits>(id));
+        p.row[9] = number_as_lane<T>(id);
     }
 
     /// The filter of the watertight test on all three edges at once; what passes goes to `meet_exactly`.
@@ -62,11 +61,10 @@ public:
     }
 
 private:
-    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
     struct Packed {
-        T row[10];  // three of each axis, and the id's bits
+        T row[10];  // three of each axis, and the id
 
-        PrimitiveId id() const { return static_cast<PrimitiveId>(std::bit_cast<Bits>(row[9])); }
+        PrimitiveId id() const { return number_of_lane(row[9]); }
 
         ShearedCorner<T> corner(const WatertightRay<T>& ray, int i) const {
             return shear(ray, Vec<T, 3>(row[i], row[3 + i], row[6 + i]));

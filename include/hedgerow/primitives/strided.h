@@ -26,7 +26,16 @@ public:
     T operator[](std::size_t i) const {
         assert(i < size_);
         T element;
-        std::memcpy(static_cast<void*>(&element), data_ + i * stride_, sizeof(T));
+        const std::byte* const from = data_ + i * stride_;
+        if constexpr (requires { element[0]; }) {
+            // Number by number: of one copy g++ 12 takes each back from the stack, and waits for it there.
+            using Number = std::remove_reference_t<decltype(element[0])>;
+            Number* const numbers = &element[0];
+            for (std::size_t k = 0; k < sizeof(T) / sizeof(Number); ++k)
+                std::memcpy(numbers + k, from + k * sizeof(Number), sizeof(Number));
+        } else {
+            std::memcpy(static_cast<void*>(&element), from, sizeof(T));
+        }
         return element;
     }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +31,11 @@ struct LaneBox {
 
     void expand(const LaneBox& b) { low = min(low, b.low), high = max(high, b.high); }
     void expand(Lanes<T> p) { low = min(low, p), high = max(high, p); }
+    /// The same if `apart` is 0; if it is infinity, p is passed over.
+    void expand(Lanes<T> p, T apart) {
+        const auto away = Lanes<T>::all(apart);
+        low = min(low, p + away), high = max(high, p - away);
+    }
     /// As Box::half_area, of a box that is not empty.
     template <int D>
     T half_area() const {
@@ -56,17 +60,15 @@ struct LaneBox {
 /// A primitive as builders move it about: its box, and its id in the fourth lane (of `low`).
 template <std::floating_point T, int D>
 struct Reference {
-    using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-
     alignas(16) T low[4];
     T high[4];
 
     Reference() = default;  // bare, to be filled
     Reference(const Box<T, D>& b, PrimitiveId id) : low{}, high{} {
         for (int k = 0; k < D; ++k) low[k] = b.low[k], high[k] = b.high[k];
-        low[3] = std::bit_cast<T>(static_cast<Bits>(id));
+        low[3] = number_as_lane<T>(id);
     }
-    PrimitiveId id() const { return static_cast<PrimitiveId>(std::bit_cast<Bits>(low[3])); }
+    PrimitiveId id() const { return number_of_lane(low[3]); }
     LaneBox<T> lanes() const { return {Lanes<T>::load(low), Lanes<T>::load(high)}; }
     Box<T, D> box() const { return lanes().template box<D>(); }
     /// Twice the center: halving would only cost.

@@ -31,7 +31,7 @@ struct BuildNode {
 
 template <std::floating_point T, int D>
 struct BuildTree {
-    BareVector<BuildNode<T, D>> nodes;  // node 0 is the root; none if there are no items; there may be gaps
+    SparseVector<BuildNode<T, D>> nodes;  // node 0 is the root; none if there are no items; there may be gaps
     std::uint32_t leaves = 0;
     std::vector<PrimitiveId> items;
 };

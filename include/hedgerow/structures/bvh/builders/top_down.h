@@ -34,7 +34,7 @@ struct Range {
 /// leaf; otherwise it has arranged its references so that `left` comes before `right`) and `halve(range,
 /// left, right)`, which splits by count and always succeeds; one whose ranges have room also `share_room`.
 /// Subtrees over a capacity of n own 2n − 1 places in the list of nodes, so the tree is the same however many
-/// threads build it.
+/// threads build it; small ones, of one thread each, fill theirs without gaps.
 template <std::floating_point T, int D, class Splitter>
 class TopDown {
 public:
@@ -66,14 +66,15 @@ private:
             return 1;
         }
         node.left = at + 1;
-        node.right = at + 2 * left.capacity();
         std::uint32_t on_left = 0, on_right = 0;
         const auto grow_left = [&] { on_left = grow(left, node.left, depth + 1); };
         const auto grow_right = [&] { on_right = grow(right, node.right, depth + 1); };
         if (range.size() > 4096) {
+            node.right = at + 2 * left.capacity();
             executor_.both(grow_left, grow_right);
         } else {
             grow_left();
+            node.right = at + 2 * on_left;  // so many nodes on the left, and one
             grow_right();
         }
         return node.first = on_left + on_right;
@@ -155,19 +156,28 @@ public:
 
 protected:
     /// Brings those that go left before the others and gathers both sides' centers, but not their boxes.
-    /// False if all are on one side.
+    /// False if all are on one side. (Lomuto's partition, without a branch: which side a primitive goes to is
+    /// guessed wrong as often as not.)
     template <class GoesLeft>
     bool partition(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right, GoesLeft goes_left) {
+        constexpr T infinity = std::numeric_limits<T>::infinity();
+        constexpr T apart[] = {infinity, T(0), infinity};  // from the left side, by whether it goes there
         left = {range.first, range.first};
         right = {range.last, range.last};
-        while (true) {
-            while (left.last < right.first && goes_left(references_[left.last]))
-                left.centers2.expand(references_[left.last++].center2());
-            while (left.last < right.first && !goes_left(references_[right.first - 1]))
-                right.centers2.expand(references_[--right.first].center2());
-            if (left.last == right.first) return left.size() > 0 && right.size() > 0;
-            std::swap(references_[left.last], references_[right.first - 1]);
+        auto on_left = left.centers2, on_right = right.centers2;
+        std::uint32_t border = range.first;
+        for (std::uint32_t i = range.first; i < range.last; ++i) {
+            const Reference<T, D> r = references_[i];
+            const bool goes = goes_left(r);
+            references_[i] = references_[border];
+            references_[border] = r;
+            border += goes;
+            on_left.expand(r.center2(), apart[goes]);
+            on_right.expand(r.center2(), apart[1 + goes]);
         }
+        left.last = right.first = border;
+        left.centers2 = on_left, right.centers2 = on_right;
+        return left.size() > 0 && right.size() > 0;
     }
 
     ReferenceList<T, D> references_;

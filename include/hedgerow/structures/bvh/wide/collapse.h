@@ -78,7 +78,7 @@ private:
             weigh_left();
             weigh_right();
         }
-        const Costs on_left = costs(left(n)), on_right = costs(right(n));
+        const Subtree on_left = subtree(left(n)), on_right = subtree(right(n));
         Costs least{};  // nothing, where every leaf may be a child
         least[0] = cost_of_opening(n) + split(on_left, on_right, width_).cost;
         const int most = std::min(width_ - 1, static_cast<int>(std::min(at(n).leaves() - 1, 15u)));
@@ -100,12 +100,21 @@ private:
             std::copy_n(costs_.begin() + static_cast<std::ptrdiff_t>(n.number * row_), row_, least.begin());
         return least;
     }
-    /// The best way to give at least one of so many children to each side.
-    static Split split(const Costs& left, const Costs& right, int children) {
+    struct Subtree {
+        Costs least;
+        int leaves;
+    };
+    Subtree subtree(Node n) const {
+        return {costs(n), static_cast<int>(std::min<std::uint32_t>(at(n).leaves(), most_wide))};
+    }
+    /// The best way to give at least one of so many children to each side, and to none more than it has
+    /// leaves.
+    static Split split(const Subtree& left, const Subtree& right, int children) {
+        const int given = std::min(children, left.leaves + right.leaves);
         Split best{std::numeric_limits<float>::infinity(), 1};
-        for (int i = 1; i < children; ++i) {
-            const float cost =
-                left[static_cast<std::size_t>(i - 1)] + right[static_cast<std::size_t>(children - i - 1)];
+        for (int i = std::max(1, given - right.leaves); i <= std::min(given - 1, left.leaves); ++i) {
+            const float cost = left.least[static_cast<std::size_t>(i - 1)] +
+                               right.least[static_cast<std::size_t>(given - i - 1)];
             if (cost < best.cost) best = {cost, i};
         }
         return best;
@@ -145,7 +154,7 @@ private:
             divide(n, children, found);
     }
     void divide(Node n, int children, Children& found) const {
-        const int on_left = split(costs(left(n)), costs(right(n)), children).left;
+        const int on_left = split(subtree(left(n)), subtree(right(n)), children).left;
         gather(left(n), on_left, found);
         gather(right(n), children - on_left, found);
     }
