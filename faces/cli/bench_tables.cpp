@@ -117,12 +117,11 @@ std::string differs_text(const Row& row) {
 
 /// Everyone's rates, a row for each question of a set.
 Table all_table(const SceneCosts& s) {
-    Table t{
-        s.name + ": all trees",
-        "Mrays/s; differs: the rays of the sample that a peer answers otherwise, by its first tree and by "
-        "its robust one",
-        {"rays"},
-        {}};
+    Table t{s.name + ": all trees", "Mrays/s", {"rays"}, {}};
+    if (!s.their_builds.empty())
+        t.note +=
+            "; differs: the rays of the sample that a peer answers otherwise, by its first tree and by its "
+            "robust one";
     const auto column = [&t](const std::string& name) {
         auto at = std::find(t.columns.begin() + 1, t.columns.end(), name);
         if (at == t.columns.end()) at = t.columns.insert(at, name);
