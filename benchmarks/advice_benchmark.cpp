@@ -10,8 +10,10 @@
 #include <hedgerow/compare/lists.h>
 #include <hedgerow/compare/measure.h>
 #include <hedgerow/error.h>
+#include <hedgerow/index.h>
+#include <hedgerow/scenes/generate.h>
 
-#include "ray_sets.h"
+#include "measure/machine.h"
 
 using namespace hedgerow;
 using namespace hedgerow::compare;
@@ -61,8 +63,8 @@ int main(int count, char** arguments) {
                  "gen:terrain:30000",  "gen:soup:5000",        "gen:cornell-box:3000",
                  "gen:teapot:40000",   "gen:spheres:20000",    "gen:points:30000",
                  "gen:points2d:30000", "gen:clusters2d:30000", "gen:segments2d:20000"};
-    std::printf("%s, g++ %d.%d, one thread; x: the advised one's figure as a multiple of the best one's\n\n",
-                benchmark::processor().c_str(), __GNUC__, __GNUC_MINOR__);
+    std::printf("%s, %s, one thread; x: the advised one's figure as a multiple of the best one's\n\n",
+                benchmark::processor().c_str(), benchmark::compiler().c_str());
     std::printf(
         "| scene                      | for               | advised                  | best                  "
         "   | x     |\n");

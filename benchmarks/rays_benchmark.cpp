@@ -1,9 +1,12 @@
 /// Closest-hit rates and build times of the BVH, beside Embree in the same run when it is there.
 ///
 ///   rays_benchmark [SCENE ...]     a mesh file or gen:NAME[:SIZE]; default: gen:teapot-in-stadium
-#include "contest.h"
-#include "embree.h"
-#include "ray_sets.h"
+#include <hedgerow/index.h>
+
+#include "measure/contest.h"
+#include "measure/machine.h"
+#include "measure/ray_sets.h"
+#include "peers/peer.h"
 
 using namespace hedgerow;
 using namespace hedgerow::benchmark;
@@ -21,11 +24,11 @@ void builds(const TriangleMesh<float>& mesh) {
     }
     std::printf("  binned build  %7.1f ms on one thread, %7.1f ms on two: %.2f x as fast\n", one * 1e3,
                 two * 1e3, one / two);
-#ifdef HEDGEROW_HAS_EMBREE
-    const double medium = embree_build_seconds(repeats, mesh);
-    std::printf("  Embree medium %7.1f ms on one thread: ours takes %.2f of it\n", medium * 1e3,
-                one / medium);
-#endif
+    for (const auto& peer : peers()) {
+        const double medium = build_seconds(*peer, mesh, repeats);
+        std::printf("  %s medium %7.1f ms on one thread: ours takes %.2f of it\n", peer->name().c_str(),
+                    medium * 1e3, one / medium);
+    }
 }
 
 void traces(const TriangleMesh<float>& mesh) {
@@ -34,10 +37,10 @@ void traces(const TriangleMesh<float>& mesh) {
                 double(index.bytes()) / double(mesh.size()), index.structure().depth(),
                 index.structure().sah_cost());
     const auto sets = ray_sets(mesh, index.bounds(), 1024, 1 << 19);
-#ifdef HEDGEROW_HAS_EMBREE
-    const Embree embree(mesh, false, 1, RTC_BUILD_QUALITY_MEDIUM),
-        robust(mesh, true, 1, RTC_BUILD_QUALITY_MEDIUM);
-#endif
+    std::vector<std::unique_ptr<PeerIndex>> theirs;
+    for (const auto& peer : peers())
+        for (const char* how : {"medium", "robust"})
+            theirs.push_back(peer->build(mesh, build_named(*peer, how), {}));
     std::printf("  %-8s %9s %8s %8s %8s", "rays", "Mrays/s", "nodes", "leaves", "prims");
     std::printf("   Embree Mrays/s (ratio)   robust (ratio)\n");
     for (const auto& [name, rays] : sets) {
@@ -48,10 +51,8 @@ void traces(const TriangleMesh<float>& mesh) {
             for (const auto& r : rays) found += closest_hit(index, r).has_value();
             return found;
         }};
-#ifdef HEDGEROW_HAS_EMBREE
-        contenders.emplace_back([&, &rays = rays] { return embree.trace(rays); });
-        contenders.emplace_back([&, &rays = rays] { return robust.trace(rays); });
-#endif
+        for (const auto& peer : theirs)
+            contenders.emplace_back([&peer = *peer, &rays = rays] { return peer.closest(rays); });
         const auto rate = rates(repeats, rays.size(), contenders);
         const double n = double(rays.size());
         std::printf("  %-8s %9.2f %8.2f %8.2f %8.2f", name.c_str(), rate[0], double(v.nodes) / n,
@@ -65,8 +66,7 @@ void traces(const TriangleMesh<float>& mesh) {
 }  // namespace
 
 int main(int count, char** arguments) {
-    std::printf("%s, g++ %d.%d, one thread, medians of %d\n", processor().c_str(), __GNUC__, __GNUC_MINOR__,
-                repeats);
+    std::printf("%s, %s, one thread, medians of %d\n", processor().c_str(), compiler().c_str(), repeats);
     std::vector<std::string> names(arguments + 1, arguments + count);
     if (names.empty()) names = {"gen:teapot-in-stadium"};
     for (const auto& name : names) {

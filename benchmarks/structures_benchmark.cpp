@@ -5,12 +5,14 @@
 ///   scene
 #include <unordered_set>
 
+#include <hedgerow/any_index.h>
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/kdtree/kdtree.h>
 
-#include "contest.h"
-#include "embree.h"
-#include "ray_sets.h"
+#include "measure/contest.h"
+#include "measure/machine.h"
+#include "measure/ray_sets.h"
+#include "peers/peer.h"
 
 using namespace hedgerow;
 using namespace hedgerow::benchmark;
@@ -43,10 +45,10 @@ using Built = std::unique_ptr<AnyIndex<float, 3>>;
 
 std::vector<Built> builds(const TriangleMesh<float>& mesh) {
     double embree = 0;
-#ifdef HEDGEROW_HAS_EMBREE
-    embree = embree_build_seconds(repeats, mesh);
-    std::printf("\nEmbree medium: %.1f ms on one thread\n", embree * 1e3);
-#endif
+    for (const auto& peer : peers()) {
+        embree = build_seconds(*peer, mesh, repeats);
+        std::printf("\n%s medium: %.1f ms on one thread\n", peer->name().c_str(), embree * 1e3);
+    }
     std::printf(
         "\n| structure                   | build ms | of Embree | two threads | B a prim | items a prim |\n"
         "|-----------------------------|----------|-----------|-------------|----------|--------------|\n");
@@ -162,7 +164,7 @@ void mailboxes(const TriangleMesh<float>& mesh, const Box3f& box) {
 }  // namespace
 
 int main(int count, char** arguments) try {
-    std::printf("%s, g++ %d.%d, medians of %d\n", processor().c_str(), __GNUC__, __GNUC_MINOR__, repeats);
+    std::printf("%s, %s, medians of %d\n", processor().c_str(), compiler().c_str(), repeats);
     std::vector<std::string> names(arguments + 1, arguments + count);
     if (names.empty()) names = {"gen:terrain:2000000", "gen:soup:200000"};
     for (const auto& name : names) {

@@ -2,7 +2,12 @@
 /// prediction beside what is counted.
 ///
 ///   traversal_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:200000
-#include "ray_sets.h"
+#include <hedgerow/any_index.h>
+#include <hedgerow/scenes/random.h>
+
+#include "measure/contest.h"
+#include "measure/machine.h"
+#include "measure/ray_sets.h"
 
 using namespace hedgerow;
 using namespace hedgerow::benchmark;
@@ -78,8 +83,7 @@ void prediction(const TriangleMesh<float>& mesh, const RaySet& primary) {
 }  // namespace
 
 int main(int count, char** arguments) {
-    std::printf("%s, g++ %d.%d, one thread, medians of %d\n", processor().c_str(), __GNUC__, __GNUC_MINOR__,
-                repeats);
+    std::printf("%s, %s, one thread, medians of %d\n", processor().c_str(), compiler().c_str(), repeats);
     std::vector<std::string> names(arguments + 1, arguments + count);
     if (names.empty()) names = {"gen:teapot-in-stadium", "gen:soup:200000"};
     for (const auto& name : names) {

@@ -4,9 +4,12 @@
 ///
 ///   volumes_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:100000
 ///   gen:hairball:20000; a mesh file is a scene
-#include "ray_sets.h"
-
+#include <hedgerow/index.h>
 #include <hedgerow/structures/bvh/volume_bvh.h>
+
+#include "measure/contest.h"
+#include "measure/machine.h"
+#include "measure/ray_sets.h"
 
 using namespace hedgerow;
 using namespace hedgerow::benchmark;
@@ -96,8 +99,8 @@ void table(const TriangleMesh<float>& mesh, double clock) {
 
 int main(int count, char** arguments) try {
     const double clock = clock_rate();
-    std::printf("%s at %.2f GHz, g++ %d.%d, one thread, medians of %d; cycles: a test of one volume\n",
-                processor().c_str(), clock, __GNUC__, __GNUC_MINOR__, repeats);
+    std::printf("%s at %.2f GHz, %s, one thread, medians of %d; cycles: a test of one volume\n",
+                processor().c_str(), clock, compiler().c_str(), repeats);
     std::vector<std::string> names(arguments + 1, arguments + count);
     if (names.empty()) names = {"gen:teapot-in-stadium", "gen:soup:100000", "gen:hairball:20000"};
     for (const auto& name : names) {

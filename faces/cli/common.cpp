@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 
 #include <unistd.h>
 
@@ -38,6 +39,11 @@ void ProgressLine::show(std::uint64_t done, std::uint64_t total) {
         fmt::print(stderr, "\r\033[K{} {}  {:.3g}/s", what_, done, rate);
 }
 
+void ProgressLine::say(const std::string& doing) {
+    const std::lock_guard lock(mutex_);
+    if (shown_) fmt::print(stderr, "\r\033[K{} {}", what_, doing);
+}
+
 std::string generated_name(const Common& c) {
     return c.scene.starts_with("gen:") ? parse_scene_spec(c.scene).name : std::string();
 }
@@ -48,6 +54,16 @@ void check_writable(const std::string& path) {
         throw InputError(fmt::format("{}: there is no folder {}; make it first", path, folder.string()));
     if (std::filesystem::is_directory(path) || access(folder.c_str(), W_OK) != 0)
         throw InputError(path + ": cannot be written; choose another output");
+}
+
+void save_text(const std::string& path, const std::string& text) {
+    const std::string beside = path + ".part";
+    std::ofstream out(beside, std::ios::binary);
+    out << text;
+    out.close();
+    std::error_code failed;
+    if (out) std::filesystem::rename(beside, path, failed);
+    if (!out || failed) throw InputError(path + ": cannot be written; choose another output");
 }
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t letters) {

@@ -24,6 +24,8 @@ public:
     ProgressLine(std::string what, bool quiet);
     ~ProgressLine();
     Progress progress();
+    /// Says what is being done, where nobody knows how much there is to do.
+    void say(const std::string& doing);
 
 private:
     void show(std::uint64_t done, std::uint64_t total);
@@ -65,5 +67,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t letters);
 
 /// Throws InputError before any work is done for a path that cannot be written.
 void check_writable(const std::string& path);
+/// Beside the path first, so that what was there is lost only for something whole. Throws InputError.
+void save_text(const std::string& path, const std::string& text);
 
 }  // namespace hedgerow::cli

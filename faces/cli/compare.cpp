@@ -1,7 +1,5 @@
 /// hedgerow compare: every structure, every query; what each costs, and which to use.
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -166,17 +164,6 @@ void run_scale(const CompareArguments& a, Comparing& comparing) {
             },
             generate<T>(spec));
     }
-}
-
-/// Beside the path first, so that what was there is lost only for something whole.
-void save_text(const std::string& path, const std::string& text) {
-    const std::string beside = path + ".part";
-    std::ofstream out(beside, std::ios::binary);
-    out << text;
-    out.close();
-    std::error_code failed;
-    if (out) std::filesystem::rename(beside, path, failed);
-    if (!out || failed) throw InputError(path + ": cannot be written; choose another output");
 }
 
 void show(const CompareArguments& a, const CompareReport& r) {

@@ -8,6 +8,7 @@
 #include <hedgerow/compare/break_even.h>
 
 #include "compare_report.h"
+#include "page.h"
 #include "plot.h"
 
 namespace hedgerow::cli {
@@ -15,28 +16,6 @@ namespace hedgerow::cli {
 using namespace compare;
 
 namespace {
-
-constexpr const char* style =
-    R"(body { font: 15px/1.45 sans-serif; color: #222; max-width: 1000px; margin: 2em auto; padding: 0 1em }
-h1 { font-size: 1.5em } h2 { font-size: 1.2em; margin-top: 2em }
-table { border-collapse: collapse; font-size: 13px } div.wide { overflow-x: auto; margin: 1em 0 }
-th, td { padding: 2px 9px; text-align: right; white-space: nowrap; border-bottom: 1px solid #e4e4e4 }
-th:first-child, td:first-child { text-align: left } caption { text-align: left; padding: 4px 0; color: #555 }
-caption b { color: #222 } svg { max-width: 100%; height: auto; margin: 1em 0; display: block }
-li { margin: 0.5em 0 } p.note { color: #555; margin: 0.2em 0 })";
-
-std::string html_of(const Table& t) {
-    const auto cells = [](const std::vector<std::string>& all, const char* tag) {
-        std::string row = "<tr>";
-        for (const auto& c : all) row += fmt::format("<{0}>{1}</{0}>", tag, escaped(c));
-        return row + "</tr>\n";
-    };
-    std::string html = fmt::format(
-        "<div class=\"wide\"><table>\n<caption><b>{}</b>: {}</caption>\n<thead>{}</thead>\n<tbody>\n",
-        escaped(t.title), escaped(t.note), cells(t.columns, "th"));
-    for (const auto& row : t.rows) html += cells(row, "td");
-    return html + "</tbody></table></div>\n";
-}
 
 /// Build and queries together over how many queries, against the one that costs least by then: who is at 1
 /// is best there.
@@ -169,12 +148,7 @@ std::string growth_plot(const CompareReport& r, std::string_view figure) {
 }  // namespace
 
 std::string page_of(const CompareReport& r) {
-    const std::string title = "Structures over " + r.scene;
-    std::string html = fmt::format(
-        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head><meta "
-        "charset=\"utf-8\"/>\n"
-        "<title>{0}</title>\n<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n",
-        escaped(title), style);
+    std::string html = page_opened("Structures over " + r.scene);
     if (r.comparison) html += fmt::format("<p>{} {}.</p>\n", r.comparison->size, r.comparison->primitive);
     for (const auto& n : r.notes) html += fmt::format("<p class=\"note\">{}.</p>\n", escaped(n));
     if (const auto lines = advice_lines(r); !lines.empty()) {
@@ -190,7 +164,7 @@ std::string page_of(const CompareReport& r) {
         for (const auto figure : growth_figures) html += growth_plot(r, figure);
     html += "<h2>Tables</h2>\n";
     for (const Table& t : tables_of(r)) html += html_of(t);
-    return html + "</body>\n</html>\n";
+    return html + page_closed();
 }
 
 }  // namespace hedgerow::cli

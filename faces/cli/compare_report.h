@@ -11,6 +11,8 @@
 #include <hedgerow/compare/growth.h>
 #include <hedgerow/compare/lists.h>
 
+#include "table.h"
+
 namespace hedgerow::cli {
 
 struct CompareReport {
@@ -26,19 +28,11 @@ struct CompareReport {
     std::vector<compare::Comparison> by_size;
 };
 
-/// Columns of text under titles; the first is set to the left, the others to the right.
-struct Table {
-    std::string title, note;
-    std::vector<std::string> columns;
-    std::vector<std::vector<std::string>> rows;
-};
-
 /// Everything that is found, as tables: what the terminal and the page show.
 std::vector<Table> tables_of(const CompareReport& report);
 /// What to use for what, a line each.
 std::vector<std::string> advice_lines(const CompareReport& report);
 
-std::string text_of(const Table& table);
 nlohmann::ordered_json json_of(const CompareReport& report);
 /// One file, with plots, that needs no other.
 std::string page_of(const CompareReport& report);

@@ -17,6 +17,9 @@ void add_common(CLI::App& verb, Common& c, bool output) {
     verb.add_option("--precision", c.precision, "of coordinates: float or double")
         ->capture_default_str()
         ->check(CLI::IsMember({"float", "double"}));
+    add_reporting(verb, c);
+}
+void add_reporting(CLI::App& verb, Common& c) {
     verb.add_flag("--json", c.json, "results as JSON");
     verb.add_flag("--quiet", c.quiet, "no progress and no summary");
     verb.add_flag("--drop-bad", c.drop_bad, "leave out faces with NaN or infinite vertices");
@@ -51,6 +54,11 @@ constexpr Verb verbs[] = {
      "  hedgerow compare gen:terrain --scale --structures grid,kdtree,bvh\n\n"
      "every structure, every query: what each costs, and which to use",
      add_compare},
+    {"bench",
+     "Examples:\n  hedgerow bench\n  hedgerow bench dragon.ply gen:soup:200k --html bench.html -o bench.svg\n"
+     "  hedgerow bench gen:hairball --quick --sets diffuse,random --instruction-set avx2\n\n"
+     "the engine's rays a second, beside every peer that is present",
+     add_bench},
     {"info",
      "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n\n"
      "what is in a scene, and what is wrong with it",
@@ -77,7 +85,8 @@ int run(int count, char** arguments) {
     CLI::App app(
         "Examples:\n  hedgerow render gen:teapot-in-stadium -o stadium.png\n  hedgerow render dragon.ply "
         "--shading steps -o steps.png\n"
-        "  hedgerow info dragon.ply\n  hedgerow generate gen:terrain:200000 -o terrain.ply\n\n"
+        "  hedgerow info dragon.ply\n  hedgerow bench dragon.ply\n  hedgerow generate gen:terrain:200000 -o "
+        "terrain.ply\n\n"
         "Spatial data structures for rays, geometric queries and particles.");
     app.set_version_flag("--version", "hedgerow 0.1.0");
     app.require_subcommand(1);

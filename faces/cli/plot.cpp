@@ -1,103 +1,16 @@
 #include "plot.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
-#include <hedgerow/compare/quantity.h>
+#include "plot_parts.h"
 
 namespace hedgerow::cli {
 
+using namespace plot_parts;
+
 namespace {
-
-constexpr double width = 860, name_width = 210, left_edge = 64, top_edge = 34;
-
-/// Told apart by those who see colours differently too (after Okabe and Ito 2008); beyond ten, by dashes.
-const char* colour_of(std::size_t i) {
-    static constexpr const char* colours[] = {"#0072b2", "#d55e00", "#009e73", "#b3589a", "#c48a00",
-                                              "#3d9bd1", "#7a3b10", "#555555", "#6a51a3", "#a50f15"};
-    return colours[i % std::size(colours)];
-}
-const char* dash_of(std::size_t i) {
-    return i < 10 ? "" : " stroke-dasharray=\"6 3\"";
-}
-
-std::string tick_text(double value, Unit unit) {
-    switch (unit) {
-        case Unit::seconds:
-            return compare::seconds_text(value);
-        case Unit::bytes:
-            return compare::bytes_text(value);
-        case Unit::number:
-            break;
-    }
-    const double k = value >= 1e9 ? 1e9 : value >= 1e6 ? 1e6 : value >= 1e4 ? 1e3 : 1;
-    return fmt::format("{:g}{}", value / k, k == 1e9 ? "G" : k == 1e6 ? "M" : k == 1e3 ? "k" : "");
-}
-
-/// Positive values to places along an axis, by their logarithms.
-class LogAxis {
-public:
-    LogAxis(double from, double to) : from_(from), to_(to) {}
-    void include(double value) {
-        if (value > 0) least_ = std::min(least_, value), most_ = std::max(most_, value);
-    }
-    double at(double value) const {
-        const double low = std::log(least()), high = std::log(most());
-        return from_ + (to_ - from_) * (std::log(value) - low) / (high - low);
-    }
-    /// Powers of ten; where there are few of them, also some of their multiples.
-    std::vector<double> ticks() const {
-        const double decades = std::log10(most() / least());
-        const int apart = decades < 7 ? 1 : 2;
-        const std::vector<double> digits = decades < 1     ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7}
-                                           : decades < 2.5 ? std::vector<double>{1, 2, 5}
-                                                           : std::vector<double>{1};
-        std::vector<double> all;
-        for (int p = static_cast<int>(std::floor(std::log10(least()))); p <= std::log10(most()); ++p)
-            for (const double digit : digits) {
-                const double v = digit * std::pow(10, p);
-                if (p % apart == 0 && v >= least() && v <= most()) all.push_back(v);
-            }
-        return all;
-    }
-
-private:
-    /// A little more than there is; of nothing, something.
-    double least() const { return least_ <= most_ ? least_ / margin() : 1; }
-    double most() const { return least_ <= most_ ? most_ * margin() : 10; }
-    /// A factor of four at least is shown, so that what hardly differs looks so.
-    double margin() const {
-        const double range = most_ / least_;
-        return std::max({1.05, std::pow(range, 0.03), 2 / std::sqrt(range)});
-    }
-
-    double from_, to_;
-    double least_ = std::numeric_limits<double>::infinity(), most_ = 0;
-};
-
-std::string opened(const std::string& title, double height) {
-    return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-        "role=\"img\" "
-        "font-family=\"sans-serif\" font-size=\"12\">\n<title>{2}</title>\n"
-        "<text x=\"4\" y=\"18\" font-size=\"14\" font-weight=\"bold\">{2}</text>\n",
-        width, height, escaped(title));
-}
-std::string text(double x, double y, const char* anchor, const std::string& words,
-                 const char* colour = "#222") {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\">{}</text>\n", x, y,
-                       anchor, colour, escaped(words));
-}
-std::string line(double x1, double y1, double x2, double y2, const char* colour = "#ddd") {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x1,
-                       y1, x2, y2, colour);
-}
-std::string dot(double x, double y, double radius, const char* colour) {
-    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x, y, radius, colour);
-}
 
 /// Moves labels apart that want to stand at `places`, so that none covers another, within limits.
 std::vector<double> spread(const std::vector<double>& places, double gap, double low, double high) {
@@ -121,23 +34,6 @@ std::vector<double> spread(const std::vector<double>& places, double gap, double
 
 }  // namespace
 
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        if (c == '&')
-            safe += "&amp;";
-        else if (c == '<')
-            safe += "&lt;";
-        else if (c == '>')
-            safe += "&gt;";
-        else if (c == '"')
-            safe += "&quot;";
-        else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n')
-            safe += c;
-    }
-    return safe;
-}
-
 std::string svg_of(const LinePlot& plot) {
     const double height = std::max(340.0, 80 + 15.0 * static_cast<double>(plot.series.size()));
     const double right = width - name_width, bottom = height - 40;
@@ -151,7 +47,7 @@ std::string svg_of(const LinePlot& plot) {
     };
     // Within the margin that the axis leaves, or the half place of a name.
     const auto reaches_right = [&](double at) { return at > right - (right - left_edge) / 6; };
-    std::string svg = opened(plot.title, height);
+    std::string svg = opened(plot.title, width, height);
     for (const double v : y.ticks()) {
         svg += line(left_edge, y.at(v), right, y.at(v));
         svg += text(left_edge - 6, y.at(v) + 4, "end", tick_text(v, plot.y_unit));
@@ -211,7 +107,7 @@ std::string svg_of(const DotPlot& plot) {
     LogAxis x(left, width - 60);
     for (const auto& row : plot.rows)
         for (const double v : row.values) x.include(v);
-    std::string svg = opened(plot.title, height);
+    std::string svg = opened(plot.title, width, height);
     double at = left;
     for (std::size_t i = 0; plot.series.size() > 1 && i < plot.series.size(); ++i) {
         svg += dot(at + 6, top_edge, 5, colour_of(i)) + text(at + 16, top_edge + 4, "start", plot.series[i]);

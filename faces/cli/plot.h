@@ -1,4 +1,4 @@
-/// Plots as SVG, to stand in a page: lines over an axis, and dots along rows.
+/// Plots as SVG, to stand in a page: lines over an axis, dots along rows, bars, and points.
 #pragma once
 
 #include <string>
@@ -37,6 +37,49 @@ struct DotPlot {
     std::vector<Row> rows;
 };
 std::string svg_of(const DotPlot& plot);
+
+/// Bars from zero: a panel below the other for each of some scales of their own, in it a group for each name,
+/// and in that a bar for each series. A value that is not positive has no bar.
+struct BarPlot {
+    std::string title;
+    std::vector<std::string> notes;  ///< a line each, below the title
+    struct Kind {
+        std::string name, colour;
+    };
+    std::vector<Kind> series;
+    struct Group {
+        std::string name, note;
+        std::vector<double> values;
+    };
+    struct Panel {
+        std::string title;
+        std::vector<Group> groups;
+    };
+    std::vector<Panel> panels;
+};
+std::string svg_of(const BarPlot& plot);
+
+/// Points on two logarithmic axes, with levels that are named at the right. What a point is, a browser shows
+/// under the pointer.
+struct PointPlot {
+    std::string title, x_label, y_label;
+    struct Point {
+        double x, y;
+        std::string hint;
+    };
+    struct Kind {
+        std::string name, colour;
+        bool hollow = false;
+        std::vector<Point> points;
+    };
+    std::vector<Kind> series;
+    struct Level {
+        double y;
+        std::string name;
+    };
+    std::vector<Level> levels;
+};
+std::string svg_of(const PointPlot& plot);
 
 /// Text as it may stand in a page.
 std::string escaped(const std::string& text);

@@ -14,10 +14,13 @@ using Run = std::function<int()>;
 Run add_render(CLI::App& verb);
 Run add_draw(CLI::App& verb);
 Run add_compare(CLI::App& verb);
+Run add_bench(CLI::App& verb);
 Run add_info(CLI::App& verb);
 Run add_generate(CLI::App& verb);
 
 /// The options that every verb has.
 void add_common(CLI::App& verb, Common& c, bool output);
+/// Those of them that are not about one scene.
+void add_reporting(CLI::App& verb, Common& c);
 
 }  // namespace hedgerow::cli

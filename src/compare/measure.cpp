@@ -1,9 +1,8 @@
 #include <hedgerow/compare/measure.h>
 
 #include <algorithm>
-#include <chrono>
-#include <ctime>
 
+#include <hedgerow/compare/clock.h>
 #include <hedgerow/error.h>
 
 #include "motion.h"
@@ -18,27 +17,6 @@ double median(std::vector<double> all) {
 }
 
 namespace {
-
-/// Seconds on a clock that only goes forward, or that this thread has worked, where the system tells.
-enum class Clock { wall, own };
-double now(Clock clock) {
-#ifdef CLOCK_THREAD_CPUTIME_ID
-    timespec t{};
-    if (clock == Clock::own && clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t) == 0)
-        return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-#else
-    static_cast<void>(clock);
-#endif
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-/// By this thread's own time: what else runs on the machine is not counted.
-template <class F>
-double seconds_of(F f, Clock clock = Clock::own) {
-    const double start = now(clock);
-    f();
-    return now(clock) - start;
-}
 
 template <class T>
 const char* noun(const TriangleMesh<T>&) {
@@ -70,7 +48,7 @@ public:
         : primitives_(primitives),
           o_(options),
           executor_(executor),
-          building_(&executor == &serial_executor() ? Clock::own : Clock::wall),
+          building_(&executor == &serial_executor() ? Clock::thread : Clock::wall),
           progress_(progress) {
         if (primitives.size() == 0)
             throw InputError("there are no primitives, so there is nothing to compare");

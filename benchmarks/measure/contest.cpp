@@ -1,0 +1,38 @@
+#include "contest.h"
+
+#include <algorithm>
+
+namespace hedgerow::benchmark {
+
+Times times_of(const std::vector<double>& seconds) {
+    const auto [least, most] = std::minmax_element(seconds.begin(), seconds.end());
+    const double middle = median(seconds);
+    return {middle, middle > 0 ? (*most - *least) / middle : 0};
+}
+
+std::vector<Times> measured_in_turn(int rounds, const Contest& contest, Clock clock,
+                                    const std::function<bool(const std::string&)>& go_on) {
+    std::vector<std::vector<double>> seconds(contest.contenders.size());
+    std::size_t answers = 0;  // so that the work is not left out
+    for (int r = 0; r < rounds; ++r)
+        for (std::size_t c = 0; c < contest.contenders.size(); ++c) {
+            if (!go_on(contest.names[c])) return {};
+            seconds[c].push_back(compare::seconds_of([&] { answers += contest.contenders[c](); }, clock));
+        }
+    asm volatile("" : : "r"(answers));
+    std::vector<Times> all;
+    for (const auto& s : seconds) all.push_back(times_of(s));
+    return all;
+}
+
+std::vector<double> rates(int repeats, std::size_t rays, const std::vector<Contender>& contenders) {
+    Contest contest;
+    for (const Contender& c : contenders) contest.add("", c);
+    std::vector<double> result;
+    for (const Times& t :
+         measured_in_turn(repeats, contest, Clock::wall, [](const std::string&) { return true; }))
+        result.push_back(static_cast<double>(rays) / t.median * 1e-6);
+    return result;
+}
+
+}  // namespace hedgerow::benchmark

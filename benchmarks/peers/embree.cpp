@@ -1,0 +1,215 @@
+#include "embree.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+#include <stdexcept>
+
+#if defined(__SSE3__) || defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+#include <hedgerow/compare/clock.h>
+
+namespace hedgerow::benchmark {
+
+namespace {
+
+/// Flush-to-zero and denormals-are-zero for as long as it lives: Embree's manual asks its callers for it.
+class FlushToZero {
+public:
+#if defined(__SSE3__) || defined(__x86_64__)
+    FlushToZero() : before_(_mm_getcsr()) {
+        _mm_setcsr(before_ | 0x8040u);
+    }
+    ~FlushToZero() {
+        _mm_setcsr(before_);
+    }
+    FlushToZero(const FlushToZero&) = delete;
+    FlushToZero& operator=(const FlushToZero&) = delete;
+
+private:
+    unsigned before_;
+#else
+    FlushToZero() {}
+#endif
+};
+
+/// What Embree holds, as it tells.
+struct Memory {
+    std::atomic<ssize_t> now{0}, most{0};
+
+    static bool changed(void* memory, ssize_t bytes, bool) {
+        auto& m = *static_cast<Memory*>(memory);
+        const ssize_t held = m.now += bytes;
+        for (ssize_t most = m.most; held > most && !m.most.compare_exchange_weak(most, held);) {
+        }
+        return true;
+    }
+};
+
+RTCRay ray_of(const Ray3f& r) {
+    return {r.origin[0], r.origin[1], r.origin[2], r.t_min, r.direction[0], r.direction[1], r.direction[2], 0,
+            r.t_max,     0xFFFFFFFFu, 0,           0};
+}
+
+struct Packets16 final : PeerIndex::Packets {
+    explicit Packets16(std::span<const Ray3f> from) : rays(from.size() / 16) {
+        for (std::size_t p = 0; p < rays.size(); ++p)
+            for (std::size_t i = 0; i < 16; ++i) {
+                const Ray3f& r = from[16 * p + i];
+                RTCRay16& to = rays[p];
+                to.org_x[i] = r.origin[0], to.org_y[i] = r.origin[1], to.org_z[i] = r.origin[2];
+                to.dir_x[i] = r.direction[0], to.dir_y[i] = r.direction[1], to.dir_z[i] = r.direction[2];
+                to.tnear[i] = r.t_min, to.tfar[i] = r.t_max, to.time[i] = 0;
+                to.mask[i] = 0xFFFFFFFFu, to.id[i] = 0, to.flags[i] = 0;
+            }
+    }
+    std::vector<RTCRay16> rays;
+};
+
+class EmbreeIndex final : public PeerIndex {
+public:
+    EmbreeIndex(const TriangleMesh<float>& mesh, const PeerBuild& how, const std::string& config) {
+        device_ = rtcNewDevice(config.c_str());
+        if (device_ == nullptr) throw std::runtime_error("Embree refuses '" + config + "'");
+        rtcSetDeviceMemoryMonitorFunction(device_, &Memory::changed, &memory_);
+        scene_ = rtcNewScene(device_);
+        rtcSetSceneFlags(scene_, how.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+        rtcSetSceneBuildQuality(
+            scene_, how.like == WideBuilder::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+        RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        vertices_ = mesh.vertices;
+        vertices_.emplace_back();  // it reads 16 bytes at the last vertex
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_.data(), 0, 12,
+                                   mesh.vertices.size());
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                                   12, mesh.triangles.size());
+        rtcCommitGeometry(g);
+        rtcAttachGeometry(scene_, g);
+        rtcReleaseGeometry(g);
+        const ssize_t before = memory_.now;
+        memory_.most = before;
+        build_seconds = compare::seconds_of([&] { rtcCommitScene(scene_); }, compare::Clock::process);
+        bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.now - before));
+        most_bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.most - before));
+    }
+    ~EmbreeIndex() override {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
+    EmbreeIndex(const EmbreeIndex&) = delete;
+    EmbreeIndex& operator=(const EmbreeIndex&) = delete;
+
+    std::size_t closest(std::span<const Ray3f> rays) const override {
+        const FlushToZero flush;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        std::size_t found = 0;
+        for (const Ray3f& r : rays) found += intersected(r, context).hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        return found;
+    }
+    std::size_t any(std::span<const Ray3f> rays) const override {
+        const FlushToZero flush;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        std::size_t found = 0;
+        for (const Ray3f& r : rays) found += occluded(r, context);
+        return found;
+    }
+    std::unique_ptr<Packets> packets(std::span<const Ray3f> rays) const override {
+        return std::make_unique<Packets16>(rays);
+    }
+    std::size_t closest(const Packets& packets) const override {
+        return by_sixteen(packets, [&](const int* valid, RTCIntersectContext* context, const RTCRay16& rays) {
+            RTCRayHit16 h;
+            h.ray = rays;
+            for (auto& id : h.hit.geomID) id = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect16(valid, scene_, context, &h);
+            return h.hit.geomID[0] != RTC_INVALID_GEOMETRY_ID;
+        });
+    }
+    std::size_t any(const Packets& packets) const override {
+        return by_sixteen(packets, [&](const int* valid, RTCIntersectContext* context, const RTCRay16& rays) {
+            RTCRay16 asked = rays;
+            rtcOccluded16(valid, scene_, context, &asked);
+            return asked.tfar[0] < 0;
+        });
+    }
+    float distance(const Ray3f& ray) const override {
+        const FlushToZero flush;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        const RTCRayHit h = intersected(ray, context);
+        return h.hit.geomID != RTC_INVALID_GEOMETRY_ID ? h.ray.tfar : std::numeric_limits<float>::infinity();
+    }
+    bool hits(const Ray3f& ray) const override { return any({&ray, 1}) > 0; }
+
+private:
+    RTCRayHit intersected(const Ray3f& r, RTCIntersectContext& context) const {
+        RTCRayHit h;
+        h.ray = ray_of(r);
+        h.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene_, &context, &h);
+        return h;
+    }
+    bool occluded(const Ray3f& r, RTCIntersectContext& context) const {
+        RTCRay ray = ray_of(r);
+        rtcOccluded1(scene_, &context, &ray);
+        return ray.tfar < 0;
+    }
+    template <class F>
+    static std::size_t by_sixteen(const Packets& packets, F hit) {
+        const FlushToZero flush;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        alignas(64) std::array<int, 16> valid;
+        valid.fill(-1);
+        std::size_t found = 0;
+        for (const RTCRay16& rays : static_cast<const Packets16&>(packets).rays)
+            found += hit(valid.data(), &context, rays);
+        return found;
+    }
+
+    Memory memory_;
+    RTCDevice device_;
+    RTCScene scene_;
+    std::vector<Vec3f> vertices_;
+};
+
+class Embree final : public Peer {
+public:
+    std::string name() const override { return "Embree"; }
+    std::string version() const override {
+        const RTCDevice device = rtcNewDevice("threads=1");
+        const auto v = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
+        rtcReleaseDevice(device);
+        return std::to_string(v / 10000) + "." + std::to_string(v / 100 % 100) + "." +
+               std::to_string(v % 100);
+    }
+    std::vector<PeerBuild> builds() const override {
+        return {{"medium", WideBuilder::medium},
+                {"high", WideBuilder::high},
+                {"robust", WideBuilder::medium, true}};
+    }
+    std::unique_ptr<PeerIndex> build(const TriangleMesh<float>& mesh, const PeerBuild& how,
+                                     std::string_view instruction_set) const override {
+        std::string config = "threads=1";
+        if (instruction_set == "avx2") config += ",max_isa=avx2";
+        // It has no code without vectors: its least stands beside ours that has none.
+        if (instruction_set == "sse4" || instruction_set == "plain") config += ",max_isa=sse4.2";
+        return std::make_unique<EmbreeIndex>(mesh, how, config);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<Peer> embree() {
+    return std::make_unique<Embree>();
+}
+
+}  // namespace hedgerow::benchmark

@@ -1,0 +1,196 @@
+/// hedgerow bench: the engine's rays a second, beside every peer that is present.
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/error.h>
+#include <hedgerow/spelling.h>
+
+#include "bench_report.h"
+#include "measure/machine.h"
+#include "verbs.h"
+
+namespace hedgerow::cli {
+
+using namespace benchmark;
+
+namespace {
+
+struct BenchArguments : Common {
+    std::vector<std::string> scenes;
+    std::string sets = "primary,diffuse,random,shadow", modes = "one,batch", questions = "closest,any",
+                builders = "medium,high", instruction_set, html;
+    int width = 0, rounds = 0;
+    unsigned threads = 1;
+    bool quick = false;
+};
+
+constexpr const char* usual_scenes[] = {"gen:teapot-in-stadium:50000", "gen:soup:200000",
+                                        "gen:hairball:200000", "gen:terrain:20000"};
+
+/// Parts of a list that are among known words, as an enum whose values are their places. Throws InputError.
+template <class E, std::size_t N>
+std::vector<E> list_of(const std::string& option, const std::string& list,
+                       const std::string_view (&known)[N]) {
+    std::vector<E> all;
+    std::size_t begin = 0;
+    while (begin <= list.size()) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        const std::string word = list.substr(begin, end - begin);
+        const auto at = std::find(std::begin(known), std::end(known), word);
+        if (at == std::end(known))
+            throw InputError(fmt::format("{}: there is no '{}'{}; there are {}", option, word,
+                                         suggestion(word, known), fmt::join(known, ", ")));
+        const auto value = static_cast<E>(at - std::begin(known));
+        if (std::find(all.begin(), all.end(), value) == all.end()) all.push_back(value);
+        begin = end + 1;
+    }
+    return all;
+}
+
+EngineOptions options_of(const BenchArguments& a) {
+    EngineOptions o;
+    o.sets = list_of<RayKind>("--sets", a.sets, ray_kinds);
+    o.questions = list_of<Question>("--questions", a.questions, questions);
+    o.modes = list_of<Mode>("--modes", a.modes, modes);
+    o.builders = list_of<WideBuilder>("--builders", a.builders, builders);
+    if (o.sets == std::vector{RayKind::shadow} && o.questions == std::vector{Question::closest})
+        throw InputError("--sets shadow: shadow rays are asked for any hit; add --questions any");
+    if (a.quick) o.rounds = 3, o.picture = 128, o.random = 1 << 14, o.sample = 2000;
+    if (a.rounds > 0) o.rounds = a.rounds;
+    o.seed = a.seed;
+    o.threads = a.threads > 0 ? a.threads : std::max(1u, std::thread::hardware_concurrency());
+    WideOptions tree;
+    tree.width = a.width;
+    o.width = resolved(tree).width;
+    return o;
+}
+
+struct NamedMesh {
+    std::string name;
+    TriangleMesh<float> mesh;
+};
+
+/// All of them before anything is measured: a long run ends in no surprise.
+std::vector<NamedMesh> load_all(const BenchArguments& a) {
+    std::vector<std::string> scenes = a.scenes;
+    if (scenes.empty()) scenes.assign(std::begin(usual_scenes), std::end(usual_scenes));
+    std::vector<NamedMesh> all;
+    for (const std::string& scene : scenes) {
+        Common one = a;
+        one.scene = scene;
+        const std::string name =
+            scene.starts_with("gen:") ? scene : std::filesystem::path(scene).filename().string();
+        auto loaded = load<float>(one);
+        auto* const mesh = std::get_if<TriangleMesh<float>>(&loaded);
+        if (mesh == nullptr)
+            throw InputError(scene +
+                             ": holds no triangles; bench is about rays against triangles: see "
+                             "compare for other primitives");
+        if (mesh->size() == 0) throw InputError(scene + ": is empty, so there is nothing to measure");
+        all.push_back({name, std::move(*mesh)});
+    }
+    return all;
+}
+
+BenchReport report_for(const EngineOptions& options, const std::vector<std::unique_ptr<Peer>>& peers) {
+    BenchReport r;
+    r.processor = processor(), r.compiler = compiler(), r.cores = std::thread::hardware_concurrency();
+    r.instruction_set = wide_kernels() != nullptr ? wide_kernels()->instruction_set : "plain";
+    r.gigahertz = clock_rate();
+    r.width = options.width, r.threads = options.threads, r.options = options;
+    for (const auto& peer : peers) {
+        r.peers.push_back({peer->name(), peer->version(), {}});
+        for (const PeerBuild& b : peer->builds()) r.peers.back().builds.push_back(b.name);
+    }
+    r.notes.push_back(
+        fmt::format("medians of {} rounds, which go through all in turn; one thread each, and only "
+                    "what it works counts{}",
+                    options.rounds, options.threads > 1 ? "; on several threads the clock on the wall" : ""));
+    if (peers.empty())
+        r.notes.emplace_back(
+            "no peer is present, so these are our own figures alone; for Embree: apt-get install "
+            "libembree-dev, then configure and build again");
+    return r;
+}
+
+void show(const BenchArguments& a, const BenchReport& r) {
+    if (!a.html.empty()) save_text(a.html, page_of(r));
+    if (!a.output.empty()) save_text(a.output, chart_of(r));
+    if (a.json) {
+        fmt::print("{}\n", json_of(r).dump(2));
+        return;
+    }
+    std::string text = machine_of(r) + "\n\n";
+    for (const Table& t : tables_of(r)) text += text_of(t) + "\n";
+    for (const std::string& n : r.notes) text += "Note: " + n + ".\n";
+    fmt::print("{}", text);
+    for (const auto& path : {a.html, a.output})
+        if (!path.empty()) fmt::print("{}\n", path);
+}
+
+int bench(const BenchArguments& a) {
+    if (!a.instruction_set.empty()) use_instruction_set(a.instruction_set);
+    const EngineOptions options = options_of(a);
+    const auto scenes = load_all(a);
+    const auto peers = benchmark::peers();
+    BenchReport report = report_for(options, peers);
+    {
+        ProgressLine line("bench", a.quiet);
+        const GoOn go_on = [&line](const std::string& next) {
+            line.say(next);
+            return !interrupted;
+        };
+        for (const NamedMesh& s : scenes) {
+            if (interrupted) break;
+            report.scenes.push_back(measure_engine(s.name, s.mesh, peers, options, go_on));
+        }
+    }
+    report.finished = !interrupted;
+    if (interrupted) report.notes.emplace_back("interrupted: only what was finished is here");
+    show(a, report);
+    return interrupted ? 130 : 0;
+}
+
+}  // namespace
+
+Run add_bench(CLI::App& verb) {
+    auto a = std::make_shared<BenchArguments>();
+    verb.add_option(
+        "scenes", a->scenes,
+        fmt::format("mesh files or gen:NAME[:SIZE]; without any {}", fmt::join(usual_scenes, " ")));
+    verb.add_option("-o,--output", a->output, "also write a chart of the rates, as .svg");
+    verb.add_option("--html", a->html, "also write one page with plots, that needs no other file");
+    verb.add_flag("--quick", a->quick, "fewer rays and rounds");
+    verb.add_option("--sets", a->sets, "of rays, as primary,diffuse,random,shadow")->capture_default_str();
+    verb.add_option("--questions", a->questions, "closest,any; shadow rays are asked any")
+        ->capture_default_str();
+    verb.add_option("--modes", a->modes, "one: a call a ray; batch: a call for all")->capture_default_str();
+    verb.add_option("--builders", a->builders, "whose trees are traced, as fast,medium,high; the best counts")
+        ->capture_default_str();
+    verb.add_option("--width", a->width, "children a node: 4, 8 or 16; 0: the best for the instruction set")
+        ->capture_default_str();
+    verb.add_option("--instruction-set", a->instruction_set,
+                    fmt::format("one of {}; peers use no more than it", fmt::join(instruction_sets(), ", ")));
+    verb.add_option("--threads", a->threads,
+                    "more than 1: our batches and builds on so many too; 0: all cores")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
+    verb.add_option("--rounds", a->rounds, "whose median is taken; 5, with --quick 3")
+        ->check(CLI::Range(1, 1000));
+    add_reporting(verb, *a);
+    return [a] {
+        if (!a->html.empty()) check_writable(a->html);
+        if (!a->output.empty()) {
+            if (std::filesystem::path(a->output).extension() != ".svg")
+                throw InputError(a->output + ": the chart is written as .svg; let the output end so");
+            check_writable(a->output);
+        }
+        return bench(*a);
+    };
+}
+
+}  // namespace hedgerow::cli

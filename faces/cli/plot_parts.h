@@ -1,0 +1,69 @@
+/// What plots are made of: axes, colours, lines and words.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "plot.h"
+
+namespace hedgerow::cli::plot_parts {
+
+inline constexpr double width = 860, name_width = 210, left_edge = 64, top_edge = 34;
+
+/// Told apart by those who see colours differently too (after Okabe and Ito 2008); beyond ten, by dashes.
+const char* colour_of(std::size_t i);
+const char* dash_of(std::size_t i);
+
+std::string tick_text(double value, Unit unit);
+
+/// Positive values to places along an axis, by their logarithms.
+class LogAxis {
+public:
+    LogAxis(double from, double to) : from_(from), to_(to) {}
+    void include(double value) {
+        if (value > 0) least_ = std::min(least_, value), most_ = std::max(most_, value);
+    }
+    double at(double value) const {
+        const double low = std::log(least()), high = std::log(most());
+        return from_ + (to_ - from_) * (std::log(value) - low) / (high - low);
+    }
+    /// Powers of ten; where there are few of them, also some of their multiples.
+    std::vector<double> ticks() const {
+        const double decades = std::log10(most() / least());
+        const int apart = decades < 7 ? 1 : 2;
+        const std::vector<double> digits = decades < 1     ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7}
+                                           : decades < 2.5 ? std::vector<double>{1, 2, 5}
+                                                           : std::vector<double>{1};
+        std::vector<double> all;
+        for (int p = static_cast<int>(std::floor(std::log10(least()))); p <= std::log10(most()); ++p)
+            for (const double digit : digits) {
+                const double v = digit * std::pow(10, p);
+                if (p % apart == 0 && v >= least() && v <= most()) all.push_back(v);
+            }
+        return all;
+    }
+
+private:
+    /// A little more than there is; of nothing, something.
+    double least() const { return least_ <= most_ ? least_ / margin() : 1; }
+    double most() const { return least_ <= most_ ? most_ * margin() : 10; }
+    /// A factor of four at least is shown, so that what hardly differs looks so.
+    double margin() const {
+        const double range = most_ / least_;
+        return std::max({1.05, std::pow(range, 0.03), 2 / std::sqrt(range)});
+    }
+
+    double from_, to_;
+    double least_ = std::numeric_limits<double>::infinity(), most_ = 0;
+};
+
+std::string opened(const std::string& title, double wide, double high);
+std::string text(double x, double y, const char* anchor, const std::string& words,
+                 const char* colour = "#222");
+std::string line(double x1, double y1, double x2, double y2, const char* colour = "#ddd");
+std::string dot(double x, double y, double radius, const char* colour);
+
+}  // namespace hedgerow::cli::plot_parts
