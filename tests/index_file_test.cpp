@@ -1,6 +1,10 @@
 /// Saved indexes: what is loaded answers with the bits of what was saved, and no damaged file is loaded.
 #include <hedgerow/io/index_file.h>
 
+#include <csignal>
+
+#include <sys/resource.h>
+
 #include <hedgerow/io/scene_file.h>
 #include <hedgerow/scenes/meshes.h>
 
@@ -14,7 +18,9 @@ namespace {
 
 using namespace testing_io;
 
-constexpr LoadIndexOptions ways_to_load[] = {{true, true}, {true, false}, {false, true}, {false, false}};
+constexpr LoadIndexOptions ways_to_load[] = {{Verify::contents, true},  {Verify::contents, false},
+                                             {Verify::checksums, true}, {Verify::checksums, false},
+                                             {Verify::header, true},    {Verify::header, false}};
 
 WideOptions options_of(int width, WideBuilder builder = WideBuilder::medium) {
     WideOptions options;
@@ -108,6 +114,27 @@ void expect_round_trip(const TempFolder& folder, const char* name, const Triangl
         ASSERT_EQ(contents(path), contents(again)) << "built and saved again";
     }
     EXPECT_EQ(folder.file_count(), 2u);
+}
+
+TEST(Stored, CopiesAreDeepAndOwnersStay) {
+    const auto owner = std::make_shared<std::vector<int>>(std::vector<int>{1, 2, 3});
+    Stored<int> lent(owner, owner->data(), 3);
+    EXPECT_EQ(lent.data(), owner->data());
+    EXPECT_EQ(owner.use_count(), 2);
+    Stored<int> copy = lent;
+    copy[1] = 7;
+    EXPECT_EQ((*owner)[1], 2);
+    EXPECT_EQ(owner.use_count(), 2) << "a copy is its own";
+    const int* const place = copy.data();
+    Stored<int> taken = std::move(copy);
+    EXPECT_EQ(taken.data(), place);
+    EXPECT_TRUE(copy.empty());  // NOLINT: what is left of it is an empty array
+    lent = std::move(taken);
+    EXPECT_EQ(owner.use_count(), 1);
+    EXPECT_EQ(std::vector<int>(lent.begin(), lent.end()), (std::vector<int>{1, 7, 3}));
+    lent = Stored<int>();
+    EXPECT_EQ(lent.bytes(), 0u);
+    EXPECT_EQ(Stored<int>(lent).data(), nullptr);
 }
 
 template <class T>
@@ -206,7 +233,7 @@ TYPED_TEST(IndexFile, MayBeReplacedOrDeletedWhileItsIndexLives) {
     const auto mesh = teapot_in_stadium<T>(1000);
     const auto path = this->folder / "index.hedgerow";
     save_index(path, build<WideBvh>(TriangleMesh<T>(mesh), options_of(4)));
-    std::optional<MeshIndex<T>> first(load_index<T>(path, {.verify = false}));
+    std::optional<MeshIndex<T>> first(load_index<T>(path, {.verify = Verify::header}));
     const MeshIndex<T> second = std::move(*first);
     first.reset();
     save_index(path, built(soup<T>(3000)));
@@ -248,12 +275,12 @@ TYPED_TEST(IndexFile, SaysWhatItHolds) {
     EXPECT_NEAR(double(info.index_bytes), double(index.bytes()), 200);
 }
 
-/// What is refused with these words, by each way to load that reads that far.
+/// What is refused with these words by who verifies so much, or more.
 void expect_refused(const std::filesystem::path& path, const std::vector<std::string>& words,
-                    bool by_header = true) {
+                    Verify by = Verify::header) {
     for (const auto& way : ways_to_load)
-        if (way.verify || by_header) expect_input_error([&] { load_index<float>(path, way); }, words);
-    if (by_header) expect_input_error([&] { index_file_info(path); }, words);
+        if (way.verify >= by) expect_input_error([&] { load_index<float>(path, way); }, words);
+    if (by == Verify::header) expect_input_error([&] { index_file_info(path); }, words);
 }
 
 TEST(BadIndexFile, WithAnyByteChangedIsRefused) {
@@ -265,10 +292,12 @@ TEST(BadIndexFile, WithAnyByteChangedIsRefused) {
             std::string bad = whole;
             bad[i] = static_cast<char>(bad[i] ^ change);
             const auto path = folder.file("bad.hedgerow", bad);
-            for (const bool map : {true, false})
-                ASSERT_THROW(load_index<float>(path, {.map = map}), InputError) << "byte " << i;
-            if (i < sizeof(detail::IndexHeader)) {
-                ASSERT_THROW(load_index<float>(path, {.verify = false}), InputError) << "byte " << i;
+            const bool in_header = i < sizeof(detail::IndexHeader);
+            for (const auto& way : ways_to_load)
+                if (in_header || way.verify != Verify::header) {
+                    ASSERT_THROW(load_index<float>(path, way), InputError) << "byte " << i;
+                }
+            if (in_header) {
                 ASSERT_THROW(index_file_info(path), InputError) << "byte " << i;
             }
         }
@@ -302,7 +331,8 @@ TEST(BadIndexFile, NamesThePlaceOfDamage) {
         expect_input_error([&] { load_index<float>(folder.file("bad.hedgerow", whole), {}, *executor); },
                            {"bad.hedgerow", "bytes 1048576 to 2097151 are damaged", "save it again"});
     whole[whole.size() - 20] ^= 4;
-    expect_refused(folder.file("bad.hedgerow", whole), {"the checksums from byte", "are damaged"}, false);
+    expect_refused(folder.file("bad.hedgerow", whole), {"the checksums from byte", "are damaged"},
+                   Verify::checksums);
 }
 
 // Files whose checksums are right.
@@ -401,7 +431,7 @@ TEST(BadIndexFile, WithAnUnsoundTreeOrMeshIsRefused) {
         std::string bad = whole;
         std::memcpy(bad.data() + at, &value, sizeof value);
         expect_refused(folder.file("bad.hedgerow", signed_file(header, bad, checked_part(whole))),
-                       {"bad.hedgerow", word, "save it again"}, false);
+                       {"bad.hedgerow", word, "save it again"}, Verify::contents);
     };
     const std::uint64_t children = layout.nodes + 4 * 6 * sizeof(float), counts = children + 4 * 4;
     refused(children, std::uint32_t(header.nodes), "a child that is not there");
@@ -427,10 +457,10 @@ TEST(BadIndexFile, WithAnUnsoundTreeOrMeshIsRefused) {
     auto wider = header, deeper = header;
     wider.high[0] += 1;
     expect_refused(folder.file("bad.hedgerow", signed_file(wider, whole, checked_part(whole))), {"bounds"},
-                   false);
+                   Verify::contents);
     ++deeper.depth;
     expect_refused(folder.file("bad.hedgerow", signed_file(deeper, whole, checked_part(whole))),
-                   {"not as deep"}, false);
+                   {"not as deep"}, Verify::contents);
 }
 
 /// A crafted file is refused, or is an index that answers.
@@ -495,6 +525,26 @@ TEST(BadIndexFile, ThatIsNoneIsRefused) {
     expect_refused(folder / "folder.hedgerow", {"folder.hedgerow", "directory"});
 }
 
+/// Files that this process writes may not be longer, as where a disk is full.
+class LittleRoom {
+public:
+    explicit LittleRoom(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit little{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &little);
+    }
+    ~LittleRoom() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    LittleRoom(const LittleRoom&) = delete;
+    LittleRoom& operator=(const LittleRoom&) = delete;
+
+private:
+    void (*handler_)(int);
+    rlimit before_{};
+};
+
 TEST(BadIndexFile, ThatCannotBeWrittenLeavesNothingBehind) {
     const TempFolder folder;
     const auto index = built(soup<float>(3000));
@@ -503,9 +553,14 @@ TEST(BadIndexFile, ThatCannotBeWrittenLeavesNothingBehind) {
     std::filesystem::create_directory(folder / "folder.hedgerow");
     expect_input_error([&] { save_index(folder / "folder.hedgerow", index); },
                        {"folder.hedgerow", "directory"});
-    EXPECT_EQ(folder.file_count(), 1u);
     if (std::filesystem::exists("/dev/full"))
         expect_input_error([&] { save_index("/dev/full", index); }, {"/dev/full", "No space left"});
+    {
+        const LittleRoom room(100000);
+        expect_input_error([&] { save_index(folder / "large.hedgerow", index); },
+                           {"large.hedgerow", "cannot be written", "space left"});
+    }
+    EXPECT_EQ(folder.file_count(), 1u);
 }
 
 }  // namespace

@@ -12,13 +12,20 @@ namespace hedgerow {
 template <std::floating_point T>
 using MeshIndex = Index<WideBvh<T, 3>, TriangleMeshView<T>>;
 
+/// What of a file is looked at before its index is used.
+enum class Verify {
+    /// The header and the file's length, in microseconds; the rest is read as queries come to it. For files
+    /// that you trust: **damage goes unseen, and queries may answer anything or read outside of the file**.
+    header,
+    /// All of it, against its checksums. No accident goes unseen; a file that was made to deceive does.
+    checksums,
+    /// And what a build promises: every link leads to a node, every box holds what is below it, every
+    /// triangle stands in one leaf. No file does harm.
+    contents
+};
+
 struct LoadIndexOptions {
-    /// Whether the whole file is read first, and held against its checksums and against what a build promises
-    /// (every link leads to a node, every box holds what is below it, every triangle stands in one leaf). If
-    /// not, only the header and the file's length are, and the rest is read as queries come to it: the file
-    /// must then be one that you trust, since **damage goes unseen, and queries may answer anything or read
-    /// outside of the file**.
-    bool verify = true;
+    Verify verify = Verify::contents;
     /// Whether the file is mapped. If not (and where the system cannot map), it is read into memory of its
     /// own, on huge pages: then what becomes of the file is of no matter.
     bool map = true;
@@ -39,9 +46,10 @@ void save_index(const std::filesystem::path& path, const MeshIndex<T>& index);
 /// While it lives the file must not be changed in place: what was mapped would change with it, and a read
 /// beyond a new end is fatal (SIGBUS). Replacing or deleting it is harmless.
 ///
-/// O(1) time without `verify`, else O(n) over the executor. Throws InputError, naming the file, the place,
-/// what is wrong and what to do, for a file of another version, byte order or scalar type, that is cut short
-/// or longer than it says, or in which any bit has changed (without `verify`: in its header).
+/// O(1) time where only the header is verified, else O(n), over the executor but for the tree. Throws
+/// InputError, naming the file, the place, what is wrong and what to do, for a file of another version, byte
+/// order or scalar type, that is cut short or longer than it says, or in which any bit has changed (as far as
+/// it is verified).
 template <std::floating_point T>
 MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOptions& options = {},
                         Executor& executor = serial_executor());
@@ -64,7 +72,7 @@ struct IndexFileInfo {
     /// Of nodes, items and triangles in blocks: what an Index has beyond its primitives. And of the file.
     std::uint64_t index_bytes, file_bytes;
 };
-/// Reads that, and the file's length, alone. Throws InputError as load_index does without `verify`.
+/// Reads that, and the file's length, alone. Throws InputError as load_index does of a header.
 IndexFileInfo index_file_info(const std::filesystem::path& path);
 
 /// Whether a path ends in `.hedgerow`, as these files are called, in upper or lower case.
