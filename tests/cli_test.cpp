@@ -9,7 +9,7 @@ using namespace hedgerow;
 using Cli = ToolTest;
 
 TEST_F(Cli, HelpOpensWithExamples) {
-    for (const char* verb : {"", "render ", "draw ", "compare ", "info ", "generate "}) {
+    for (const char* verb : {"", "render ", "build ", "draw ", "compare ", "info ", "generate "}) {
         const auto r = run(std::string(verb) + "--help");
         EXPECT_EQ(r.code, 0);
         EXPECT_EQ(r.output.rfind("Examples:", 0), 0u) << r.output;
@@ -52,6 +52,9 @@ TEST_F(Cli, BadInputIsThreeAndNamed) {
     expect_bad("render gen:cube --size 0x0" + to, "--size");
     expect_bad("render gen:cube -o " + file("no/such/folder/x.png"), "no folder");
     expect_bad("render gen:points2d" + to, "can be rendered");
+    expect_bad("build gen:points -o " + file("x.hedgerow"), "only an index of triangles");
+    expect_bad("build gen:cube -o " + file("x.ply"), "NAME.hedgerow");
+    expect_bad("build gen:cube -o " + file("no/such/folder/x.hedgerow"), "no folder");
 }
 
 TEST_F(Cli, AMeshWithoutAreaIsNeverHit) {
@@ -79,6 +82,45 @@ TEST_F(Cli, EveryStructureMakesTheSamePicture) {
         }
         const auto image = hedgerow::load_png(file("same.png"));
         EXPECT_NE(image.at(24, 16), image.at(0, 0)) << "the teapot differs from what is behind it";
+    }
+}
+
+TEST_F(Cli, ASavedIndexIsDescribedAndRendered) {
+    const std::string saved = file("teapot.hedgerow"), view = " --quiet --size 48x32 -o " + file("saved.png");
+    for (const char* precision : {"float", "double"}) {
+        const std::string scene = "gen:teapot:500 --precision " + std::string(precision);
+        const auto r = run("build --json --builder high --width 4 --threads 1 -o " + saved + " " + scene);
+        ASSERT_EQ(r.code, 0) << r.output;
+        EXPECT_NE(r.output.find("\"bytes_per_triangle\""), std::string::npos) << r.output;
+        const std::string bytes = bytes_of(saved);
+        ASSERT_EQ(run("build --quiet --builder high --width 4 -o " + saved + " " + scene).output, "");
+        EXPECT_EQ(bytes_of(saved), bytes) << "by any number of threads";
+
+        const auto facts = run("info --json " + saved).output;
+        for (const std::string fact :
+             {"\"kind\": \"triangles\"", "\"builder\": \"high\"", "\"width\": 4", "\"format_version\": 1"})
+            EXPECT_NE(facts.find(fact), std::string::npos) << fact << " in " << facts;
+        EXPECT_NE(facts.find("\"precision\": \"" + std::string(precision)), std::string::npos) << facts;
+        EXPECT_NE(facts.find("\"file_bytes\": " + std::to_string(bytes.size())), std::string::npos) << facts;
+
+        ASSERT_EQ(run("render " + scene + view).code, 0);
+        const std::string picture = bytes_of(file("saved.png"));
+        for (const std::string structure : {"", " --structure wide", " --structure kdtree"}) {
+            const auto rendered = run("render --json " + saved + structure + view);
+            ASSERT_EQ(rendered.code, 0) << rendered.output;
+            EXPECT_EQ(bytes_of(file("saved.png")), picture) << precision << structure;
+            const bool built = structure == " --structure kdtree";
+            EXPECT_NE(rendered.output.find(built ? "\"build_seconds\"" : "\"load_seconds\""),
+                      std::string::npos)
+                << rendered.output;
+        }
+    }
+    std::string damaged = bytes_of(saved);
+    damaged[damaged.size() / 2] ^= 1;
+    std::ofstream(file("damaged.hedgerow"), std::ios::binary) << damaged;
+    for (const char* verb : {"render", "info", "draw"}) {
+        const std::string to = std::string(verb) == "info" ? "" : " -o " + file("x.png");
+        expect_bad(std::string(verb) + " " + file("damaged.hedgerow") + to, "save it again");
     }
 }
 

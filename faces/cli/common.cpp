@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <hedgerow/error.h>
+#include <hedgerow/io/index_file.h>
 
 namespace hedgerow::cli {
 
@@ -46,6 +47,10 @@ void ProgressLine::say(const std::string& doing) {
 
 std::string generated_name(const Common& c) {
     return c.scene.starts_with("gen:") ? parse_scene_spec(c.scene).name : std::string();
+}
+
+std::string precision_of(const Common& c) {
+    return names_index_file(c.scene) ? std::string(index_file_info(c.scene).scalar) : c.precision;
 }
 
 void check_writable(const std::string& path) {

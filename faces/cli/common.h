@@ -56,10 +56,13 @@ Scene<T> load(const Common& c) {
     return load_scene<T>(c.scene, {c.drop_bad}, line.progress());
 }
 
-/// Calls f with a float or a double, as the user asked.
+/// "float" or "double": as the user asked, or as a saved index is.
+std::string precision_of(const Common& c);
+
+/// Calls f with a float or a double.
 template <class F>
 int in_precision(const Common& c, F f) {
-    return c.precision == "double" ? f(double()) : f(float());
+    return precision_of(c) == "double" ? f(double()) : f(float());
 }
 
 /// A text in lines of at most so many letters, broken at blanks; a longer word has a line of its own.

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hedgerow/io/index_file.h>
+
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -82,6 +84,23 @@ ordered_json facts(const SegmentSet<T>& s) {
     return {{"kind", "segments"}, {"segments", s.size()}, {"dimension", 2}};
 }
 
+/// Of a saved index, beside its mesh.
+ordered_json facts_of_index(const std::string& path) {
+    constexpr const char* builders[] = {"fast", "medium", "high"};
+    const IndexFileInfo file = index_file_info(path);
+    return {{"format_version", file.version},
+            {"precision", file.scalar},
+            {"face_ids", file.faces},
+            {"builder", builders[static_cast<int>(file.options.builder)]},
+            {"width", file.options.width},
+            {"max_leaf_size", file.options.max_leaf_size},
+            {"nodes", file.nodes},
+            {"leaves", file.leaves},
+            {"depth", file.depth},
+            {"index_bytes", file.index_bytes},
+            {"file_bytes", file.file_bytes}};
+}
+
 }  // namespace
 
 Run add_info(CLI::App& verb) {
@@ -89,13 +108,14 @@ Run add_info(CLI::App& verb) {
     add_common(verb, *c, false);
     return [c] {
         return in_precision(*c, [&]<class T>(T) {
-            const ordered_json all = std::visit(
+            ordered_json all = std::visit(
                 [](const auto& set) {
                     auto j = facts(set);
                     j.update(extent_of(set));
                     return j;
                 },
                 load<T>(*c));
+            if (names_index_file(c->scene)) all.update(facts_of_index(c->scene));
             if (c->json) {
                 fmt::print("{}\n", all.dump(2));
             } else {

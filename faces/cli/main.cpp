@@ -12,9 +12,10 @@
 namespace hedgerow::cli {
 
 void add_common(CLI::App& verb, Common& c, bool output) {
-    verb.add_option("scene", c.scene, "a mesh or point file, or gen:NAME[:SIZE]")->required();
+    verb.add_option("scene", c.scene, "a mesh, point or .hedgerow file, or gen:NAME[:SIZE]")->required();
     if (output) verb.add_option("-o,--output", c.output, "the file to write")->required();
-    verb.add_option("--precision", c.precision, "of coordinates: float or double")
+    verb.add_option("--precision", c.precision,
+                    "of coordinates: float or double; a .hedgerow file has its own")
         ->capture_default_str()
         ->check(CLI::IsMember({"float", "double"}));
     add_reporting(verb, c);
@@ -38,6 +39,11 @@ constexpr Verb verbs[] = {
      "  hedgerow render gen:teapot-in-stadium --shading steps -o steps.png\n"
      "  hedgerow render gen:teapot -o layers.exr\n\na picture, by rays",
      add_render},
+    {"build",
+     "Examples:\n  hedgerow build dragon.ply -o dragon.hedgerow\n"
+     "  hedgerow build gen:terrain:200000 --builder high --width 8 -o terrain.hedgerow\n\n"
+     "save the engine's index, for programs and for render",
+     add_build},
     {"draw",
      "Examples:\n  hedgerow draw gen:clusters2d:300 --structure quadtree:leaf_size=4 -o cells.svg\n"
      "  hedgerow draw gen:teapot --slice y=0.5 --structure kdtree -o slice.svg\n"

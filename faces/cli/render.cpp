@@ -4,6 +4,7 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/error.h>
+#include <hedgerow/io/index_file.h>
 #include <hedgerow/render/raycast.h>
 
 #include "verbs.h"
@@ -25,6 +26,7 @@ struct RenderArguments : Common {
 struct Outcome {
     Picture picture;
     std::size_t primitives = 0, bytes = 0;
+    bool loaded = false;  // not built
     double build_seconds = 0, seconds = 0;
 };
 
@@ -46,7 +48,7 @@ void report(const RenderArguments& a, const Outcome& o) {
                                           {"height", o.picture.image.height},
                                           {"primitives", o.primitives},
                                           {"bytes", o.bytes},
-                                          {"build_seconds", o.build_seconds},
+                                          {o.loaded ? "load_seconds" : "build_seconds", o.build_seconds},
                                           {"rays", o.picture.rays},
                                           {"seconds", o.seconds},
                                           {"rays_per_second", rays / o.seconds},
@@ -56,9 +58,10 @@ void report(const RenderArguments& a, const Outcome& o) {
                                           {"finished", !interrupted.load()}};
         fmt::print("{}\n", j.dump(2));
     } else if (!a.quiet) {
-        fmt::print("{}: {}x{}, {} primitives, {} built in {:.1f} ms, {:.1f} bytes a primitive\n", a.output,
+        fmt::print("{}: {}x{}, {} primitives, {} {} in {:.1f} ms, {:.1f} bytes a primitive\n", a.output,
                    o.picture.image.width, o.picture.image.height, o.primitives, a.structure,
-                   o.build_seconds * 1e3, double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
+                   o.loaded ? "loaded" : "built", o.build_seconds * 1e3,
+                   double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
         fmt::print(
             "{} rays in {:.3f} s: {:.3f} million a second; a ray visits {:.1f} nodes, {:.1f} leaves, "
             "{:.1f} primitives\n",
@@ -67,24 +70,20 @@ void report(const RenderArguments& a, const Outcome& o) {
     }
 }
 
-template <class P>
-int render(const RenderArguments& a, const P& primitives) {
+/// A picture of `primitives` by an index over them.
+template <class Any, class P>
+int render(const RenderArguments& a, const Any& index, const P& primitives, Outcome o) {
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = a.spp, options.seed = a.seed, options.steps_max = a.steps_max;
     options.shading = parse_shading(a.shading);
     options.layers = a.layers;
-    const ThreadLimit limit(a.threads);
-    Outcome o;
-    double start = now();
-    const auto index = build_any(a.structure, primitives);
-    o.build_seconds = now() - start;
-    o.primitives = index->size(), o.bytes = index->bytes();
-    options.camera = camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)});
+    o.primitives = index.size(), o.bytes = index.bytes();
+    options.camera = camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)});
     {
         ProgressLine line("rendering", a.quiet);
-        start = now();
-        o.picture = raycast(*index, primitives, options, default_executor(), line.progress());
+        const double start = now();
+        o.picture = raycast(index, primitives, options, default_executor(), line.progress());
         o.seconds = now() - start;
     }
     save(a.output, o.picture);
@@ -92,6 +91,27 @@ int render(const RenderArguments& a, const P& primitives) {
     if (!interrupted) return 0;
     fmt::print(stderr, "hedgerow: interrupted; the finished part is in {}\n", a.output);
     return 130;
+}
+template <class P>
+int render(const RenderArguments& a, const P& primitives) {
+    const ThreadLimit limit(a.threads);
+    Outcome o;
+    const double start = now();
+    const auto index = build_any(a.structure, primitives);
+    o.build_seconds = now() - start;
+    return render(a, *index, primitives, std::move(o));
+}
+/// By a saved index, as it is.
+template <class T>
+int render_saved(const RenderArguments& a) {
+    const ThreadLimit limit(a.threads);
+    Outcome o;
+    const double start = now();
+    auto saved = load_index<T>(a.scene, {}, default_executor());
+    const auto mesh = saved.primitives();
+    const auto index = any_index(std::move(saved));
+    o.loaded = true, o.build_seconds = now() - start;
+    return render(a, *index, mesh, std::move(o));
 }
 template <class T>
 int render(const RenderArguments& a, const PointCloud<T, 3>& cloud) {
@@ -113,7 +133,12 @@ Run add_render(CLI::App& verb) {
     add_common(verb, *a, true);
     verb.get_option("--output")->description("the file to write: .png, or .exr for layers of numbers");
     verb.footer(layers_help + verb.get_footer());
-    verb.add_option("--structure", a->structure, "NAME[:OPTION=VALUE,...]")->capture_default_str();
+    auto* const structure =
+        verb.add_option(
+                "--structure", a->structure,
+                "NAME[:OPTION=VALUE,...]; of a .hedgerow file 'wide', as it was saved, unless another "
+                "is named")
+            ->capture_default_str();
     verb.add_option("--shading", a->shading, "normals, depth, diffuse or steps")
         ->capture_default_str()
         ->check(CLI::IsMember({"normals", "depth", "diffuse", "steps"}));
@@ -121,11 +146,14 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
-    return [a] {
+    return [a, structure] {
+        const bool saved = names_index_file(a->scene);
+        if (saved && structure->count() == 0) a->structure = "wide";
         parse_size(a->view.size);
         check_writable(a->output);
         a->layers = asks_for_layers(a->output);
         return in_precision(*a, [&]<class T>(T) {
+            if (saved && a->structure == "wide") return render_saved<T>(*a);
             return std::visit([&](const auto& set) { return render(*a, set); }, load<T>(*a));
         });
     };

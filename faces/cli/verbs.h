@@ -12,6 +12,7 @@ namespace hedgerow::cli {
 using Run = std::function<int()>;
 
 Run add_render(CLI::App& verb);
+Run add_build(CLI::App& verb);
 Run add_draw(CLI::App& verb);
 Run add_compare(CLI::App& verb);
 Run add_bench(CLI::App& verb);

@@ -98,5 +98,9 @@ template <class P>
 auto build_any(std::string_view spec, const P& primitives, Executor& executor = default_executor()) {
     return detail::build_any_over(spec, view_of(primitives), executor);
 }
+/// The same of an index that is there already: one of triangles in a WideBvh, built or loaded
+/// (io/index_file.h). T is float or double.
+template <std::floating_point T>
+std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>> index);
 
 }  // namespace hedgerow

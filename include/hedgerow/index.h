@@ -43,6 +43,8 @@ concept Refittable = requires(S& s, const ReferenceList<typename P::Scalar, P::d
 /// once it is built, but through `insert` and `erase`, or with a `refit` after, where the structure has them.
 template <class S, PrimitiveSet P>
 class Index {
+    friend struct detail::IndexParts;
+
 public:
     using Scalar = typename P::Scalar;
     static constexpr int dimension = P::dimension;
@@ -203,12 +205,21 @@ private:
     };
     Tested leaves() const { return {*this}; }
 
+    using Packed = std::conditional_t<
+        packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>(), serial_executor())),
+        Nothing>;
+
+    /// Of parts that belong together.
+    Index(P primitives, S structure, Packed leaves, std::shared_ptr<const void> owner)
+        : owner_(std::move(owner)),
+          primitives_(std::move(primitives)),
+          structure_(std::move(structure)),
+          leaves_(std::move(leaves)) {}
+
     std::shared_ptr<const void> owner_;
     P primitives_;
     S structure_;
-    std::conditional_t<
-        packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>(), serial_executor())), Nothing>
-        leaves_;
+    Packed leaves_;
 };
 
 /// Builds a structure over primitives: `build<KdTree>(mesh, {.leaf_size = 2})`. An lvalue is borrowed (it

@@ -14,8 +14,7 @@ public:
     using T = typename P::Scalar;
     static constexpr int D = P::dimension;
 
-    Holder(std::string name, const P& primitives, const typename S::Options& options, Executor& executor)
-        : name_(std::move(name)), index_(primitives, options, executor) {}
+    Holder(std::string name, Index<S, P> index) : name_(std::move(name)), index_(std::move(index)) {}
 
     std::string_view structure() const override { return name_; }
     const Box<T, D>& bounds() const override { return index_.bounds(); }
@@ -153,7 +152,8 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
         read_options(in, options, std::type_identity<S<T, D>>());
         in.finish();
         if constexpr (requires { S<T, D>::build(primitives, options, executor); })
-            built = std::make_unique<Holder<S<T, D>, View>>(std::string(spec), primitives, options, executor);
+            built = std::make_unique<Holder<S<T, D>, View>>(
+                std::string(spec), Index<S<T, D>, View>(primitives, options, executor));
         else
             throw InputError("structure '" + std::string(wanted) + "' holds points alone");
     });
@@ -167,17 +167,27 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
     return built;
 }
 
-/// Everything for one scalar.
-#define HEDGEROW_BUILD_ANY(T)                                                                              \
-    template std::unique_ptr<AnyIndex<T, 3>> build_any_over(std::string_view, const TriangleMeshView<T>&,  \
-                                                            Executor&);                                    \
-    template std::unique_ptr<AnyIndex<T, 3>> build_any_over(std::string_view, const SphereSetView<T, 3>&,  \
-                                                            Executor&);                                    \
-    template std::unique_ptr<AnyIndex<T, 3>> build_any_over(std::string_view, const PointCloudView<T, 3>&, \
-                                                            Executor&);                                    \
-    template std::unique_ptr<AnyIndex<T, 2>> build_any_over(std::string_view, const PointCloudView<T, 2>&, \
-                                                            Executor&);                                    \
-    template std::unique_ptr<AnyIndex<T, 2>> build_any_over(std::string_view, const SegmentSetView<T>&,    \
-                                                            Executor&);
-
 }  // namespace hedgerow::detail
+
+namespace hedgerow {
+
+template <std::floating_point T>
+std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>> index) {
+    return std::make_unique<detail::Holder<WideBvh<T, 3>, TriangleMeshView<T>>>("wide", std::move(index));
+}
+
+/// Everything for one scalar.
+#define HEDGEROW_BUILD_ANY(T)                                                                                \
+    template std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>>);           \
+    template std::unique_ptr<AnyIndex<T, 3>> detail::build_any_over(std::string_view,                        \
+                                                                    const TriangleMeshView<T>&, Executor&);  \
+    template std::unique_ptr<AnyIndex<T, 3>> detail::build_any_over(std::string_view,                        \
+                                                                    const SphereSetView<T, 3>&, Executor&);  \
+    template std::unique_ptr<AnyIndex<T, 3>> detail::build_any_over(std::string_view,                        \
+                                                                    const PointCloudView<T, 3>&, Executor&); \
+    template std::unique_ptr<AnyIndex<T, 2>> detail::build_any_over(std::string_view,                        \
+                                                                    const PointCloudView<T, 2>&, Executor&); \
+    template std::unique_ptr<AnyIndex<T, 2>> detail::build_any_over(std::string_view,                        \
+                                                                    const SegmentSetView<T>&, Executor&);
+
+}  // namespace hedgerow

@@ -1,5 +1,5 @@
 #include "build_any.h"
 
-namespace hedgerow::detail {
+namespace hedgerow {
 HEDGEROW_BUILD_ANY(double)
-}  // namespace hedgerow::detail
+}  // namespace hedgerow

@@ -1,6 +1,7 @@
 /// Meshes and points behind one door.
 #include <hedgerow/io/scene_file.h>
 
+#include <hedgerow/io/index_file.h>
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/io/point_file.h>
 
@@ -12,11 +13,12 @@ namespace hedgerow {
 
 namespace {
 
-enum class Holds { mesh, points, points2d };
+enum class Holds { mesh, points, points2d, index };
 
 Holds look_into(const std::filesystem::path& path) {
     const std::string format = detail::format_of(path);
     if (format == ".csv") return Holds::points;
+    if (names_index_file(path)) return Holds::index;
     if (format == ".ply") {
         detail::ByteSource file(path);
         const auto header = detail::read_ply_header(file);
@@ -34,6 +36,18 @@ Holds look_into(const std::filesystem::path& path) {
     return Holds::mesh;
 }
 
+template <class T>
+TriangleMesh<T> mesh_of(const TriangleMeshView<T>& view) {
+    TriangleMesh<T> mesh;
+    mesh.vertices.resize(view.vertex_count());
+    for (std::size_t i = 0; i < view.vertex_count(); ++i) mesh.vertices[i] = view.vertex(i);
+    mesh.triangles.resize(view.size());
+    for (std::size_t i = 0; i < view.size(); ++i) mesh.triangles[i] = view.indices(i);
+    mesh.faces.resize(view.faces().size());
+    for (std::size_t i = 0; i < view.faces().size(); ++i) mesh.faces[i] = view.faces()[i];
+    return mesh;
+}
+
 }  // namespace
 
 template <class T>
@@ -43,6 +57,8 @@ Scene<T> load_scene(const std::filesystem::path& path, const LoadOptions& option
             return load_points<T, 3>(path, options, progress);
         case Holds::points2d:
             return load_points<T, 2>(path, options, progress);
+        case Holds::index:
+            return mesh_of(load_index<T>(path).primitives());
         case Holds::mesh:
             break;
     }

@@ -1,12 +1,10 @@
 /// Triangles copied in blocks of eight, as rows: what a leaf of a wide BVH is tested in at once.
 #pragma once
 
-#include <bit>
 #include <limits>
-#include <type_traits>
 
-#include <hedgerow/bare_vector.h>
 #include <hedgerow/primitives/concepts.h>
+#include <hedgerow/stored.h>
 
 namespace hedgerow {
 
@@ -15,6 +13,8 @@ namespace hedgerow {
 template <std::floating_point T>
 struct alignas(64) TriangleBlock {
     static constexpr int size = 8;
+    /// Bytes, of sizeof: to the next line of the cache nothing is set.
+    static constexpr std::size_t used = size * (9 * sizeof(T) + sizeof(PrimitiveId));
 
     T corner[3][3][size];  // by axis, then corner
     PrimitiveId id[size];
@@ -31,8 +31,11 @@ public:
 
     TriangleBlocks() = default;
     explicit TriangleBlocks(std::size_t places) : blocks_((places + Block::size - 1) / Block::size) {}
+    /// Blocks that were filled before.
+    explicit TriangleBlocks(Stored<Block> blocks) : blocks_(std::move(blocks)) {}
 
-    std::size_t bytes() const { return blocks_.capacity() * sizeof(Block); }
+    std::size_t size() const { return blocks_.size(); }
+    std::size_t bytes() const { return blocks_.bytes(); }
     const Block* data() const { return blocks_.data(); }
 
     void set(std::size_t i, const Triangle<T, 3>& t, PrimitiveId id) {
@@ -63,7 +66,7 @@ public:
     }
 
 private:
-    BareVector<Block> blocks_;
+    Stored<Block> blocks_;
 };
 
 }  // namespace hedgerow

@@ -165,7 +165,7 @@ private:
         WideTree<T, D> wide;
         wide.bounds = at(root()).box();
         wide.depth = depth_;
-        wide.items.assign(leaves_ * std::size_t(wide_leaf_size), no_primitive);
+        wide.items = Stored<PrimitiveId>(leaves_ * std::size_t(wide_leaf_size));
         const std::size_t count = opened_.size() - 1;
         wide.nodes = WideNodes<T, D>(width_, count);
         executor_.for_each_piece(count, 256, [&](std::size_t begin, std::size_t end) {
@@ -179,9 +179,10 @@ private:
             const Child& child = children_[c];
             const BuildNode<T, D>& from = tree_.nodes[child.place];
             wide.nodes.set(node, i, from.box(), child.to, from.count);
-            if (child.to.leaf())
-                std::copy_n(tree_.items.data() + from.first, from.count,
-                            wide.items.data() + std::size_t(wide_leaf_size) * child.to.block());
+            if (!child.to.leaf()) continue;
+            PrimitiveId* const items = wide.items.data() + std::size_t(wide_leaf_size) * child.to.block();
+            std::copy_n(tree_.items.data() + from.first, from.count, items);
+            std::fill(items + from.count, items + wide_leaf_size, no_primitive);
         }
         for (; i < width_; ++i) wide.nodes.set(node, i, Box<T, D>(), WideChild::none(), 0);
     }

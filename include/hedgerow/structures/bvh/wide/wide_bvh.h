@@ -7,6 +7,10 @@
 
 namespace hedgerow {
 
+namespace detail {
+struct IndexParts;  // what a saved index is put together by (src/io/index_file.cpp)
+}
+
 /// A binary BVH, collapsed so that a node has 4, 8 or 16 children (Wald, Benthin and Boulos 2008; Dammertz,
 /// Hanika and Keller 2008) and each leaf stands in a block of eight places (wide_tree.h). It is for the
 /// kernels (kernels.h), which test all boxes of a node, and all triangles of a leaf, with an instruction
@@ -17,6 +21,8 @@ namespace hedgerow {
 /// some thousand leaves or more.
 template <std::floating_point T, int D>
 class WideBvh {
+    friend struct detail::IndexParts;
+
 public:
     using Options = WideOptions;
     static constexpr auto packed_order = PackedOrder::of_blocks;
@@ -34,7 +40,7 @@ public:
     /// By leaves, eight places each: what a leaf does not fill is `no_primitive`.
     std::span<const PrimitiveId> items() const { return tree_.items; }
     std::size_t item_count() const { return count_; }
-    std::size_t bytes() const { return tree_.nodes.bytes() + tree_.items.capacity() * sizeof(PrimitiveId); }
+    std::size_t bytes() const { return tree_.nodes.bytes() + tree_.items.bytes(); }
     /// NodeIds are below it. Most are nobody's: there are `used_node_count` nodes, leaves counted.
     std::size_t node_count() const { return tree_.empty() ? 0 : most_wide * tree_.nodes.size() + 1; }
     std::size_t used_node_count() const { return tree_.nodes.size() + leaf_count(); }
@@ -107,25 +113,30 @@ public:
     std::string validate(const P& set) const {
         std::vector<std::uint8_t> seen(set.size());
         std::string fault;
+        std::size_t visited = 0;
+        int deepest = 0;
         if (count_ != set.size()) return "not built over these primitives";
         const auto visit = [&](auto& self, NodeRef r, const Box<T, D>& box, int depth) -> void {
             if (!fault.empty()) return;
             if (depth > max_depth) return void(fault = "deeper than its bound");
+            deepest = std::max(deepest, depth);
+            ++visited;
             if (r.leaf()) return void(fault = fault_of_leaf(set, r, box, seen));
             if (r.first >= tree_.nodes.size()) return void(fault = "a child that is not there");
             const auto boxes = volumes(r);
             if (boxes.size() == 0) fault = "a node without children";
-            for (int i = 0; i < boxes.size(); ++i) {
-                const NodeRef below = child(r, i);
-                if (below.empty()) return void(fault = "an empty place before a child");
-                if (!below.leaf() && below.first <= r.first) return void(fault = "a child before its parent");
+            for (int i = 0; i < tree_.nodes.width(); ++i) {
+                if (const char* const bad = fault_of_place(r.first, i, boxes)) return void(fault = bad);
+                if (i >= boxes.size()) continue;
                 if (!box.contains(boxes[i])) fault = "a node reaches out of its parent's box";
-                self(self, below, boxes[i], depth + 1);
+                self(self, child(r, i), boxes[i], depth + 1);
             }
         };
         if (!tree_.empty()) visit(visit, root(), tree_.bounds, 1);
         for (const auto s : seen)
             if (s == 0 && fault.empty()) fault = "a primitive is in no leaf";
+        if (fault.empty() && visited != used_node_count()) fault = "a node or leaf that no parent leads to";
+        if (fault.empty() && deepest != tree_.depth) fault = "not as deep as it says";
         return fault;
     }
 
@@ -134,6 +145,8 @@ private:
         : options_(options),
           count_(references.size()),
           tree_(build_wide_tree<T, D>(std::move(references), options, executor)) {}
+    WideBvh(const Options& options, std::size_t count, WideTree<T, D> tree, double built_cost)
+        : options_(options), count_(count), tree_(std::move(tree)), built_cost_(built_cost) {}
 
     template <class F>
     void for_each_child(std::size_t node, F f) const {
@@ -153,11 +166,19 @@ private:
         for (int i = 0; i < boxes.size(); ++i) box.expand(boxes[i]);
         return box;
     }
+    /// Of a place among the children: what would lead a walk or a kernel out of the tree.
+    const char* fault_of_place(std::uint32_t node, int i, const BoxRows<T, D>& boxes) const {
+        const WideChild c = tree_.nodes.child(node, i);
+        if (i >= boxes.size()) return boxes[i] == Box<T, D>() ? nullptr : "a box around nothing";
+        if (c.empty()) return "an empty place before a child";
+        if (!c.leaf()) return c.word > node ? nullptr : "a child before its parent";
+        if (c.block() >= leaf_count()) return "a leaf that is not there";
+        return tree_.nodes.count(node, i) > 0 ? nullptr : "a leaf without primitives";
+    }
     template <class P>
     std::string fault_of_leaf(const P& set, NodeRef r, const Box<T, D>& box,
                               std::vector<std::uint8_t>& seen) const {
         if (r.count > options_.max_leaf_size) return "a leaf of too many primitives";
-        if (std::size_t(r.first) + wide_leaf_size > tree_.items.size()) return "a leaf that is not there";
         for (std::uint32_t i = 0; i < wide_leaf_size; ++i) {
             const PrimitiveId id = tree_.items[r.first + i];
             if (i >= r.count) {

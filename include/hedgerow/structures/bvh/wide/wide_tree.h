@@ -2,14 +2,9 @@
 /// a plane of every child.
 #pragma once
 
-#include <array>
-#include <cstring>
-#include <span>
-#include <vector>
-
-#include <hedgerow/bare_vector.h>
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/primitives/concepts.h>
+#include <hedgerow/stored.h>
 #include <hedgerow/structures/walk_volumes.h>
 
 namespace hedgerow {
@@ -63,19 +58,33 @@ private:
 template <std::floating_point T, int D>
 class WideNodes {
 public:
+    /// Of the cache.
+    struct alignas(64) Line {
+        std::byte bytes[64];
+    };
+
     WideNodes() = default;
     WideNodes(int width, std::size_t count)
-        : width_(width), stride_(stride_of(width)), count_(count), lines_(count * stride_ / line) {}
+        : WideNodes(width, Stored<Line>(count * stride_of(width) / sizeof(Line))) {}
+    /// Nodes that were made before.
+    WideNodes(int width, Stored<Line> lines)
+        : width_(width),
+          stride_(stride_of(width)),
+          count_(lines.bytes() / stride_),
+          lines_(std::move(lines)) {}
 
+    /// Of a node those in use, and those to the next.
+    static constexpr std::size_t used_of(int width) {
+        return static_cast<std::size_t>(width) * (2 * D * sizeof(T) + 8);
+    }
     static constexpr std::size_t stride_of(int width) {
-        const std::size_t bytes = static_cast<std::size_t>(width) * (2 * D * sizeof(T) + 8);
-        return (bytes + line - 1) / line * line;
+        return (used_of(width) + sizeof(Line) - 1) / sizeof(Line) * sizeof(Line);
     }
     int width() const { return width_; }
     std::size_t size() const { return count_; }
     std::size_t stride() const { return stride_; }
-    std::size_t bytes() const { return lines_.capacity() * line; }
-    const std::byte* data() const { return lines_.empty() ? nullptr : lines_[0].data(); }
+    std::size_t bytes() const { return lines_.bytes(); }
+    const std::byte* data() const { return reinterpret_cast<const std::byte*>(lines_.data()); }
     const std::byte* at(std::size_t node) const { return data() + node * stride_; }
 
     /// Of its children, which come first in the rows.
@@ -103,22 +112,17 @@ public:
     }
 
 private:
-    static constexpr std::size_t line = 64;
-    struct alignas(line) Line {
-        std::byte bytes[line];
-        const std::byte* data() const { return bytes; }
-        std::byte* data() { return bytes; }
-    };
-
     std::size_t boxes_bytes() const { return static_cast<std::size_t>(width_) * 2 * D * sizeof(T); }
-    std::byte* place(std::size_t node) { return lines_[0].data() + node * stride_; }
+    std::byte* place(std::size_t node) {
+        return reinterpret_cast<std::byte*>(lines_.data()) + node * stride_;
+    }
     const std::uint32_t* words(std::size_t node) const {
         return reinterpret_cast<const std::uint32_t*>(at(node) + boxes_bytes());
     }
 
     int width_ = most_wide;
     std::size_t stride_ = 0, count_ = 0;
-    BareVector<Line> lines_;
+    Stored<Line> lines_;
 };
 
 /// The whole tree. Node 0 is the root, and parents come before their children. The items of leaf b are
@@ -127,7 +131,7 @@ private:
 template <std::floating_point T, int D>
 struct WideTree {
     WideNodes<T, D> nodes;
-    std::vector<PrimitiveId> items;
+    Stored<PrimitiveId> items;
     Box<T, D> bounds;
     int depth = 0;  // levels, leaves counted
 

@@ -1,0 +1,90 @@
+/// hedgerow build: an index in a file.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/error.h>
+#include <hedgerow/io/index_file.h>
+
+#include "verbs.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+struct BuildArguments : Common {
+    std::string builder = "medium";
+    int width = 0;
+    unsigned threads = 0;
+};
+
+struct Seconds {
+    double build = 0, save = 0;
+};
+
+void report(const BuildArguments& a, const Seconds& seconds) {
+    const IndexFileInfo file = index_file_info(a.output);
+    const double bytes = double(file.index_bytes) / double(std::max<std::size_t>(1, file.triangles));
+    if (a.json) {
+        const nlohmann::ordered_json j = {
+            {"output", a.output},           {"triangles", file.triangles},  {"precision", file.scalar},
+            {"builder", a.builder},         {"width", file.options.width},  {"build_seconds", seconds.build},
+            {"save_seconds", seconds.save}, {"nodes", file.nodes},          {"leaves", file.leaves},
+            {"bytes_per_triangle", bytes},  {"file_bytes", file.file_bytes}};
+        fmt::print("{}\n", j.dump(2));
+    } else if (!a.quiet) {
+        fmt::print("{}: {} triangles ({}), built in {:.1f} ms, saved in {:.1f} ms\n", a.output,
+                   file.triangles, file.scalar, seconds.build * 1e3, seconds.save * 1e3);
+        fmt::print(
+            "{} nodes of {} children, {} leaves: {:.1f} bytes a triangle; the file, with its mesh: {} "
+            "bytes\n",
+            file.nodes, file.options.width, file.leaves, bytes, file.file_bytes);
+    }
+}
+
+template <class T>
+int build_and_save(const BuildArguments& a, const TriangleMesh<T>& mesh) {
+    WideOptions options;
+    options.width = a.width;
+    options.builder = a.builder == "fast"   ? WideBuilder::fast
+                      : a.builder == "high" ? WideBuilder::high
+                                            : WideBuilder::medium;
+    const ThreadLimit limit(a.threads);
+    Seconds seconds;
+    const double start = now();
+    const auto index = build<WideBvh>(mesh, options, default_executor());
+    const double built = now();
+    save_index(a.output, index);
+    seconds.build = built - start, seconds.save = now() - built;
+    report(a, seconds);
+    return 0;
+}
+template <class Other>
+int build_and_save(const BuildArguments& a, const Other&) {
+    throw InputError(a.scene + ": only an index of triangles can be saved. Name a mesh");
+}
+
+}  // namespace
+
+Run add_build(CLI::App& verb) {
+    auto a = std::make_shared<BuildArguments>();
+    add_common(verb, *a, true);
+    verb.get_option("--output")->description("the file to write: NAME.hedgerow");
+    verb.add_option("--builder", a->builder, "fast, medium or high: time to build against time of queries")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"fast", "medium", "high"}));
+    verb.add_option("--width", a->width, "children a node: 4, 8 or 16; 0: what this processor is best at")
+        ->check(CLI::IsMember({0, 4, 8, 16}));
+    verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
+    return [a] {
+        if (!names_index_file(a->output))
+            throw InputError(a->output + ": a saved index is known by its ending; call it NAME.hedgerow");
+        check_writable(a->output);
+        return in_precision(*a, [&]<class T>(T) {
+            return std::visit([&](const auto& set) { return build_and_save(*a, set); }, load<T>(*a));
+        });
+    };
+}
+
+}  // namespace hedgerow::cli
