@@ -348,29 +348,30 @@ KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& ex
 }
 }  // namespace detail
 
-/// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false. Throws
-/// InputError, and writes nothing, if there are fewer places for answers than rays. Returns which algorithms
+/// One answer a ray, in pieces over the executor. The rays may lie in memory as they like (ray_array.h); a
+/// vector or a span of them will do. Where nothing is hit, a Hit that is false. Throws InputError, and writes
+/// nothing, if there are fewer places for answers than rays. Returns which algorithms
 /// answered (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a WideBvh go
 /// ray by ray.
 template <class S, class P>
-KernelUse closest_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
+KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
                        std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor()) {
     detail::expect_room(rays.size(), hits.size());
     return detail::answer_batch(
         index, rays.size(), executor,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.closest_hits(wide, rays.subspan(begin, end - begin), hits.data() + begin);
+            return kernels.closest_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
         },
         [&](std::size_t i) { hits[i] = closest_hit(index, rays[i]).value_or(Hit<typename P::Scalar>{}); });
 }
 template <class S, class P>
-KernelUse any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
+KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
                    std::span<bool> hits, Executor& executor = serial_executor()) {
     detail::expect_room(rays.size(), hits.size());
     return detail::answer_batch(
         index, rays.size(), executor,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.any_hits(wide, rays.subspan(begin, end - begin), hits.data() + begin);
+            return kernels.any_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
         },
         [&](std::size_t i) { hits[i] = any_hit(index, rays[i]); });
 }

@@ -28,6 +28,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Each builds on those before it.
 // clang-format off
 #include "rays-inl.h"
+#include "reader-inl.h"
 #include "tests-inl.h"
 #include "stack-inl.h"
 #include "single-inl.h"
@@ -59,9 +60,8 @@ struct Answering {
     template <int W>
     struct Many {
         template <class Answer>
-        static KernelUse answer(const WideScene& scene, std::span<const Ray<float, 3>> rays,
-                                Answer* answers) {
-            return answer_many<W, wanted>(scene, rays, answers);
+        static KernelUse answer(const WideScene& scene, const RayArray<float, 3>* rays, Answer* answers) {
+            return answer_many<W, wanted>(scene, *rays, answers);
         }
     };
 };
@@ -72,11 +72,11 @@ Hit<float> closest_hit(const WideScene& scene, const Ray<float, 3>& ray) {
 bool any_hit(const WideScene& scene, const Ray<float, 3>& ray) {
     return by_width<Answering<Wanted::any>::template One>(scene, &ray);
 }
-KernelUse closest_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, Hit<float>* hits) {
-    return by_width<Answering<Wanted::closest>::template Many>(scene, rays, hits);
+KernelUse closest_hits(const WideScene& scene, const RayArray<float, 3>& rays, Hit<float>* hits) {
+    return by_width<Answering<Wanted::closest>::template Many>(scene, &rays, hits);
 }
-KernelUse any_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, bool* hits) {
-    return by_width<Answering<Wanted::any>::template Many>(scene, rays, hits);
+KernelUse any_hits(const WideScene& scene, const RayArray<float, 3>& rays, bool* hits) {
+    return by_width<Answering<Wanted::any>::template Many>(scene, &rays, hits);
 }
 
 inline constexpr WideKernels kernels {

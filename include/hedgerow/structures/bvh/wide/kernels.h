@@ -6,12 +6,12 @@
 /// any the plain walk is what answers.
 #pragma once
 
-#include <span>
 #include <string_view>
 #include <vector>
 
 #include <hedgerow/primitives/triangle_blocks.h>
 #include <hedgerow/queries/hit.h>
+#include <hedgerow/ray_array.h>
 #include <hedgerow/structures/bvh/wide/wide_tree.h>
 
 namespace hedgerow {
@@ -41,8 +41,8 @@ struct WideKernels {
     /// A ray, or any number of them; where nothing is hit, a Hit that is false.
     Hit<float> (*closest_hit)(const WideScene&, const Ray<float, 3>&);
     bool (*any_hit)(const WideScene&, const Ray<float, 3>&);
-    KernelUse (*closest_hits)(const WideScene&, std::span<const Ray<float, 3>>, Hit<float>*);
-    KernelUse (*any_hits)(const WideScene&, std::span<const Ray<float, 3>>, bool*);
+    KernelUse (*closest_hits)(const WideScene&, const RayArray<float, 3>&, Hit<float>*);
+    KernelUse (*any_hits)(const WideScene&, const RayArray<float, 3>&, bool*);
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses: what the environment names in
