@@ -73,21 +73,6 @@ void in_every_layout(std::span<const Ray<T, 3>> rays, F f) {
     }
 }
 
-std::vector<Ray3f> apart(const Box3f& box, const Points<float, 3>& targets, std::size_t count) {
-    std::vector<Ray3f> rays;
-    for (std::size_t i = 0; i < count; ++i) rays.push_back(ray_of(box, targets, i));
-    return rays;
-}
-std::vector<Ray3f> together(const Box3f& box, std::size_t count) {
-    std::vector<Ray3f> rays;
-    for (std::size_t i = 0; i < count; ++i) {
-        const float x = 0.003f * static_cast<float>(i % 32), y = 0.003f * static_cast<float>(i / 32 % 32);
-        rays.push_back({box.center(), Vec3f(0.2f + x, 0.9f, 0.3f + y)});
-        if (i % 16 == 5) rays.back().t_min = 0.01f, rays.back().t_max = 2;
-    }
-    return rays;
-}
-
 template <class Index, class T>
 void expect_same_in_every_layout(const Index& index, std::span<const Ray<T, 3>> rays) {
     std::vector<Hit<T>> want(rays.size()), got(rays.size());

@@ -13,8 +13,7 @@ KernelUse answer_many(const WideScene& scene, const RayArray<float, 3>& rays, An
     KernelUse use;
     std::size_t waiting = 0, next = 0;  // rays from `waiting` to `next` go their own ways
     const auto answer_waiting = [&] {
-        if (waiting < next)
-            Batch<W, wanted>(scene, rays.part(waiting, next - waiting)).answer(answers + waiting);
+        if (waiting < next) Batch<W, wanted>(scene, rays, waiting, next).answer(answers);
         use.phased += next - waiting;
     };
     Packet<W, wanted> packet(scene);

@@ -18,6 +18,7 @@ public:
             !alike(first, rays[from + 2 * size / 3].direction) ||
             !alike(first, rays[from + size - 1].direction))
             return false;
+        from_ = from;
         z_axis_ = max_axis(first);
         for (int k = 0; k < 3; ++k) {
             axis_[k] = (z_axis_ + 1 + k) % 3;
@@ -299,6 +300,8 @@ private:
                            hn::Le(t, hn::Set(f, std::numeric_limits<float>::max())));
         better = hn::And(better, hn::Or(hn::Lt(t, limit), hn::And(hn::Eq(t, limit), lower)));
         candidates &= bits_of(f, better);
+        if (scene_.filter.keeps != nullptr) [[unlikely]]
+            candidates = kept_of(candidates, m, id, at);
         if (candidates == 0) return false;
         const std::uint64_t bits = candidates;
         better = hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits));
@@ -313,7 +316,20 @@ private:
         return true;
     }
 
+    /// Those that the filter keeps.
+    [[gnu::cold]] HWY_NOINLINE unsigned kept_of(unsigned candidates, const Meetings& m, std::uint32_t id,
+                                                int at) const {
+        unsigned keeps = 0;
+        for (unsigned left = candidates; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            const std::size_t number = from_ + static_cast<std::size_t>(at + i);
+            if (kept(scene_, number, m.t[i], m.u[i], m.v[i], id)) keeps |= 1u << i;
+        }
+        return keeps;
+    }
+
     const WideScene& scene_;
+    std::size_t from_ = 0;  // the number of the first ray
     std::size_t leaves_ = 0, rays_in_leaves_ = 0;
     // Of the rays: see WideRay.
     alignas(64) float inverse_[3][size], enter_[3][size], leave_[3][size], enter_at_[3][size],

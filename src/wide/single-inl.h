@@ -45,7 +45,7 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
             }
         } else {
             if (word == Stack::end) return ray.element != Hit<float>::none;
-            if (test_block(scene.blocks[word & ~WideChild::leaf_bit], ray)) {
+            if (test_triangles(scene, word & ~WideChild::leaf_bit, ray, 0)) {
                 if (wanted == Wanted::any) return true;
                 stack.sweep(ray.s_limit);
             }

@@ -21,7 +21,11 @@ struct Hit {
     friend bool operator==(const Hit&, const Hit&) = default;
 };
 
-/// A filter is anything callable with a Hit that says whether it counts. This one keeps all.
+/// A filter is anything that says of a Hit whether it counts: callable with the Hit, or with the number of
+/// the ray in its batch and the Hit. A hit that is refused changes nothing. The filter is asked of hits that
+/// would count, in any order, perhaps again of the same, and by several threads at once where the executor
+/// has them; so it has to say the same of the same hit, and to be called as const. What it throws comes out
+/// of the query; of a batch some answers are written then. This one keeps all, and costs nothing.
 struct KeepAll {
     template <class H>
     constexpr bool operator()(const H&) const {

@@ -1,7 +1,7 @@
 /// What the ray queries share: the probe, the interval, and the filter.
 #pragma once
 
-#include <hedgerow/queries/hit.h>
+#include <hedgerow/queries/filter.h>
 
 namespace hedgerow {
 
@@ -31,7 +31,7 @@ protected:
         if constexpr (std::is_same_v<Filter, KeepAll>)
             return true;
         else
-            return filter_(hit(c));
+            return keeps(filter_, 0, hit(c));
     }
     Hit<Scalar> hit(const RayCandidate<Scalar>& c) const {
         return {c.t, c.u, c.v, reported_id(set_, c.element, c.instance), 0, c.instance, c.element};

@@ -10,18 +10,20 @@
 #include <vector>
 
 #include <hedgerow/primitives/triangle_blocks.h>
-#include <hedgerow/queries/hit.h>
+#include <hedgerow/queries/filter.h>
 #include <hedgerow/ray_array.h>
 #include <hedgerow/structures/bvh/wide/wide_tree.h>
 
 namespace hedgerow {
 
 /// What a kernel is told of an index: the tree, its leaves' triangles, and the ids that hits report, if they
-/// are not the positions.
+/// are not the positions. And of the call: who may refuse hits, and the number of the first ray.
 struct WideScene {
     const WideTree<float, 3>& tree;
     const TriangleBlock<float>* blocks;
     Strided<std::uint32_t> faces;
+    HitFilter filter = {};
+    std::size_t first_ray = 0;
 };
 
 /// How many rays of a batch were answered by which algorithm.
@@ -38,7 +40,8 @@ struct WideKernels {
     std::string_view instruction_set;
     /// How many children a node has best.
     int width;
-    /// A ray, or any number of them; where nothing is hit, a Hit that is false.
+    /// A ray, or any number of them; where nothing is hit, a Hit that is false. They hold nothing that an
+    /// exception of the filter would leave behind.
     Hit<float> (*closest_hit)(const WideScene&, const Ray<float, 3>&);
     bool (*any_hit)(const WideScene&, const Ray<float, 3>&);
     KernelUse (*closest_hits)(const WideScene&, const RayArray<float, 3>&, Hit<float>*);
