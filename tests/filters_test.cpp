@@ -1,5 +1,6 @@
 /// Filters, one ray at a time and in batches: what they refuse changes nothing, whichever kernel asks them.
 #include "engine.h"
+#include "filtered.h"
 
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
@@ -9,56 +10,6 @@ using namespace hedgerow;
 using namespace hedgerow::matrix;
 
 namespace {
-
-/// All hits of every ray by brute force, unfiltered: what every filtered answer follows from.
-template <class T>
-struct Expected {
-    std::vector<Ray<T, 3>> rays;
-    std::vector<std::vector<Hit<T>>> all;
-
-    Expected(const TriangleMesh<T>& mesh, std::vector<Ray<T, 3>> asked)
-        : rays(std::move(asked)), all(rays.size()) {
-        const auto brute = build<BruteForce>(mesh);
-        for (std::size_t i = 0; i < rays.size(); ++i) all_hits(brute, rays[i], all[i]);
-    }
-    /// The closest of those that the filter keeps.
-    template <class Filter>
-    Hit<T> closest(std::size_t i, const Filter& filter) const {
-        for (const auto& hit : all[i])
-            if (keeps(filter, i, hit)) return hit;
-        return {};
-    }
-    bool has(std::size_t i, const Hit<T>& hit) const {
-        return std::find(all[i].begin(), all[i].end(), hit) != all[i].end();
-    }
-};
-
-/// Batches and single rays by one filter. It is also seen that it is asked of hits only, each as the ray's
-/// answer would have it.
-template <class Index, class T, class Filter>
-void expect_filtered(const char* name, const Index& index, const Expected<T>& expected,
-                     const Filter& filter) {
-    SCOPED_TRACE(name);
-    const std::size_t count = expected.rays.size();
-    std::size_t strange = 0;
-    const auto asked = [&](std::size_t i, const Hit<T>& hit) {
-        strange += !expected.has(i, hit);
-        return keeps(filter, i, hit);
-    };
-    std::vector<Hit<T>> batch(count);
-    const std::unique_ptr<bool[]> any(new bool[count]);
-    closest_hits(index, expected.rays, batch, serial_executor(), asked);
-    any_hits(index, expected.rays, {any.get(), count}, serial_executor(), asked);
-    for (std::size_t i = 0; i < count; ++i) {
-        const Hit<T> want = expected.closest(i, filter);
-        ASSERT_EQ(want, batch[i]) << "in a batch, ray " << i;
-        ASSERT_EQ(bool(want), any[i]) << "any, in a batch, ray " << i;
-        const auto alone = [&](const Hit<T>& hit) { return asked(i, hit); };
-        ASSERT_EQ(want, closest_hit(index, expected.rays[i], alone).value_or(Hit<T>())) << "ray " << i;
-        ASSERT_EQ(bool(want), any_hit(index, expected.rays[i], alone)) << "any, ray " << i;
-    }
-    EXPECT_EQ(strange, 0u);
-}
 
 template <class Index, class T>
 void expect_all_filters(const Index& index, const Expected<T>& expected) {
@@ -80,9 +31,10 @@ void expect_all_filters(const Index& index, const Expected<T>& expected) {
 }
 
 void expect_by_every_kernel(const TriangleMesh<float>& mesh) {
-    const Box3f box = build<BruteForce>(mesh).bounds();
-    const Expected<float> separate(mesh, apart(box, targets_of(mesh), 700)),
-        coherent(mesh, together(box, 700));
+    const auto brute = build<BruteForce>(mesh);
+    const Box3f box = brute.bounds();
+    const Expected<float> separate(brute, apart(box, targets_of(mesh), 700)),
+        coherent(brute, together(box, 700));
     for (const int width : {4, 8, 16}) {
         WideOptions options;
         options.width = width;
@@ -121,14 +73,15 @@ TEST(Filters, LeaveTheNextOfCoincidentTriangles) {
 
 TEST(Filters, OfBatchesInOtherStructuresAndInDouble) {
     const auto mesh = soup<float>(200);
-    const Expected<float> expected(mesh, apart(build<BruteForce>(mesh).bounds(), targets_of(mesh), 300));
+    const auto brute = build<BruteForce>(mesh);
+    const Expected<float> expected(brute, apart(brute.bounds(), targets_of(mesh), 300));
     expect_all_filters(build<Bvh>(mesh), expected);
     expect_all_filters(build<Grid>(mesh), expected);
     const auto of_double = soup<double>(200);
     const auto wide = build<WideBvh>(of_double);
     std::vector<Ray3d> rays;
     for (std::size_t i = 0; i < 300; ++i) rays.push_back(ray_of(wide.bounds(), targets_of(of_double), i));
-    expect_all_filters(wide, Expected<double>(of_double, rays));
+    expect_all_filters(wide, Expected<double>(build<BruteForce>(of_double), rays));
 }
 
 /// Rays have the same numbers in the pieces that threads take.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hedgerow/geometry/offset.h>
+#include <hedgerow/geometry/transform.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/all_hits.h>
@@ -54,6 +55,13 @@ public:
         std::same_as<P, TriangleMeshView<float>> && requires(const S& s, const TriangleBlocks<float>& b) {
         WideScene{s.tree(), b.data(), {}};
     };
+
+    /// The same for rays against instances of indexes that the kernels know, on both levels.
+    static constexpr bool instances_by_kernels = requires(const S& s, const P& p) {
+        WideInstances{s.tree(), p.for_kernels(), 0.0f};
+    };
+    struct Nothing {};
+    using KernelInstance = std::conditional_t<by_kernels, WideInstance, Nothing>;
 
     /// Borrows what `primitives` looks at; `owner`, if any, keeps it alive.
     Index(P primitives, const typename S::Options& options, Executor& executor,
@@ -147,6 +155,28 @@ public:
     WideScene wide_scene(const HitFilter& filter = {}, std::size_t first_ray = 0) const requires(by_kernels) {
         return {structure_.tree(), leaves_.data(), primitives_.faces(), filter, first_ray};
     }
+    /// The same inside of an instance, for hits that name it.
+    WideScene wide_scene(const HitFilter& filter, std::uint32_t instance, std::uint32_t geometry) const
+        requires(by_kernels) {
+        return {structure_.tree(), leaves_.data(), primitives_.faces(), filter, 0, instance, geometry};
+    }
+    /// What they are told of an instance of this index.
+    KernelInstance kernel_instance(const Affine<3>& back, std::uint32_t mask, std::uint32_t geometry) const
+        requires(by_kernels) {
+        WideInstance placed{{}, &structure_.tree(), &leaves_, &primitives_.faces(), mask, geometry};
+        for (int k = 0; k < 3; ++k) {
+            for (int c = 0; c < 3; ++c) placed.back[c][k] = back.linear[static_cast<std::size_t>(k)][c];
+            placed.back[3][k] = back.shift[k];
+        }
+        return placed;
+    }
+    /// And of instances of such indexes in this one, for a ray.
+    WideInstances wide_instances(const Ray<Scalar, dimension>& ray, const HitFilter& filter) const
+        requires(instances_by_kernels) {
+        return {structure_.tree(), primitives_.for_kernels(), primitives_.hit_error(ray), filter};
+    }
+    /// The kernels in use, if any.
+    static const WideKernels* kernels() { return wide_kernels(); }
 
 private:
     /// A function of its own: in one with the query's making, the compiler takes the probe apart into more
@@ -170,7 +200,6 @@ private:
         return true;
     }
 
-    struct Nothing {};
     static constexpr bool packs = requires(const P& p) {
         p.template pack<S::packed_order>(std::span<const PrimitiveId>(), serial_executor());
     };
@@ -250,7 +279,8 @@ inline constexpr NoVisits no_visits{};
 /// The kernels that are to answer, if any do: they do not count.
 template <class S, class P, class Count = const NoVisits>
 const WideKernels* kernels_for(const Index<S, P>&) {
-    if constexpr (Index<S, P>::by_kernels && std::same_as<Count, const NoVisits>)
+    using I = Index<S, P>;
+    if constexpr ((I::by_kernels || I::instances_by_kernels) && std::same_as<Count, const NoVisits>)
         return wide_kernels();
     else
         return nullptr;
@@ -261,21 +291,36 @@ template <class S, class P, class Filter = KeepAll, class Count = const NoVisits
 std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
                                                    const Ray<typename P::Scalar, P::dimension>& ray,
                                                    const Filter& filter = {}, Count& count = no_visits) {
-    if constexpr (Index<S, P>::by_kernels)
-        if (const auto* kernels = kernels_for<S, P, Count>(index)) {
-            const Hit<float> hit =
-                in_ieee_mode([&] { return kernels->closest_hit(index.wide_scene(hit_filter(filter)), ray); });
-            return hit ? std::optional(hit) : std::nullopt;
-        }
+    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
+    [[maybe_unused]] const auto found = [](const Hit<float>& hit) {
+        return hit ? std::optional(hit) : std::nullopt;
+    };
+    if constexpr (Index<S, P>::by_kernels) {
+        if (kernels != nullptr)
+            return found(in_ieee_mode(
+                [&] { return kernels->closest_hit(index.wide_scene(hit_filter(filter)), ray); }));
+    } else if constexpr (Index<S, P>::instances_by_kernels) {
+        if (kernels != nullptr)
+            return found(in_ieee_mode([&] {
+                return kernels->closest_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
+            }));
+    }
     return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
 }
 /// Whether anything is hit.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
              const Filter& filter = {}, Count& count = no_visits) {
-    if constexpr (Index<S, P>::by_kernels)
-        if (const auto* kernels = kernels_for<S, P, Count>(index))
+    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
+    if constexpr (Index<S, P>::by_kernels) {
+        if (kernels != nullptr)
             return in_ieee_mode([&] { return kernels->any_hit(index.wide_scene(hit_filter(filter)), ray); });
+    } else if constexpr (Index<S, P>::instances_by_kernels) {
+        if (kernels != nullptr)
+            return in_ieee_mode([&] {
+                return kernels->any_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
+            });
+    }
     return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
 }
 /// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.

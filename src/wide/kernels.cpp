@@ -32,14 +32,15 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "tests-inl.h"
 #include "stack-inl.h"
 #include "single-inl.h"
+#include "instances-inl.h"
 #include "packet-inl.h"
 #include "batch-inl.h"
 #include "many-inl.h"
 // clang-format on
 
 // F<W>::answer, W being the width of the scene's nodes.
-template <template <int> class F, class... Arguments>
-HWY_INLINE auto by_width(const WideScene& scene, Arguments... arguments) {
+template <template <int> class F, class Scene, class... Arguments>
+HWY_INLINE auto by_width(const Scene& scene, Arguments... arguments) {
     switch (scene.tree.nodes.width()) {
         case 4:
             return F<4>::answer(scene, arguments...);
@@ -55,6 +56,9 @@ struct Answering {
     struct One {
         static auto answer(const WideScene& scene, const Ray<float, 3>* asked) {
             return answer_one<W, wanted>(scene, *asked);
+        }
+        static auto answer(const WideInstances& scene, const Ray<float, 3>* asked) {
+            return answer_one_of_instances<W, wanted>(scene, *asked);
         }
     };
     template <int W>
@@ -79,6 +83,13 @@ KernelUse any_hits(const WideScene& scene, const RayArray<float, 3>& rays, bool*
     return by_width<Answering<Wanted::any>::template Many>(scene, &rays, hits);
 }
 
+Hit<float> closest_hit_of_instances(const WideInstances& scene, const Ray<float, 3>& ray) {
+    return by_width<Answering<Wanted::closest>::template One>(scene, &ray);
+}
+bool any_hit_of_instances(const WideInstances& scene, const Ray<float, 3>& ray) {
+    return by_width<Answering<Wanted::any>::template One>(scene, &ray);
+}
+
 inline constexpr WideKernels kernels {
 #if HWY_TARGET == HWY_AVX3
     "avx512", 16,
@@ -89,7 +100,7 @@ inline constexpr WideKernels kernels {
 #else
     "neon", 4,
 #endif
-        closest_hit, any_hit, closest_hits, any_hits
+        closest_hit, any_hit, closest_hits, any_hits, closest_hit_of_instances, any_hit_of_instances
 };
 
 #endif  // HWY_TARGET != HWY_SCALAR

@@ -3,15 +3,16 @@
 
 enum class Wanted { closest, any };
 
-template <int W, Wanted wanted>
-bool trace_one(const WideScene& scene, WideRay& ray) {
+// `test(leaf)` holds a leaf against the ray and says whether the ray was hit. What a leaf holds, it knows.
+template <int W, Wanted wanted, class Test>
+HWY_INLINE bool walk_one(const WideTree<float, 3>& tree, WideRay& ray, Test test) {
     using Stack = WalkStack<W>;
     constexpr int room = Stack::room(bvh_max_depth + 1);
     std::int32_t entries[room];
     std::uint32_t words[room];
     Stack stack(entries, words, 0, 0);
     stack.clear();
-    const std::byte* const nodes = scene.tree.nodes.data();
+    const std::byte* const nodes = tree.nodes.data();
     const Slabs<W> slabs(ray);
     std::uint32_t word = 0;
     while (true) {
@@ -45,13 +46,21 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
             }
         } else {
             if (word == Stack::end) return ray.element != Hit<float>::none;
-            if (test_triangles(scene, word & ~WideChild::leaf_bit, ray, 0)) {
+            if (test(word & ~WideChild::leaf_bit)) {
                 if (wanted == Wanted::any) return true;
                 stack.sweep(ray.s_limit);
             }
         }
         word = stack.pop();
     }
+}
+
+template <int W, Wanted wanted>
+bool trace_one(const WideScene& scene, WideRay& ray) {
+    return walk_one<W, wanted>(
+        scene.tree, ray, [&](std::uint32_t leaf) __attribute__((always_inline)) {
+            return test_triangles(scene, leaf, ray, 0);
+        });
 }
 
 template <int W, Wanted wanted>

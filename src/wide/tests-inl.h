@@ -165,7 +165,7 @@ HWY_INLINE unsigned meet_exactly_among(F f, const Corners<F>& corners, unsigned 
 HWY_INLINE Hit<float> hit_of(const WideScene& scene, float t, float u, float v, std::uint32_t element) {
     if (element == Hit<float>::none) return {};
     const std::uint32_t id = scene.faces.empty() ? element : scene.faces[element];
-    return {t, u, v, id, 0, 0, element};
+    return {t, u, v, id, scene.geometry, scene.instance, element};
 }
 
 // Whether the filter keeps what is about to become the hit of a ray.

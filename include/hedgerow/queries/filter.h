@@ -17,6 +17,15 @@ constexpr bool keeps(const Filter& filter, std::size_t ray, const H& hit) {
         return static_cast<bool>(filter(hit));
 }
 
+/// Whether a filter lets an instance of this mask be looked into.
+template <class Filter>
+constexpr bool enters(const Filter& filter, std::uint32_t mask) {
+    if constexpr (requires { filter.enters(mask); })
+        return static_cast<bool>(filter.enters(mask));
+    else
+        return true;
+}
+
 /// A batch's filter, for one of its rays.
 template <class Filter>
 struct FilterOfRay {
@@ -27,6 +36,7 @@ struct FilterOfRay {
     bool operator()(const H& hit) const {
         return keeps(*filter, ray, hit);
     }
+    bool enters(std::uint32_t mask) const { return hedgerow::enters(*filter, mask); }
 };
 template <class Filter>
 FilterOfRay<Filter> filter_of_ray(const Filter& filter, std::size_t ray) {
@@ -36,21 +46,26 @@ inline KeepAll filter_of_ray(const KeepAll&, std::size_t) {
     return {};
 }
 
-/// A filter as the kernels ask it: a plain function, and what it is given. Without a function all is kept.
+/// A filter as the kernels ask it: plain functions, and what they are given. Without them all is kept, and
+/// every instance entered.
 struct HitFilter {
     bool (*keeps)(const void* filter, std::size_t ray, const Hit<float>& hit) = nullptr;
     const void* filter = nullptr;
+    bool (*enters)(const void* filter, std::uint32_t mask) = nullptr;
 };
 /// Looks at the filter, which has to outlive it.
 template <class Filter>
 HitFilter hit_filter(const Filter& filter) {
-    if constexpr (std::same_as<Filter, KeepAll>)
-        return {};
-    else
-        return {[](const void* asked, std::size_t ray, const Hit<float>& hit) {
-                    return keeps(*static_cast<const Filter*>(asked), ray, hit);
-                },
-                static_cast<const void*>(&filter)};
+    if constexpr (std::same_as<Filter, KeepAll>) return {};
+    HitFilter asked{[](const void* of, std::size_t ray, const Hit<float>& hit) {
+                        return keeps(*static_cast<const Filter*>(of), ray, hit);
+                    },
+                    static_cast<const void*>(&filter)};
+    if constexpr (requires(std::uint32_t mask) { filter.enters(mask); })
+        asked.enters = [](const void* of, std::uint32_t mask) {
+            return enters(*static_cast<const Filter*>(of), mask);
+        };
+    return asked;
 }
 
 }  // namespace hedgerow

@@ -1,5 +1,5 @@
-/// Rays against triangles in a wide BVH, by the processor's vectors: which instruction set, and what it
-/// offers.
+/// Rays against triangles in a wide BVH, and against instances of such, by the processor's vectors: which
+/// instruction set, and what it offers.
 ///
 /// The kernels are one source (src/wide/), compiled for every instruction set that the compiler knows
 /// (AVX-512, AVX2, SSE4; NEON) and chosen at run time. All give the same bits as the plain walk does; without
@@ -24,9 +24,31 @@ struct WideScene {
     Strided<std::uint32_t> faces;
     HitFilter filter = {};
     std::size_t first_ray = 0;
+    std::uint32_t instance = 0, geometry = 0;  // what hits report
 };
 
-/// How many rays of a batch were answered by which algorithm.
+/// An instance of such an index (primitives/instance_set.h). The way back to its space is that of
+/// PlacedIndex::inside; what is pointed at moves only with the index.
+struct alignas(64) WideInstance {
+    double back[4][3];  // the columns of the linear part, then the shift
+    const WideTree<float, 3>* tree;
+    const TriangleBlocks<float>* triangles;
+    const Strided<std::uint32_t>* faces;
+    std::uint32_t mask, geometry;
+};
+static_assert(sizeof(WideInstance) == 128);
+
+/// Instances in a wide BVH, whose items are their numbers. `error` is how much farther than from triangles a
+/// ray's hit may lie from its instance's box: hit_error of the set.
+struct WideInstances {
+    const WideTree<float, 3>& tree;
+    const WideInstance* all;
+    float error;
+    HitFilter filter = {};
+};
+
+/// How many rays of a batch were answered by which algorithm. `single` are those that went one by one, by a
+/// kernel (all against instances do) or without.
 struct KernelUse {
     std::size_t single = 0, phased = 0, packets = 0;
 
@@ -46,6 +68,8 @@ struct WideKernels {
     bool (*any_hit)(const WideScene&, const Ray<float, 3>&);
     KernelUse (*closest_hits)(const WideScene&, const RayArray<float, 3>&, Hit<float>*);
     KernelUse (*any_hits)(const WideScene&, const RayArray<float, 3>&, bool*);
+    Hit<float> (*closest_hit_of_instances)(const WideInstances&, const Ray<float, 3>&);
+    bool (*any_hit_of_instances)(const WideInstances&, const Ray<float, 3>&);
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses: what the environment names in
