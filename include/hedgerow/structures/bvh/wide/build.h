@@ -22,6 +22,9 @@ struct WideOptions {
     double traversal_cost = 4, intersection_cost = 1;
     /// Most passes of `high`.
     int reinsertion = 10;
+    /// In bytes: a build that may take more is refused before any is spent (budget.h has the bound); 0 for
+    /// none.
+    double budget = 0;
 };
 
 /// The options with a width in place of 0. Throws InputError for what is out of its range.

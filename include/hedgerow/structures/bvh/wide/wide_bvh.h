@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <hedgerow/structures/bvh/wide/budget.h>
 #include <hedgerow/structures/bvh/wide/build.h>
 
 namespace hedgerow {
@@ -28,6 +29,7 @@ public:
     template <PrimitiveSet P>
     static WideBvh build(const P& set, const Options& options, Executor& executor) {
         Options all = resolved(options);
+        refuse_beyond_budget<T, D>(set.size(), all);
         if constexpr (Instanced<P>) all.intersection_cost *= instance_cost;
         return WideBvh(references_of(set, executor), all, executor);
     }
