@@ -1,8 +1,11 @@
-/// Queries allocate nothing. A program of its own, since it counts every allocation that it makes; where a
-/// sanitizer does its own, nothing is counted and nothing tested.
+/// Queries allocate nothing, and builds with a budget no more than they say. A program of its own, since it
+/// counts every allocation that it makes; where a sanitizer does its own, nothing is counted and nothing
+/// tested.
 #include <atomic>
 #include <cstdlib>
 #include <new>
+
+#include <malloc.h>
 
 #include <hedgerow/scenes/meshes.h>
 
@@ -18,31 +21,40 @@
 #endif
 
 #ifndef HEDGEROW_SANITIZED
-static std::atomic<std::size_t> allocations{0};
+static std::atomic<std::size_t> allocations{0}, live{0}, most_live{0};  // the latter two in bytes
+
+static void* counted(void* p) {
+    if (p == nullptr) throw std::bad_alloc();
+    ++allocations;
+    const std::size_t now = live += malloc_usable_size(p);
+    for (std::size_t most = most_live; now > most && !most_live.compare_exchange_weak(most, now);) {
+    }
+    return p;
+}
+static void freed(void* p) {
+    live -= malloc_usable_size(p);
+    std::free(p);
+}
 
 // Not inlined: g++ would see malloc without its free, or the other way round, and warn.
 [[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* p = std::malloc(size > 0 ? size : 1)) return p;
-    throw std::bad_alloc();
+    return counted(std::malloc(size > 0 ? size : 1));
 }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-    ++allocations;
     const auto a = static_cast<std::size_t>(alignment);
-    if (void* p = std::aligned_alloc(a, (size / a + 1) * a)) return p;
-    throw std::bad_alloc();
+    return counted(std::aligned_alloc(a, (size / a + 1) * a));
 }
 [[gnu::noinline]] void operator delete(void* p) noexcept {
-    std::free(p);
+    freed(p);
 }
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-    std::free(p);
+    freed(p);
 }
 [[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept {
-    std::free(p);
+    freed(p);
 }
 [[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-    std::free(p);
+    freed(p);
 }
 
 using namespace hedgerow;
@@ -107,6 +119,47 @@ TYPED_TEST(Allocation, QueriesDoNone) {
         EXPECT_EQ(allocated_by(count_all), 0u);
         EXPECT_GT(sum + visits.primitives, 0u);
     });
+}
+
+/// As many bytes as f had at once, beside those there were.
+template <class F>
+std::size_t most_bytes_of(F f) {
+    const std::size_t before = live;
+    most_live = before;
+    f();
+    return most_live - before;
+}
+
+/// By every builder and width, over sets of every kind; also with leaves of one, which take the most.
+TYPED_TEST(Allocation, WideBuildsStayWithinTheirBound) {
+    using T = TypeParam;
+    TriangleMesh<T> equal = cube<T>(12);
+    equal.triangles.assign(3000, equal.triangles[0]);
+    for (const auto& mesh : {soup<T>(20000), teapot_in_stadium<T>(20000), cube<T>(12), equal})
+        for (const int width : {4, 8, 16})
+            for (const auto builder : wide_builders)
+                for (const std::uint32_t leaf : {1u, 8u}) {
+                    WideOptions options;
+                    options.width = width;
+                    options.builder = builder;
+                    options.max_leaf_size = leaf;
+                    const auto view = mesh.view();
+                    const double bound = most_bytes_to_build<T, 3>(mesh.size(), options);
+                    const double taken = static_cast<double>(
+                        most_bytes_of([&] { WideBvh<T, 3>::build(view, options, serial_executor()); }));
+                    EXPECT_LE(taken, bound) << width << " " << int(builder) << " " << leaf;
+                    if (mesh.size() > 10000) {
+                        EXPECT_GT(taken, 0.1 * bound) << width << " " << int(builder) << " " << leaf;
+                    }
+                    options.budget = bound - 1;
+                    EXPECT_LT(most_bytes_of([&] { EXPECT_THROW(build<WideBvh>(view, options), InputError); }),
+                              10000u);
+                    options.budget = bound;
+                    EXPECT_NO_THROW(build<WideBvh>(view, options));
+                }
+    WideOptions bad;
+    bad.budget = -1;
+    EXPECT_THROW(build<WideBvh>(equal, bad), InputError);
 }
 
 }  // namespace

@@ -5,36 +5,11 @@
 #include <hedgerow/scenes/sets.h>
 
 #include "matrix.h"
+#include "placements.h"
 
 using namespace hedgerow;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-template <int D>
-Transform<D> turned(Random& random) {
-    if constexpr (D == 2)
-        return Transform<2>::rotation(random.uniform(-pi, pi));
-    else
-        return Transform<3>::rotation(random.direction<3>(), random.uniform(-pi, pi));
-}
-
-/// Transform i of a scene: turned and moved; or also scaled evenly, or unevenly (and mirrored), and now and
-/// then only moved, or as another was.
-enum class Scales { none, even, any };
-template <int D>
-Transform<D> transform_of(std::uint64_t i, Scales scales, double far) {
-    Random random(5, i % 7 == 6 ? i - 1 : i);
-    Vec<double, D> factors = Vec<double, D>::all(1);
-    if (scales == Scales::even) factors = factors * std::exp2(random.uniform(-3, 3));
-    if (scales == Scales::any)
-        for (int k = 0; k < D; ++k)
-            factors[k] = std::exp2(random.uniform(-3, 3)) * (random.uniform() < 0.3 ? -1 : 1);
-    const auto moved = Transform<D>::translation((random.in_cube<D>() - Vec<double, D>::all(0.5)) * far);
-    if (i % 5 == 4) return moved;
-    return moved * turned<D>(random) * Transform<D>::scaling(factors) * turned<D>(random);
-}
 
 /// What an index of instances answers.
 template <class T, int D>
@@ -168,13 +143,6 @@ struct Case {
         }
     }
 };
-
-template <int D>
-std::vector<Transform<D>> transforms(std::size_t n, Scales scales, double far) {
-    std::vector<Transform<D>> all;
-    for (std::size_t i = 0; i < n; ++i) all.push_back(transform_of<D>(i, scales, far));
-    return all;
-}
 
 template <class T>
 class Instances : public testing::Test {};

@@ -1,6 +1,6 @@
 /// The engine: every instruction set that this machine has gives the bits of brute force, one ray at a time
 /// and in batches of any size, on trees of any width.
-#include "matrix.h"
+#include "engine.h"
 
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
@@ -13,21 +13,6 @@ using namespace hedgerow::matrix;
 namespace {
 
 using Mesh = TriangleMesh<float>;
-
-/// Takes an instruction set, and the one before when it goes.
-class Using {
-public:
-    explicit Using(std::string_view set)
-        : before_(wide_kernels() ? wide_kernels()->instruction_set : "plain") {
-        use_instruction_set(set);
-    }
-    ~Using() { use_instruction_set(before_); }
-    Using(const Using&) = delete;
-    Using& operator=(const Using&) = delete;
-
-private:
-    std::string_view before_;
-};
 
 /// What the engine answers to rays: in a batch, and one at a time.
 struct Answers {

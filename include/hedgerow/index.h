@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hedgerow/geometry/offset.h>
+#include <hedgerow/geometry/transform.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/all_hits.h>
@@ -56,6 +57,13 @@ public:
         std::same_as<P, TriangleMeshView<float>> && requires(const S& s, const TriangleBlocks<float>& b) {
         WideScene{s.tree(), b.data(), {}};
     };
+
+    /// The same for rays against instances of indexes that the kernels know, on both levels.
+    static constexpr bool instances_by_kernels = requires(const S& s, const P& p) {
+        WideInstances{s.tree(), p.for_kernels(), 0.0f};
+    };
+    struct Nothing {};
+    using KernelInstance = std::conditional_t<by_kernels, WideInstance, Nothing>;
 
     /// Borrows what `primitives` looks at; `owner`, if any, keeps it alive.
     Index(P primitives, const typename S::Options& options, Executor& executor,
@@ -146,9 +154,31 @@ public:
     }
 
     /// What the kernels are told, where these primitives in this structure are what they know.
-    WideScene wide_scene() const requires(by_kernels) {
-        return {structure_.tree(), leaves_.data(), primitives_.faces()};
+    WideScene wide_scene(const HitFilter& filter = {}, std::size_t first_ray = 0) const requires(by_kernels) {
+        return {structure_.tree(), leaves_.data(), primitives_.faces(), filter, first_ray};
     }
+    /// The same inside of an instance, for hits that name it.
+    WideScene wide_scene(const HitFilter& filter, std::uint32_t instance, std::uint32_t geometry) const
+        requires(by_kernels) {
+        return {structure_.tree(), leaves_.data(), primitives_.faces(), filter, 0, instance, geometry};
+    }
+    /// What they are told of an instance of this index.
+    KernelInstance kernel_instance(const Affine<3>& back, std::uint32_t mask, std::uint32_t geometry) const
+        requires(by_kernels) {
+        WideInstance placed{{}, &structure_.tree(), &leaves_, &primitives_.faces(), mask, geometry};
+        for (int k = 0; k < 3; ++k) {
+            for (int c = 0; c < 3; ++c) placed.back[c][k] = back.linear[static_cast<std::size_t>(k)][c];
+            placed.back[3][k] = back.shift[k];
+        }
+        return placed;
+    }
+    /// And of instances of such indexes in this one, for a ray.
+    WideInstances wide_instances(const Ray<Scalar, dimension>& ray, const HitFilter& filter) const
+        requires(instances_by_kernels) {
+        return {structure_.tree(), primitives_.for_kernels(), primitives_.hit_error(ray), filter};
+    }
+    /// The kernels in use, if any.
+    static const WideKernels* kernels() { return wide_kernels(); }
 
 private:
     /// A function of its own: in one with the query's making, the compiler takes the probe apart into more
@@ -172,7 +202,6 @@ private:
         return true;
     }
 
-    struct Nothing {};
     static constexpr bool packs = requires(const P& p) {
         p.template pack<S::packed_order>(std::span<const PrimitiveId>(), serial_executor());
     };
@@ -258,11 +287,11 @@ using NearOf = Near<typename I::Scalar, I::dimension>;
 
 inline constexpr NoVisits no_visits{};
 
-/// The kernels that are to answer, if any do: they neither filter nor count.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
+/// The kernels that are to answer, if any do: they do not count.
+template <class S, class P, class Count = const NoVisits>
 const WideKernels* kernels_for(const Index<S, P>&) {
-    if constexpr (Index<S, P>::by_kernels && std::same_as<Filter, KeepAll> &&
-                  std::same_as<Count, const NoVisits>)
+    using I = Index<S, P>;
+    if constexpr ((I::by_kernels || I::instances_by_kernels) && std::same_as<Count, const NoVisits>)
         return wide_kernels();
     else
         return nullptr;
@@ -273,21 +302,36 @@ template <class S, class P, class Filter = KeepAll, class Count = const NoVisits
 std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
                                                    const Ray<typename P::Scalar, P::dimension>& ray,
                                                    const Filter& filter = {}, Count& count = no_visits) {
-    if constexpr (Index<S, P>::by_kernels)
-        if (const auto* kernels = kernels_for<S, P, Filter, Count>(index)) {
-            const Hit<float> hit =
-                in_ieee_mode([&] { return kernels->closest_hit(index.wide_scene(), ray); });
-            return hit ? std::optional(hit) : std::nullopt;
-        }
+    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
+    [[maybe_unused]] const auto found = [](const Hit<float>& hit) {
+        return hit ? std::optional(hit) : std::nullopt;
+    };
+    if constexpr (Index<S, P>::by_kernels) {
+        if (kernels != nullptr)
+            return found(in_ieee_mode(
+                [&] { return kernels->closest_hit(index.wide_scene(hit_filter(filter)), ray); }));
+    } else if constexpr (Index<S, P>::instances_by_kernels) {
+        if (kernels != nullptr)
+            return found(in_ieee_mode([&] {
+                return kernels->closest_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
+            }));
+    }
     return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
 }
 /// Whether anything is hit.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
              const Filter& filter = {}, Count& count = no_visits) {
-    if constexpr (Index<S, P>::by_kernels)
-        if (const auto* kernels = kernels_for<S, P, Filter, Count>(index))
-            return in_ieee_mode([&] { return kernels->any_hit(index.wide_scene(), ray); });
+    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
+    if constexpr (Index<S, P>::by_kernels) {
+        if (kernels != nullptr)
+            return in_ieee_mode([&] { return kernels->any_hit(index.wide_scene(hit_filter(filter)), ray); });
+    } else if constexpr (Index<S, P>::instances_by_kernels) {
+        if (kernels != nullptr)
+            return in_ieee_mode([&] {
+                return kernels->any_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
+            });
+    }
     return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
 }
 /// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.
@@ -340,50 +384,58 @@ inline void expect_room(std::size_t rays, std::size_t answers) {
                          " answers: make the array of answers as long as that of rays");
 }
 /// Rays `begin` to `end` of a batch by `by_kernels(kernels, scene, begin, end)` where kernels answer, else
-/// `one(i)` each; in pieces over the executor.
-template <class S, class P, class ByKernels, class One>
-KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& executor, ByKernels by_kernels,
-                       One one) {
+/// `one(i, filter)` each; in pieces over the executor.
+template <class S, class P, class Filter, class ByKernels, class One>
+KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& executor, const Filter& filter,
+                       ByKernels by_kernels, One one) {
     std::atomic<std::size_t> phased{0}, packets{0};
     executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
         if constexpr (Index<S, P>::by_kernels)
             if (const auto* kernels = kernels_for(index)) {
-                const KernelUse use =
-                    in_ieee_mode([&] { return by_kernels(*kernels, index.wide_scene(), begin, end); });
+                const WideScene scene = index.wide_scene(hit_filter(filter), begin);
+                const KernelUse use = in_ieee_mode([&] { return by_kernels(*kernels, scene, begin, end); });
                 phased += use.phased, packets += use.packets;
                 return;
             }
-        for (std::size_t i = begin; i < end; ++i) one(i);
+        for (std::size_t i = begin; i < end; ++i) one(i, filter_of_ray(filter, i));
     });
     return {count - phased - packets, phased, packets};
 }
 }  // namespace detail
 
-/// One answer a ray, in pieces over the executor. Where nothing is hit, a Hit that is false. Throws
-/// InputError, and writes nothing, if there are fewer places for answers than rays. Returns which algorithms
-/// answered (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a WideBvh go
-/// ray by ray.
-template <class S, class P>
-KernelUse closest_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
-                       std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor()) {
+/// One answer a ray, in pieces over the executor. The rays may lie in memory as they like (ray_array.h); a
+/// vector or a span of them will do. `filter(hit)` or `filter(i, hit)`, for ray i, may refuse
+/// (queries/hit.h). Where nothing is hit, a Hit that is false. Throws InputError, and writes nothing, if
+/// there are fewer places for answers than rays. Returns which algorithms answered
+/// (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a WideBvh go ray by
+/// ray.
+///
+///   closest_hits(index, rays, hits, default_executor(),
+///                [&](std::size_t i, const Hit<float>& h) { return h.element != starts_on[i]; });
+template <class S, class P, class Filter = KeepAll>
+KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
+                       std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor(),
+                       const Filter& filter = {}) {
     detail::expect_room(rays.size(), hits.size());
     return detail::answer_batch(
-        index, rays.size(), executor,
+        index, rays.size(), executor, filter,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.closest_hits(wide, rays.subspan(begin, end - begin), hits.data() + begin);
+            return kernels.closest_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
         },
-        [&](std::size_t i) { hits[i] = closest_hit(index, rays[i]).value_or(Hit<typename P::Scalar>{}); });
+        [&](std::size_t i, const auto& own) {
+            hits[i] = closest_hit(index, rays[i], own).value_or(Hit<typename P::Scalar>{});
+        });
 }
-template <class S, class P>
-KernelUse any_hits(const Index<S, P>& index, std::span<const Ray<typename P::Scalar, P::dimension>> rays,
-                   std::span<bool> hits, Executor& executor = serial_executor()) {
+template <class S, class P, class Filter = KeepAll>
+KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
+                   std::span<bool> hits, Executor& executor = serial_executor(), const Filter& filter = {}) {
     detail::expect_room(rays.size(), hits.size());
     return detail::answer_batch(
-        index, rays.size(), executor,
+        index, rays.size(), executor, filter,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.any_hits(wide, rays.subspan(begin, end - begin), hits.data() + begin);
+            return kernels.any_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
         },
-        [&](std::size_t i) { hits[i] = any_hit(index, rays[i]); });
+        [&](std::size_t i, const auto& own) { hits[i] = any_hit(index, rays[i], own); });
 }
 
 }  // namespace hedgerow

@@ -94,7 +94,8 @@ const std::vector<StructureInfo>& structure_list() {
           {"reinsertion", "PASSES", "10", "most passes of the builder 'high'"},
           {"traversal_cost", "NUMBER", "4", "of an inner node of the binary tree, for the SAH"},
           {"intersection_cost", "NUMBER", "1", "of a primitive, for the SAH"},
-          {"max_leaf_size", "1..8", "8", "larger nodes are always split"}}}};
+          {"max_leaf_size", "1..8", "8", "larger nodes are always split"},
+          {"budget", "BYTES", "0", "a build that may take more memory is refused; 0: none is"}}}};
     return list;
 }
 

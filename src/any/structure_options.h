@@ -204,6 +204,7 @@ void read_options(OptionReader& in, typename WideBvh<T, D>::Options& o, std::typ
     in.number("traversal_cost", o.traversal_cost, 0.0, 1e6);
     in.number("intersection_cost", o.intersection_cost, 1e-6, 1e6);
     in.number<std::uint32_t>("max_leaf_size", o.max_leaf_size, 1, wide_leaf_size);
+    in.number("budget", o.budget, 0.0, 1e15);
 }
 
 }  // namespace hedgerow::detail

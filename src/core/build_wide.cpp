@@ -36,6 +36,7 @@ WideOptions resolved(const WideOptions& options) {
             options.max_leaf_size, "a number from 1 to 8");
     require(is_cost(options.traversal_cost), "traversal_cost", options.traversal_cost, "a cost");
     require(is_cost(options.intersection_cost), "intersection_cost", options.intersection_cost, "a cost");
+    require(is_cost(options.budget), "budget", options.budget, "a number of bytes");
     require(options.reinsertion >= 0, "reinsertion", options.reinsertion, "a number of passes");
     WideOptions all = options;
     if (w == 0) all.width = preferred_wide_width();

@@ -5,7 +5,9 @@
 template <int W, Wanted wanted>
 class Batch {
 public:
-    explicit Batch(const WideScene& scene) : scene_(scene) {
+    /// Of the rays those from `begin` to `end`.
+    Batch(const WideScene& scene, const RayArray<float, 3>& rays, std::size_t begin, std::size_t end)
+        : scene_(scene), asked_(rays), next_(begin), end_(end) {
         room_ = Stack::room(scene.tree.depth);
         slots_ = std::min(most_slots, stack_places / room_);
         start_[0] = reinterpret_cast<const char*>(scene.tree.nodes.data());
@@ -13,8 +15,7 @@ public:
     }
 
     template <class Answer>
-    void answer(std::span<const Ray<float, 3>> rays, Answer* answers) {
-        asked_ = rays;
+    void answer(Answer* answers) {
         int inner = 0, leaf = 0;
         for (int s = 0; s < slots_; ++s)
             if (begin(s, answers)) inner_[inner++] = s;
@@ -63,9 +64,9 @@ private:
     template <class Answer>
     HWY_INLINE bool begin(int s, Answer* answers) {
         do {
-            if (next_ == asked_.size()) return false;
+            if (next_ == end_) return false;
             index_[s] = next_;
-            prepare<W>(asked_[next_++], scene_.tree.bounds, ray_[s]);
+            prepare<W>(asked_.at(next_++), scene_.tree.bounds, 0.0f, ray_[s]);
             if (!ray_[s].usable) end(s, answers);
         } while (!ray_[s].usable);
         Stack stack = stack_of(s);
@@ -102,7 +103,7 @@ private:
     /// False when the ray has its answer.
     HWY_INLINE bool test_leaf(int s) {
         Stack stack = stack_of(s);
-        if (test_block(scene_.blocks[word_[s] & ~WideChild::leaf_bit], ray_[s])) {
+        if (test_triangles(scene_, word_[s] & ~WideChild::leaf_bit, ray_[s], index_[s])) {
             if constexpr (wanted == Wanted::any) return false;
             stack.sweep(ray_[s].s_limit);
         }
@@ -111,8 +112,8 @@ private:
     }
 
     const WideScene& scene_;
-    std::span<const Ray<float, 3>> asked_;
-    std::size_t next_ = 0;
+    RayReader asked_;
+    std::size_t next_, end_;
     int slots_, room_;
     const char* start_[2];  // of nodes and of leaves, and how far they lie apart
     std::size_t step_[2] = {stride, sizeof(Block)};

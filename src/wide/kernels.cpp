@@ -28,17 +28,19 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Each builds on those before it.
 // clang-format off
 #include "rays-inl.h"
+#include "reader-inl.h"
 #include "tests-inl.h"
 #include "stack-inl.h"
 #include "single-inl.h"
+#include "instances-inl.h"
 #include "packet-inl.h"
 #include "batch-inl.h"
 #include "many-inl.h"
 // clang-format on
 
 // F<W>::answer, W being the width of the scene's nodes.
-template <template <int> class F, class... Arguments>
-HWY_INLINE auto by_width(const WideScene& scene, Arguments... arguments) {
+template <template <int> class F, class Scene, class... Arguments>
+HWY_INLINE auto by_width(const Scene& scene, Arguments... arguments) {
     switch (scene.tree.nodes.width()) {
         case 4:
             return F<4>::answer(scene, arguments...);
@@ -55,13 +57,15 @@ struct Answering {
         static auto answer(const WideScene& scene, const Ray<float, 3>* asked) {
             return answer_one<W, wanted>(scene, *asked);
         }
+        static auto answer(const WideInstances& scene, const Ray<float, 3>* asked) {
+            return answer_one_of_instances<W, wanted>(scene, *asked);
+        }
     };
     template <int W>
     struct Many {
         template <class Answer>
-        static KernelUse answer(const WideScene& scene, std::span<const Ray<float, 3>> rays,
-                                Answer* answers) {
-            return answer_many<W, wanted>(scene, rays, answers);
+        static KernelUse answer(const WideScene& scene, const RayArray<float, 3>* rays, Answer* answers) {
+            return answer_many<W, wanted>(scene, *rays, answers);
         }
     };
 };
@@ -72,11 +76,18 @@ Hit<float> closest_hit(const WideScene& scene, const Ray<float, 3>& ray) {
 bool any_hit(const WideScene& scene, const Ray<float, 3>& ray) {
     return by_width<Answering<Wanted::any>::template One>(scene, &ray);
 }
-KernelUse closest_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, Hit<float>* hits) {
-    return by_width<Answering<Wanted::closest>::template Many>(scene, rays, hits);
+KernelUse closest_hits(const WideScene& scene, const RayArray<float, 3>& rays, Hit<float>* hits) {
+    return by_width<Answering<Wanted::closest>::template Many>(scene, &rays, hits);
 }
-KernelUse any_hits(const WideScene& scene, std::span<const Ray<float, 3>> rays, bool* hits) {
-    return by_width<Answering<Wanted::any>::template Many>(scene, rays, hits);
+KernelUse any_hits(const WideScene& scene, const RayArray<float, 3>& rays, bool* hits) {
+    return by_width<Answering<Wanted::any>::template Many>(scene, &rays, hits);
+}
+
+Hit<float> closest_hit_of_instances(const WideInstances& scene, const Ray<float, 3>& ray) {
+    return by_width<Answering<Wanted::closest>::template One>(scene, &ray);
+}
+bool any_hit_of_instances(const WideInstances& scene, const Ray<float, 3>& ray) {
+    return by_width<Answering<Wanted::any>::template One>(scene, &ray);
 }
 
 inline constexpr WideKernels kernels {
@@ -89,7 +100,7 @@ inline constexpr WideKernels kernels {
 #else
     "neon", 4,
 #endif
-        closest_hit, any_hit, closest_hits, any_hits
+        closest_hit, any_hit, closest_hits, any_hits, closest_hit_of_instances, any_hit_of_instances
 };
 
 #endif  // HWY_TARGET != HWY_SCALAR

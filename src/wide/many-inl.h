@@ -1,14 +1,8 @@
 // Which kernel many rays want: packets of those that go the same way, as long as that pays, and the phased
 // batch for all others. (Read once for each instruction set.)
 
-template <class T>
-HWY_INLINE void prefetch_all(const T* from, std::size_t count) {
-    for (std::size_t at = 0; at < count * sizeof(T); at += 64)
-        __builtin_prefetch(reinterpret_cast<const char*>(from) + at);
-}
-
 template <int W, Wanted wanted, class Answer>
-KernelUse answer_many(const WideScene& scene, std::span<const Ray<float, 3>> rays, Answer* answers) {
+KernelUse answer_many(const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
     if (scene.tree.empty()) {
         std::fill_n(answers, rays.size(), Answer());
         return {0, rays.size(), 0};
@@ -19,8 +13,7 @@ KernelUse answer_many(const WideScene& scene, std::span<const Ray<float, 3>> ray
     KernelUse use;
     std::size_t waiting = 0, next = 0;  // rays from `waiting` to `next` go their own ways
     const auto answer_waiting = [&] {
-        if (waiting < next)
-            Batch<W, wanted>(scene).answer(rays.subspan(waiting, next - waiting), answers + waiting);
+        if (waiting < next) Batch<W, wanted>(scene, rays, waiting, next).answer(answers);
         use.phased += next - waiting;
     };
     Packet<W, wanted> packet(scene);
@@ -28,10 +21,10 @@ KernelUse answer_many(const WideScene& scene, std::span<const Ray<float, 3>> ray
         return packet.leaves() <= enough_leaves || packet.rays_in_leaves() >= rays_a_leaf * packet.leaves();
     };
     for (; rays.size() - next >= size && pays(); next += size) {
-        if (!packet.take(rays.data() + next)) continue;
+        if (!packet.take(rays, next)) continue;
         answer_waiting();
         if (rays.size() - next >= 2 * size) {  // what comes next, while this packet computes
-            prefetch_all(rays.data() + next + size, size);
+            prefetch_rays(rays, next + size, size);
             prefetch_all(answers + next + size, size);
         }
         packet.answer(answers + next);

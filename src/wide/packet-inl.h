@@ -12,18 +12,21 @@ public:
 
     /// Takes `size` rays, if they go the same way: the same axis is the longest of all, and along each axis
     /// all go up or all down.
-    HWY_INLINE bool take(const Ray<float, 3>* rays) {
-        if (!alike(rays[0], rays[size / 3]) || !alike(rays[0], rays[2 * size / 3]) ||
-            !alike(rays[0], rays[size - 1]))
+    HWY_INLINE bool take(const RayArray<float, 3>& rays, std::size_t from) {
+        const Vec3f first = rays[from].direction;
+        if (!alike(first, rays[from + size / 3].direction) ||
+            !alike(first, rays[from + 2 * size / 3].direction) ||
+            !alike(first, rays[from + size - 1].direction))
             return false;
-        z_axis_ = max_axis(rays[0].direction);
+        from_ = from;
+        z_axis_ = max_axis(first);
         for (int k = 0; k < 3; ++k) {
             axis_[k] = (z_axis_ + 1 + k) % 3;
-            down_[k] = std::signbit(rays[0].direction[k]);
+            down_[k] = std::signbit(first[k]);
             near_row_[k] = static_cast<std::size_t>(2 * k + down_[k]) * 4 * W;
         }
         bool good = true;
-        for (int at = 0; at < size && good; at += lanes) good = prepare_rays(rays, at);
+        for (int at = 0; at < size && good; at += lanes) good = prepare_rays(rays, from, at);
         if (good) take_intervals();
         return good;
     }
@@ -50,18 +53,16 @@ private:
     using Stack = WalkStack<W>;
 
     /// A first look at the signs of two rays' directions.
-    static HWY_INLINE bool alike(const Ray<float, 3>& a, const Ray<float, 3>& b) {
+    static HWY_INLINE bool alike(const Vec3f& a, const Vec3f& b) {
         bool same = true;
-        for (int k = 0; k < 3; ++k) same &= std::signbit(a.direction[k]) == std::signbit(b.direction[k]);
+        for (int k = 0; k < 3; ++k) same &= std::signbit(a[k]) == std::signbit(b[k]);
         return same;
     }
 
     /// As `prepare` (rays-inl.h), rays in lanes; false if some ray is not like the first.
-    HWY_INLINE bool prepare_rays(const Ray<float, 3>* rays, int at) {
+    HWY_INLINE bool prepare_rays(const RayArray<float, 3>& rays, std::size_t from, int at) {
         alignas(64) float fields[8][lanes];
-        const float* const words = reinterpret_cast<const float*>(rays + at);
-        for (int i = 0; i < lanes; ++i)
-            for (int w = 0; w < 8; ++w) fields[w][i] = words[8 * i + w];
+        read_rows(rays, from + static_cast<std::size_t>(at), fields);
         const auto field = [&](int w) { return hn::Load(f, fields[w]); };
         const auto all = [&](float x) { return hn::Set(f, x); };
         const V zero = hn::Zero(f);
@@ -299,6 +300,8 @@ private:
                            hn::Le(t, hn::Set(f, std::numeric_limits<float>::max())));
         better = hn::And(better, hn::Or(hn::Lt(t, limit), hn::And(hn::Eq(t, limit), lower)));
         candidates &= bits_of(f, better);
+        if (scene_.filter.keeps != nullptr) [[unlikely]]
+            candidates = kept_of(candidates, m, id, at);
         if (candidates == 0) return false;
         const std::uint64_t bits = candidates;
         better = hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits));
@@ -313,7 +316,20 @@ private:
         return true;
     }
 
+    /// Those that the filter keeps.
+    [[gnu::cold]] HWY_NOINLINE unsigned kept_of(unsigned candidates, const Meetings& m, std::uint32_t id,
+                                                int at) const {
+        unsigned keeps = 0;
+        for (unsigned left = candidates; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            const std::size_t number = from_ + static_cast<std::size_t>(at + i);
+            if (kept(scene_, number, m.t[i], m.u[i], m.v[i], id)) keeps |= 1u << i;
+        }
+        return keeps;
+    }
+
     const WideScene& scene_;
+    std::size_t from_ = 0;  // the number of the first ray
     std::size_t leaves_ = 0, rays_in_leaves_ = 0;
     // Of the rays: see WideRay.
     alignas(64) float inverse_[3][size], enter_[3][size], leave_[3][size], enter_at_[3][size],

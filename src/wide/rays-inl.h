@@ -32,36 +32,37 @@ HWY_INLINE float s_limit_of(float t, float z_length) {
 alignas(16) inline constexpr std::int32_t turned[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}, {0, 1, 2, 3}};
 
 // For nodes of W children. The arithmetic of what t, u and v come of is that of WatertightRay, axes in lanes.
+// Of the origin and the direction the first three lanes count. `more` is added to e, as in RayProbe.
 template <int W>
-HWY_INLINE void prepare(const Ray<float, 3>& asked, const Box<float, 3>& scene, WideRay& ray) {
+HWY_INLINE void prepare(hn::Vec<hn::FixedTag<float, 4>> origin, hn::Vec<hn::FixedTag<float, 4>> direction,
+                        float asked_t_min, float t_max, const Box<float, 3>& scene, float more,
+                        WideRay& ray) {
     constexpr hn::FixedTag<float, 4> f;
     constexpr hn::FixedTag<std::int32_t, 4> i32;
     constexpr hn::FixedTag<std::uint32_t, 4> u32;
     const auto all = [&](float x) { return hn::Set(f, x); };
     const auto axes = hn::FirstN(f, 3);
-    static_assert(sizeof asked == 8 * sizeof(float));
     static_assert(sizeof scene == 6 * sizeof(float));
-    const float* const words = reinterpret_cast<const float*>(&asked);
     const float* const corners = reinterpret_cast<const float*>(&scene);
     const auto low = hn::LoadU(f, corners), high = hn::Shuffle0321(hn::LoadU(f, corners + 2));
-    const auto o = hn::IfThenElseZero(axes, hn::LoadU(f, words));
-    const auto given = hn::IfThenElseZero(axes, hn::LoadU(f, words + 3));  // the fourth lane read is t_min
+    const auto o = hn::IfThenElseZero(axes, origin);
+    const auto given = hn::IfThenElseZero(axes, direction);
     const auto d = hn::IfThenZeroElse(hn::Lt(hn::Abs(given), all(std::numeric_limits<float>::min())), given);
     const auto length = hn::Abs(d), distance = hn::Abs(o);
     const auto longest = hn::MaxOfLanes(f, length);
     const float z_length = hn::GetLane(longest);
-    const float t_min = asked.t_min < 0 ? 0.0f : asked.t_min;
+    const float t_min = asked_t_min < 0 ? 0.0f : asked_t_min;
     ray.usable = hn::AllTrue(f, hn::And(hn::Le(length, all(std::numeric_limits<float>::max())),
                                         hn::Le(distance, all(largest_coordinate<float>)))) &&
-                 z_length > 0 && t_min <= asked.t_max;
+                 z_length > 0 && t_min <= t_max;
 
     // e, as RayProbe has it; the subnormal steps are always added
     const auto reach = hn::MaxOfLanes(
         f, hn::IfThenElseZero(axes, hn::Max(hn::Abs(hn::Sub(low, o)), hn::Abs(hn::Sub(high, o)))));
     const auto far_off = hn::MaxOfLanes(f, distance);
     const float room = underflow * (1 + z_length);
-    const auto slack = hn::MulAdd(all(16 * unit_roundoff<float>), reach,
-                                  hn::MulAdd(all(4 * unit_roundoff<float>), far_off, all(room)));
+    const auto by_origin = hn::MulAdd(all(4 * unit_roundoff<float>), far_off, all(more));
+    const auto slack = hn::MulAdd(all(16 * unit_roundoff<float>), reach, hn::Add(by_origin, all(room)));
     const auto inverse = hn::CopySign(hn::Min(hn::Div(longest, length), all(0x1p60f)), d);
     const auto outward = hn::CopySign(slack, d);
     hn::Store(inverse, f, ray.inverse);
@@ -82,9 +83,20 @@ HWY_INLINE void prepare(const Ray<float, 3>& asked, const Box<float, 3>& scene, 
 
     ray.s_low = t_min * z_length * (1 - wider) - room;
     ray.s_min = ray.s_low > 0 ? ray.s_low : 0.0f;
-    ray.s_limit = s_limit_of(asked.t_max, z_length);
+    ray.s_limit = s_limit_of(t_max, z_length);
     ray.z_length = z_length;
-    ray.t_min = t_min, ray.t_limit = asked.t_max;
+    ray.t_min = t_min, ray.t_limit = t_max;
     ray.u = ray.v = 0;
     ray.element = Hit<float>::none;
+}
+
+// A ray as it lies in memory, the 8 numbers of a Ray, at any address.
+template <int W>
+HWY_INLINE void prepare(const std::byte* ray_at, const Box<float, 3>& scene, float more, WideRay& ray) {
+    constexpr hn::FixedTag<float, 4> f;
+    const float* const words = reinterpret_cast<const float*>(ray_at);
+    float t_min, t_max;
+    std::memcpy(&t_min, ray_at + 6 * sizeof(float), sizeof t_min);
+    std::memcpy(&t_max, ray_at + 7 * sizeof(float), sizeof t_max);
+    prepare<W>(hn::LoadU(f, words), hn::LoadU(f, words + 3), t_min, t_max, scene, more, ray);
 }

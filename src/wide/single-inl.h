@@ -3,15 +3,16 @@
 
 enum class Wanted { closest, any };
 
-template <int W, Wanted wanted>
-bool trace_one(const WideScene& scene, WideRay& ray) {
+// `test(leaf)` holds a leaf against the ray and says whether the ray was hit. What a leaf holds, it knows.
+template <int W, Wanted wanted, class Test>
+HWY_INLINE bool walk_one(const WideTree<float, 3>& tree, WideRay& ray, Test test) {
     using Stack = WalkStack<W>;
     constexpr int room = Stack::room(bvh_max_depth + 1);
     std::int32_t entries[room];
     std::uint32_t words[room];
     Stack stack(entries, words, 0, 0);
     stack.clear();
-    const std::byte* const nodes = scene.tree.nodes.data();
+    const std::byte* const nodes = tree.nodes.data();
     const Slabs<W> slabs(ray);
     std::uint32_t word = 0;
     while (true) {
@@ -46,7 +47,7 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
             }
         } else {
             if (word == Stack::end) return ray.element != Hit<float>::none;
-            if (test_block(scene.blocks[word & ~WideChild::leaf_bit], ray)) {
+            if (test(word & ~WideChild::leaf_bit)) {
                 if (wanted == Wanted::any) return true;
                 stack.sweep(ray.s_limit);
             }
@@ -56,9 +57,17 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
 }
 
 template <int W, Wanted wanted>
+bool trace_one(const WideScene& scene, WideRay& ray) {
+    return walk_one<W, wanted>(
+        scene.tree, ray, [&](std::uint32_t leaf) __attribute__((always_inline)) {
+            return test_triangles(scene, leaf, ray, 0);
+        });
+}
+
+template <int W, Wanted wanted>
 HWY_INLINE auto answer_one(const WideScene& scene, const Ray<float, 3>& asked) {
     WideRay ray;
-    prepare<W>(asked, scene.tree.bounds, ray);
+    prepare<W>(reinterpret_cast<const std::byte*>(&asked), scene.tree.bounds, 0.0f, ray);
     const bool hit = ray.usable && !scene.tree.empty() && trace_one<W, wanted>(scene, ray);
     if constexpr (wanted == Wanted::closest)
         return hit_of(scene, ray);

@@ -162,9 +162,22 @@ HWY_INLINE unsigned meet_exactly_among(F f, const Corners<F>& corners, unsigned 
     }
 }
 
+HWY_INLINE Hit<float> hit_of(const WideScene& scene, float t, float u, float v, std::uint32_t element) {
+    if (element == Hit<float>::none) return {};
+    const std::uint32_t id = scene.faces.empty() ? element : scene.faces[element];
+    return {t, u, v, id, scene.geometry, scene.instance, element};
+}
+
+// Whether the filter keeps what is about to become the hit of a ray.
+HWY_INLINE bool kept(const WideScene& scene, std::size_t ray, float t, float u, float v,
+                     std::uint32_t element) {
+    return scene.filter.keeps(scene.filter.filter, scene.first_ray + ray, hit_of(scene, t, u, v, element));
+}
+
 // Tests the triangles of a block; what is nearer than the ray's hit (or as near, and of a lower number)
-// becomes the hit. True if there was one.
-HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
+// becomes the hit, if `keeps(t, u, v, id)`. True if there was one.
+template <class Keeps>
+HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keeps keeps) {
     using F = Floats<8>;
     constexpr F f;
     constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
@@ -187,6 +200,7 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
             const std::uint32_t id = block.id[at + i];
             if (!(t >= ray.t_min) || !(t <= ray.t_limit) || t > std::numeric_limits<float>::max()) continue;
             if (t == ray.t_limit && id > ray.element) continue;
+            if (!keeps(t, m.u[i], m.v[i], id)) continue;
             ray.t_limit = t;
             ray.u = m.u[i], ray.v = m.v[i];
             ray.element = id;
@@ -196,12 +210,20 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
     if (found) ray.s_limit = s_limit_of(ray.t_limit, ray.z_length);
     return found;
 }
-
-HWY_INLINE Hit<float> hit_of(const WideScene& scene, float t, float u, float v, std::uint32_t element) {
-    if (element == Hit<float>::none) return {};
-    const std::uint32_t id = scene.faces.empty() ? element : scene.faces[element];
-    return {t, u, v, id, 0, 0, element};
+// A function of its own: a call in the midst of the other costs registers, and 3% of any hit in a batch.
+[[gnu::cold]] HWY_NOINLINE bool test_block_filtered(const WideScene& scene, std::uint32_t leaf, WideRay& ray,
+                                                    std::size_t number) {
+    return test_block(scene.blocks[leaf], ray, [&](float t, float u, float v, std::uint32_t id) {
+        return kept(scene, number, t, u, v, id);
+    });
 }
+// The same of a leaf, for ray `number`, with the call's filter.
+HWY_INLINE bool test_triangles(const WideScene& scene, std::uint32_t leaf, WideRay& ray, std::size_t number) {
+    if (scene.filter.keeps != nullptr) [[unlikely]]
+        return test_block_filtered(scene, leaf, ray, number);
+    return test_block(scene.blocks[leaf], ray, [](float, float, float, std::uint32_t) { return true; });
+}
+
 HWY_INLINE Hit<float> hit_of(const WideScene& scene, const WideRay& ray) {
     return hit_of(scene, ray.t_limit, ray.u, ray.v, ray.element);
 }

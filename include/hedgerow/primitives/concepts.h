@@ -187,6 +187,15 @@ std::uint32_t reported_id(const P& set, PrimitiveId i, std::uint32_t instance) {
         return i;
 }
 
+/// The geometry that a hit reports: of instances what their owner gave them, else 0.
+template <class P>
+std::uint32_t reported_geometry(const P& set, std::uint32_t instance) {
+    if constexpr (requires { set.geometry(instance); })
+        return set.geometry(instance);
+    else
+        return 0;
+}
+
 /// A set that only looks at arrays: `view()` of an owner, or the set itself. Indexes hold views.
 template <class P>
 auto view_of(const P& set) {

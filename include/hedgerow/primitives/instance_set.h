@@ -9,19 +9,23 @@
 #include <hedgerow/geometry/transform.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/placed.h>
-#include <hedgerow/queries/concepts.h>
+#include <hedgerow/queries/filter.h>
 
 namespace hedgerow {
 
-/// An index, borrowed, and where it is placed: the transform takes its space to the world.
+/// An index, borrowed, and where it is placed: the transform takes its space to the world. Filters may refuse
+/// it by its `mask` (`InMasks`), and hits report its `geometry` beside its number.
 template <class I>
 struct Instance {
     const I* index;
     Transform<I::dimension> transform;
+    std::uint32_t mask = 0xFFFFFFFFu, geometry = 0;
 
-    Instance(const I& borrowed, const Transform<I::dimension>& placed = {})
-        : index(&borrowed), transform(placed) {}
-    Instance(const I&& gone, const Transform<I::dimension>& = {}) = delete;  // an index has to outlive it
+    Instance(const I& borrowed, const Transform<I::dimension>& placed = {}, std::uint32_t with_mask = ~0u,
+             std::uint32_t as_geometry = 0)
+        : index(&borrowed), transform(placed), mask(with_mask), geometry(as_geometry) {}
+    Instance(const I&& gone, const Transform<I::dimension>& = {}, std::uint32_t = ~0u,
+             std::uint32_t = 0) = delete;  // an index has to outlive it
 };
 
 /// An instance made ready, and how far what it answers may err.
@@ -47,7 +51,11 @@ public:
     using T = typename I::Scalar;
     static constexpr int D = I::dimension;
 
-    PlacedIndex(const Instance<I>& instance) : index_(instance.index), transform_(instance.transform) {
+    PlacedIndex(const Instance<I>& instance)
+        : index_(instance.index),
+          transform_(instance.transform),
+          mask_(instance.mask),
+          geometry_(instance.geometry) {
         const Box<double, D> own{Vec<double, D>(index_->bounds().low), Vec<double, D>(index_->bounds().high)};
         const auto box = transform_.there().box(own);
         const double object = largest(own), world = largest(box),
@@ -70,6 +78,8 @@ public:
     }
 
     const I& index() const { return *index_; }
+    std::uint32_t mask() const { return mask_; }
+    std::uint32_t geometry() const { return geometry_; }
     const Box<T, D>& bounds() const { return bounds_; }
     double ray_error() const { return ray_error_; }
     double ray_error_by_origin() const { return ray_error_by_origin_; }
@@ -145,6 +155,7 @@ private:
 
     const I* index_;
     Transform<D> transform_;
+    std::uint32_t mask_, geometry_;
     Box<T, D> bounds_;
     double margin_ = 0, missed_ = 0, ray_error_ = 0, ray_error_by_origin_ = 0;
     double shrinks_ = 0;  // the most that vectors are stretched on the way back
@@ -228,6 +239,16 @@ private:
     Ball ball_;
     mutable T world_limit_ = std::numeric_limits<T>::quiet_NaN(), limit_ = T(0);
 };
+
+/// The filter of a ray query, for kernels that answer a part of it.
+template <class Q>
+HitFilter filter_of_query(const Q& query) {
+    if constexpr (Q::keeps_all) return {};
+    return {[](const void* asked, std::size_t, const Hit<float>& hit) {
+                return static_cast<const Q*>(asked)->keeps(hit);
+            },
+            static_cast<const void*>(&query)};
+}
 }  // namespace detail
 
 /// The same over an InstanceSet, copied nowhere.
@@ -240,12 +261,17 @@ public:
     using T = Scalar;
     static constexpr int D = dimension;
 
-    InstanceSetView(std::span<const PlacedIndex<I>> all, double error, double error_by_origin)
-        : all_(all), error_(error), error_by_origin_(error_by_origin) {}
+    using KernelInstance = typename I::KernelInstance;
+
+    InstanceSetView(std::span<const PlacedIndex<I>> all, const KernelInstance* for_kernels, double error,
+                    double error_by_origin)
+        : all_(all), for_kernels_(for_kernels), error_(error), error_by_origin_(error_by_origin) {}
 
     std::size_t size() const { return all_.size(); }
     Box<T, D> bounds(std::size_t i) const { return all_[i].bounds(); }
     const PlacedIndex<I>& operator[](std::size_t i) const { return all_[i]; }
+    /// All, as the kernels know them.
+    const KernelInstance* for_kernels() const requires(I::by_kernels) { return for_kernels_; }
     /// An object's structure that holds primitives in several cells offers them several times. O(instances).
     bool offers_once() const {
         return std::all_of(all_.begin(), all_.end(),
@@ -255,6 +281,7 @@ public:
     std::uint32_t id(PrimitiveId element, std::uint32_t instance) const {
         return reported_id(all_[instance].index().primitives(), element, 0);
     }
+    std::uint32_t geometry(std::uint32_t instance) const { return all_[instance].geometry(); }
     /// The greatest of all instances' (PlacedIndex).
     T hit_error(const Ray<T, D>& ray) const {
         const double origin = max_component(abs(Vec<double, D>(ray.origin)));
@@ -269,9 +296,10 @@ public:
     template <class Q>
     Flow test_leaf(const RayProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            detail::RayInside<I, Q> inside(all_[leaf.ids[i]], leaf.ids[i], probe, query);
-            all_[leaf.ids[i]].index().ask(inside);
-            if (inside.flow() == Flow::stop) return Flow::stop;
+            const PlacedIndex<I>& placed = all_[leaf.ids[i]];
+            if constexpr (requires { query.enters(placed.mask()); })
+                if (!query.enters(placed.mask())) continue;
+            if (ask_inside(placed, leaf.ids[i], probe, query) == Flow::stop) return Flow::stop;
         }
         return Flow::go_on;
     }
@@ -299,6 +327,28 @@ public:
     }
 
 private:
+    /// By the kernels, where they know the index, for the one candidate that the query wants of it.
+    template <class Q>
+    static Flow ask_inside(const PlacedIndex<I>& placed, std::uint32_t instance, const RayProbe<T, D>& probe,
+                           Q& query) {
+        if constexpr (I::by_kernels && requires { Q::sought; }) {
+            if (const auto* kernels = I::kernels()) {
+                const auto scene =
+                    placed.index().wide_scene(detail::filter_of_query(query), instance, placed.geometry());
+                Ray<T, D> ray = placed.inside(probe.ray());
+                ray.t_max = query.limit();
+                if constexpr (Q::sought == Sought::any) {
+                    return kernels->any_hit(scene, ray) ? query.found() : Flow::go_on;
+                } else {
+                    const auto hit = kernels->closest_hit(scene, ray);
+                    return hit ? query.offer({hit.t, hit.u, hit.v, hit.element, instance}) : Flow::go_on;
+                }
+            }
+        }
+        detail::RayInside<I, Q> inside(placed, instance, probe, query);
+        placed.index().ask(inside);
+        return inside.flow();
+    }
     template <class Inside>
     static Flow walk(const PlacedIndex<I>& placed, Inside inside) {
         placed.index().structure().walk(placed.primitives(), inside, uncounted);
@@ -307,6 +357,7 @@ private:
     static constexpr NoVisits uncounted{};
 
     std::span<const PlacedIndex<I>> all_;
+    const KernelInstance* for_kernels_;
     double error_, error_by_origin_;
 };
 
@@ -323,7 +374,10 @@ private:
 /// transform. Spheres and types of one's own have such shapes only under similarities (placed.h). Visits
 /// count the instances, not what is looked at inside.
 ///
-/// Memory: about 600 bytes an instance in space.
+/// Rays against instances of triangles of float in a WideBvh go to the kernels
+/// (structures/bvh/wide/kernels.h), from any structure; where that is a WideBvh too, on both levels.
+///
+/// Memory: about 600 bytes an instance in space, and 128 more where the kernels know its index.
 template <class I>
 class InstanceSet {
 public:
@@ -340,6 +394,9 @@ public:
             placed_.emplace_back(instance);
             error_ = std::max(error_, placed_.back().ray_error());
             error_by_origin_ = std::max(error_by_origin_, placed_.back().ray_error_by_origin());
+            if constexpr (I::by_kernels)
+                for_kernels_.push_back(instance.index->kernel_instance(instance.transform.back(),
+                                                                       instance.mask, instance.geometry));
         }
     }
     explicit InstanceSet(const std::vector<Instance<I>>& instances) : InstanceSet(std::span(instances)) {}
@@ -347,10 +404,11 @@ public:
         : InstanceSet(std::span(instances.begin(), instances.size())) {}
 
     std::size_t size() const { return placed_.size(); }
-    InstanceSetView<I> view() const { return {placed_, error_, error_by_origin_}; }
+    InstanceSetView<I> view() const { return {placed_, for_kernels_.data(), error_, error_by_origin_}; }
 
 private:
     std::vector<PlacedIndex<I>> placed_;
+    std::vector<typename I::KernelInstance> for_kernels_;
     double error_ = 0, error_by_origin_ = 0;
 };
 

@@ -12,6 +12,7 @@ public:
     using Base = RayQuery<Set, Filter>;
     using Scalar = typename Base::Scalar;
     static constexpr Order order = Order::nearest;
+    static constexpr Sought sought = Sought::any;
 
     template <class Index, class Ray>
     AnyHit(const Index& index, const Ray& ray, const Filter& filter = {})
@@ -21,6 +22,11 @@ public:
     Flow offer(const RayCandidate<Scalar>& c) {
         found_ = this->counts(c);
         return found_ ? Flow::stop : Flow::go_on;
+    }
+    /// Something was found that counts.
+    Flow found() {
+        found_ = true;
+        return Flow::stop;
     }
     bool answer() const { return found_; }
 

@@ -14,6 +14,7 @@ public:
     using Base = RayQuery<Set, Filter>;
     using Scalar = typename Base::Scalar;
     static constexpr Order order = Order::nearest;
+    static constexpr Sought sought = Sought::closest;
 
     template <class Index, class Ray>
     ClosestHit(const Index& index, const Ray& ray, const Filter& filter = {})

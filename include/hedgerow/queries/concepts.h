@@ -11,6 +11,10 @@ namespace hedgerow {
 /// Whether near cells are wanted first. A query that takes whatever it overlaps needs no order.
 enum class Order { none, nearest };
 
+/// Of a RayQuery that has such a member `sought`: what it has to be told of a part of the scene. Others are
+/// offered everything that is met.
+enum class Sought { closest, any };
+
 template <class Q>
 concept Query = requires(Q& q, const Q& asked) {
     { Q::order } -> std::convertible_to<Order>;

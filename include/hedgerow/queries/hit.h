@@ -8,7 +8,8 @@ namespace hedgerow {
 
 /// A hit: t in units of the ray's direction, the surface's own coordinates u and v (see Meeting), and what
 /// was hit. `element` is the position in the primitive set; `primitive` its id, which differs where a polygon
-/// of a file became several triangles. Among instances both are of the index that `instance` places.
+/// of a file became several triangles. Among instances both are of the index that `instance` places, and
+/// `geometry` is the number that the instance was given; elsewhere it is 0.
 template <std::floating_point T>
 struct Hit {
     T t = std::numeric_limits<T>::infinity();
@@ -21,7 +22,12 @@ struct Hit {
     friend bool operator==(const Hit&, const Hit&) = default;
 };
 
-/// A filter is anything callable with a Hit that says whether it counts. This one keeps all.
+/// A filter is anything that says of a Hit whether it counts: callable with the Hit, or with the number of
+/// the ray in its batch and the Hit. A hit that is refused changes nothing. The filter is asked of hits that
+/// would count, in any order, perhaps again of the same, and by several threads at once where the executor
+/// has them; so it has to say the same of the same hit, and to be called as const. What it throws comes out
+/// of the query; of a batch some answers are written then. Among instances it may also say, by a member
+/// `enters(mask)`, which of them are looked into at all. This one keeps all, and costs nothing.
 struct KeepAll {
     template <class H>
     constexpr bool operator()(const H&) const {
@@ -54,6 +60,16 @@ struct Masked {
     template <class H>
     bool operator()(const H& h) const {
         return (masks[h.element] & wanted) != 0;
+    }
+};
+
+/// Of instances enters those of whose mask some bit is among the wanted ones, and keeps what is hit there.
+struct InMasks {
+    std::uint32_t wanted;
+    bool enters(std::uint32_t mask) const { return (mask & wanted) != 0; }
+    template <class H>
+    constexpr bool operator()(const H&) const {
+        return true;
     }
 };
 

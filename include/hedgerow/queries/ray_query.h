@@ -1,7 +1,7 @@
 /// What the ray queries share: the probe, the interval, and the filter.
 #pragma once
 
-#include <hedgerow/queries/hit.h>
+#include <hedgerow/queries/filter.h>
 
 namespace hedgerow {
 
@@ -20,6 +20,11 @@ public:
           filter_(filter) {}
 
     const Probe& probe() const { return probe_; }
+    /// Whether an instance of this mask is to be looked into.
+    bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
+    /// What the filter says.
+    static constexpr bool keeps_all = std::is_same_v<Filter, KeepAll>;
+    bool keeps(const Hit<Scalar>& hit) const { return hedgerow::keeps(filter_, 0, hit); }
 
 protected:
     Scalar first_limit() const { return probe_.usable() ? probe_.ray().t_max : Scalar(-1); }
@@ -28,13 +33,19 @@ protected:
         if (!(c.t >= probe_.ray().t_min && c.t <= probe_.ray().t_max) ||
             c.t > std::numeric_limits<Scalar>::max())
             return false;
-        if constexpr (std::is_same_v<Filter, KeepAll>)
+        if constexpr (keeps_all)
             return true;
         else
-            return filter_(hit(c));
+            return keeps(hit(c));
     }
     Hit<Scalar> hit(const RayCandidate<Scalar>& c) const {
-        return {c.t, c.u, c.v, reported_id(set_, c.element, c.instance), 0, c.instance, c.element};
+        return {c.t,
+                c.u,
+                c.v,
+                reported_id(set_, c.element, c.instance),
+                reported_geometry(set_, c.instance),
+                c.instance,
+                c.element};
     }
 
 private:

@@ -17,10 +17,14 @@ struct WideOptions {
     int width = 0;
     /// 1 to `wide_leaf_size`.
     std::uint32_t max_leaf_size = wide_leaf_size;
-    /// What the binary tree weighs by (SahOptions).
+    /// What the binary tree weighs by (SahOptions): a node, and a triangle. Over instances the latter counts
+    /// WideBvh::instance_cost times.
     double traversal_cost = 4, intersection_cost = 1;
     /// Most passes of `high`.
     int reinsertion = 10;
+    /// In bytes: a build that may take more is refused before any is spent (budget.h has the bound); 0 for
+    /// none.
+    double budget = 0;
 };
 
 /// The options with a width in place of 0. Throws InputError for what is out of its range.

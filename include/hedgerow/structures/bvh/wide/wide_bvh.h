@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <hedgerow/structures/bvh/wide/budget.h>
 #include <hedgerow/structures/bvh/wide/build.h>
 
 namespace hedgerow {
@@ -28,10 +29,15 @@ public:
     static constexpr auto packed_order = PackedOrder::of_blocks;
     static constexpr int width = most_wide;
     static constexpr int max_depth = bvh_max_depth;
+    /// An instance is looked into at the cost of so many triangles, so that most have a leaf of their own.
+    static constexpr double instance_cost = 16;
 
     template <PrimitiveSet P>
     static WideBvh build(const P& set, const Options& options, Executor& executor) {
-        return WideBvh(references_of(set, executor), resolved(options), executor);
+        Options all = resolved(options);
+        refuse_beyond_budget<T, D>(set.size(), all);
+        if constexpr (Instanced<P>) all.intersection_cost *= instance_cost;
+        return WideBvh(references_of(set, executor), all, executor);
     }
 
     /// Each primitive stands in one leaf.
@@ -46,7 +52,7 @@ public:
     std::size_t used_node_count() const { return tree_.nodes.size() + leaf_count(); }
     std::size_t leaf_count() const { return tree_.leaf_count(); }
     int depth() const { return tree_.depth; }
-    /// With the width that it has.
+    /// With the width that it has, and over instances their `intersection_cost`.
     const Options& options() const { return options_; }
     const WideTree<T, D>& tree() const { return tree_; }
 

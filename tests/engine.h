@@ -1,0 +1,48 @@
+/// What tests of the engine share.
+#pragma once
+
+#include <hedgerow/structures/bvh/wide/kernels.h>
+
+#include "matrix.h"
+
+namespace hedgerow {
+
+/// Takes an instruction set, and the one before when it goes.
+class Using {
+public:
+    explicit Using(std::string_view set)
+        : before_(wide_kernels() ? wide_kernels()->instruction_set : "plain") {
+        use_instruction_set(set);
+    }
+    ~Using() { use_instruction_set(before_); }
+    Using(const Using&) = delete;
+    Using& operator=(const Using&) = delete;
+
+private:
+    std::string_view before_;
+};
+
+/// Rays of every kind, which go their own ways.
+inline std::vector<Ray3f> apart(const Box3f& box, const matrix::Points<float, 3>& targets,
+                                std::size_t count) {
+    std::vector<Ray3f> rays;
+    for (std::size_t i = 0; i < count; ++i) rays.push_back(matrix::ray_of(box, targets, i));
+    return rays;
+}
+/// Rays that go the same way, from beyond a corner of a box through its middle.
+inline std::vector<Ray3f> together(const Box3f& box, std::size_t count) {
+    std::vector<Ray3f> rays;
+    const Vec3f size = box.extent();
+    const int longest = max_axis(size);
+    for (std::size_t i = 0; i < count; ++i) {
+        Vec3f d;
+        for (int k = 0; k < 3; ++k) d[k] = size[k] * (k == longest ? 1 : 0.6f);
+        d[(longest + 1) % 3] *= 0.8f + 0.01f * static_cast<float>(i % 32);
+        d[(longest + 2) % 3] *= 0.8f + 0.01f * static_cast<float>(i / 32 % 32);
+        rays.push_back({box.low - size * 0.2f, d});
+        if (i % 16 == 5) rays.back().t_min = 0.4f, rays.back().t_max = 0.7f;
+    }
+    return rays;
+}
+
+}  // namespace hedgerow
