@@ -10,10 +10,13 @@
 // After foreach_target.h:
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <numeric>
 
 #include <hedgerow/structures/bvh/build_tree.h>
 #include <hedgerow/structures/bvh/wide/kernels.h>

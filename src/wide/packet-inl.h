@@ -10,30 +10,30 @@ public:
 
     explicit Packet(const WideScene& scene) : scene_(scene) {}
 
-    /// Takes `size` rays, if they go the same way: the same axis is the longest of all, and along each axis
-    /// all go up or all down.
-    HWY_INLINE bool take(const RayArray<float, 3>& rays, std::size_t from) {
-        const Vec3f first = rays[from].direction;
-        if (!alike(first, rays[from + size / 3].direction) ||
-            !alike(first, rays[from + 2 * size / 3].direction) ||
-            !alike(first, rays[from + size - 1].direction))
-            return false;
+    /// Reads `size` rays, and tells in which ways they go: a bit for each that any of them goes. A way is a
+    /// longest axis, and along each axis up or down. 0 if a ray is not usable.
+    HWY_INLINE std::uint32_t look(const RayArray<float, 3>& rays, std::size_t from) {
         from_ = from;
-        z_axis_ = max_axis(first);
-        for (int k = 0; k < 3; ++k) {
-            axis_[k] = (z_axis_ + 1 + k) % 3;
-            down_[k] = std::signbit(first[k]);
-            near_row_[k] = static_cast<std::size_t>(2 * k + down_[k]) * 4 * W;
+        M usable = hn::Eq(hn::Zero(f), hn::Zero(f));
+        auto ways = hn::Zero(u32);
+        for (int p = 0; p < parts; ++p) {
+            read_rows(rays, from + static_cast<std::size_t>(p * lanes), numbers_[p]);
+            const auto way = way_of(p, usable);
+            hn::Store(way, u32, way_ + p * lanes);
+            ways = hn::Or(ways, hn::Shl(hn::Set(u32, 1), way));
         }
-        bool good = true;
-        for (int at = 0; at < size && good; at += lanes) good = prepare_rays(rays, from, at);
-        if (good) take_intervals();
-        return good;
+        if (!hn::AllTrue(f, usable)) return 0;
+        alignas(64) std::uint32_t each[lanes];
+        hn::Store(ways, u32, each);
+        return std::accumulate(each, each + lanes, 0u, std::bit_or());
     }
+    /// Answers those that go this way.
     template <class Answer>
-    HWY_INLINE void answer(Answer* answers) {
+    HWY_INLINE void answer(std::uint32_t way, Answer* answers) {
+        take(way);
         trace();
         for (int i = 0; i < size; ++i) {
+            if (way_[i] != way) continue;
             if constexpr (wanted == Wanted::any)
                 answers[i] = element_[i] != Hit<float>::none;
             else
@@ -49,44 +49,71 @@ private:
     using V = hn::Vec<F>;
     using M = hn::Mask<F>;
     static constexpr F f{};
+    static constexpr hn::RebindToUnsigned<F> u32{};
     static constexpr int lanes = static_cast<int>(hn::MaxLanes(f)), parts = size / lanes;
     using Stack = WalkStack<W>;
 
-    /// A first look at the signs of two rays' directions.
-    static HWY_INLINE bool alike(const Vec3f& a, const Vec3f& b) {
-        bool same = true;
-        for (int k = 0; k < 3; ++k) same &= std::signbit(a[k]) == std::signbit(b[k]);
-        return same;
+    static HWY_INLINE V direction(V given) {
+        return hn::IfThenZeroElse(hn::Lt(hn::Abs(given), hn::Set(f, std::numeric_limits<float>::min())),
+                                  given);
+    }
+    static HWY_INLINE V t_min_of(V given) { return hn::IfThenZeroElse(hn::Lt(given, hn::Zero(f)), given); }
+
+    HWY_INLINE hn::Vec<decltype(u32)> way_of(int p, M& usable) const {
+        const auto number = [&](int w) { return hn::Load(f, numbers_[p][w]); };
+        const auto all = [&](float x) { return hn::Set(f, x); };
+        V d[3], length[3];
+        for (int k = 0; k < 3; ++k) {
+            d[k] = direction(number(3 + k));
+            length[k] = hn::Abs(d[k]);
+            usable = hn::And(usable, hn::And(hn::Le(length[k], all(std::numeric_limits<float>::max())),
+                                             hn::Le(hn::Abs(number(k)), all(largest_coordinate<float>))));
+        }
+        const V longest = hn::Max(length[0], hn::Max(length[1], length[2]));
+        usable =
+            hn::And(usable, hn::And(hn::Gt(longest, hn::Zero(f)), hn::Le(t_min_of(number(6)), number(7))));
+        // The first of the longest, as max_axis has it.
+        const auto is = [&](int k) { return hn::RebindMask(u32, hn::Eq(length[k], longest)); };
+        auto way =
+            hn::IfThenElse(is(0), hn::Set(u32, 0), hn::IfThenElse(is(1), hn::Set(u32, 8), hn::Set(u32, 16)));
+        for (int k = 0; k < 3; ++k) {
+            const auto down = hn::ShiftRight<31>(hn::BitCast(u32, d[k]));
+            way = hn::Or(way, k == 0 ? down : k == 1 ? hn::ShiftLeft<1>(down) : hn::ShiftLeft<2>(down));
+        }
+        return way;
+    }
+    HWY_INLINE void take(std::uint32_t way) {
+        z_axis_ = static_cast<int>(way / 8);
+        for (int k = 0; k < 3; ++k) {
+            axis_[k] = (z_axis_ + 1 + k) % 3;
+            down_[k] = (way >> k & 1) != 0;
+            near_row_[k] = static_cast<std::size_t>(2 * k + down_[k]) * 4 * W;
+        }
+        const auto leader = static_cast<int>(std::find(way_, way_ + size, way) - way_);
+        for (int p = 0; p < parts; ++p) prepare_rays(way, leader, p);
+        take_intervals();
     }
 
-    /// As `prepare` (rays-inl.h), rays in lanes; false if some ray is not like the first.
-    HWY_INLINE bool prepare_rays(const RayArray<float, 3>& rays, std::size_t from, int at) {
-        alignas(64) float fields[8][lanes];
-        read_rows(rays, from + static_cast<std::size_t>(at), fields);
-        const auto field = [&](int w) { return hn::Load(f, fields[w]); };
+    /// As `prepare` (rays-inl.h), rays in lanes. Those that go another way enter nothing, and have the
+    /// leader's numbers, so that they widen no interval.
+    HWY_INLINE void prepare_rays(std::uint32_t way, int leader, int p) {
+        const int at = p * lanes;
+        const M goes = hn::RebindMask(f, hn::Eq(hn::Load(u32, way_ + at), hn::Set(u32, way)));
+        const auto number = [&](int w) {
+            return hn::IfThenElse(goes, hn::Load(f, numbers_[p][w]),
+                                  hn::Set(f, numbers_[leader / lanes][w][leader % lanes]));
+        };
         const auto all = [&](float x) { return hn::Set(f, x); };
         const V zero = hn::Zero(f);
         V o[3], d[3], length[3], far_off = zero, reach = zero;
-        M good = hn::Eq(zero, zero);
         for (int k = 0; k < 3; ++k) {
-            o[k] = field(k);
-            const V given = field(3 + k), distance = hn::Abs(o[k]);
-            d[k] = hn::IfThenZeroElse(hn::Lt(hn::Abs(given), all(std::numeric_limits<float>::min())), given);
+            o[k] = number(k), d[k] = direction(number(3 + k));
             length[k] = hn::Abs(d[k]);
-            const M is_down = hn::Lt(d[k], zero);
-            good = hn::And(good, down_[k] ? is_down : hn::Ge(d[k], zero));
-            good = hn::And(good, hn::And(hn::Le(length[k], all(std::numeric_limits<float>::max())),
-                                         hn::Le(distance, all(largest_coordinate<float>))));
-            far_off = hn::Max(far_off, distance);
+            far_off = hn::Max(far_off, hn::Abs(o[k]));
             reach = hn::Max(reach, hn::Max(hn::Abs(hn::Sub(all(scene_.tree.bounds.low[k]), o[k])),
                                            hn::Abs(hn::Sub(all(scene_.tree.bounds.high[k]), o[k]))));
         }
-        const V longest = length[z_axis_], z = d[z_axis_], given_min = field(6), t_max = field(7);
-        for (int k = 0; k < 3; ++k)  // the first of the longest, as max_axis has it
-            if (k != z_axis_)
-                good = hn::And(good, k < z_axis_ ? hn::Lt(length[k], longest) : hn::Le(length[k], longest));
-        const V t_min = hn::IfThenZeroElse(hn::Lt(given_min, zero), given_min);
-        good = hn::And(good, hn::And(hn::Gt(longest, zero), hn::Le(t_min, t_max)));
+        const V longest = length[z_axis_], z = d[z_axis_], t_min = t_min_of(number(6)), t_max = number(7);
 
         const V room = hn::Mul(all(underflow), hn::Add(all(1.0f), longest));
         const V slack = hn::MulAdd(all(16 * unit_roundoff<float>), reach,
@@ -107,13 +134,11 @@ private:
         const V s_low = hn::Sub(hn::Mul(hn::Mul(t_min, longest), all(1 - wider)), room);
         hn::Store(s_low, f, s_low_ + at);
         hn::Store(hn::Max(s_low, zero), f, s_min_ + at);
-        hn::Store(limit_of(t_max, longest), f, s_limit_ + at);
+        hn::Store(hn::IfThenElse(goes, limit_of(t_max, longest), all(-1.0f)), f, s_limit_ + at);
         hn::Store(longest, f, z_length_ + at);
         hn::Store(t_min, f, t_min_ + at);
         hn::Store(t_max, f, t_limit_ + at);
-        const hn::RebindToUnsigned<F> u32;
         hn::Store(hn::Set(u32, Hit<float>::none), u32, element_ + at);
-        return hn::AllTrue(f, good);
     }
     static HWY_INLINE V limit_of(V t, V z_length) {
         return hn::MulAdd(hn::Mul(t, z_length), hn::Set(f, 1 + wider),
@@ -293,7 +318,6 @@ private:
             return hn::PromoteTo(d, hn::Load(hn::Rebind<float, decltype(d)>(), z_ + at + from));
         };
         candidates = meet_exactly_among(f, corners, candidates, z, m);
-        constexpr hn::RebindToUnsigned<F> u32;
         const V t = hn::Load(f, m.t), limit = hn::Load(f, t_limit_ + at);
         const M lower = hn::RebindMask(f, hn::Lt(hn::Set(u32, id), hn::Load(u32, element_ + at)));
         M better = hn::And(hn::Ge(t, hn::Load(f, t_min_ + at)),
@@ -331,7 +355,10 @@ private:
     const WideScene& scene_;
     std::size_t from_ = 0;  // the number of the first ray
     std::size_t leaves_ = 0, rays_in_leaves_ = 0;
-    // Of the rays: see WideRay.
+    // Of the rays, as they were given, and which way they go.
+    alignas(64) float numbers_[parts][8][lanes];
+    alignas(64) std::uint32_t way_[size];
+    // Of those that are answered: see WideRay.
     alignas(64) float inverse_[3][size], enter_[3][size], leave_[3][size], enter_at_[3][size],
         leave_at_[3][size];
     alignas(64) float origin_[3][size], shear_[2][size], z_[size], z_length_[size];
