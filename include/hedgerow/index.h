@@ -18,6 +18,7 @@
 #include <hedgerow/queries/hit_count.h>
 #include <hedgerow/queries/nearest.h>
 #include <hedgerow/queries/overlapping.h>
+#include <hedgerow/ray_array.h>
 #include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/bvh/wide/kernels.h>
 #include <hedgerow/structures/bvh/wide/wide_bvh.h>

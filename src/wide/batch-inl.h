@@ -16,6 +16,19 @@ public:
 
     template <class Answer>
     void answer(Answer* answers) {
+        scene_.filter.keeps == nullptr ? answer_all<false>(answers) : answer_all<true>(answers);
+    }
+
+private:
+    static constexpr int most_slots = 32, enough_leaves = 16;
+    static constexpr int stack_places = most_slots * 256;
+    using Block = TriangleBlock<float>;
+    using Stack = WalkStack<W>;
+    static constexpr std::size_t stride = WideNodes<float, 3>::stride_of(W);
+
+    /// To ask at each leaf whether there is a filter takes any hit 3% longer.
+    template <bool filtered, class Answer>
+    void answer_all(Answer* answers) {
         int inner = 0, leaf = 0;
         for (int s = 0; s < slots_; ++s)
             if (begin(s, answers)) inner_[inner++] = s;
@@ -34,7 +47,7 @@ public:
             leaf = 0;
             for (int i = 0; i < leaves; ++i) {
                 const int s = leaf_[i];
-                bool goes_on = word_[s] != Stack::end && test_leaf(s);
+                bool goes_on = word_[s] != Stack::end && test_leaf<filtered>(s);
                 if (!goes_on) {
                     end(s, answers);
                     goes_on = begin(s, answers);
@@ -46,13 +59,6 @@ public:
             }
         }
     }
-
-private:
-    static constexpr int most_slots = 32, enough_leaves = 16;
-    static constexpr int stack_places = most_slots * 256;
-    using Block = TriangleBlock<float>;
-    using Stack = WalkStack<W>;
-    static constexpr std::size_t stride = WideNodes<float, 3>::stride_of(W);
 
     /// A node, or where its highest bit is set a leaf: found by arithmetic, since a branch would be guessed.
     HWY_INLINE const char* place_of(std::uint32_t word) const {
@@ -101,9 +107,12 @@ private:
         pop(s, stack);
     }
     /// False when the ray has its answer.
+    template <bool filtered>
     HWY_INLINE bool test_leaf(int s) {
         Stack stack = stack_of(s);
-        if (test_triangles(scene_, word_[s] & ~WideChild::leaf_bit, ray_[s], index_[s])) {
+        const std::uint32_t leaf = word_[s] & ~WideChild::leaf_bit;
+        if (filtered ? test_block_filtered(scene_, leaf, ray_[s], index_[s])
+                     : test_block(scene_.blocks[leaf], ray_[s])) {
             if constexpr (wanted == Wanted::any) return false;
             stack.sweep(ray_[s].s_limit);
         }

@@ -74,17 +74,7 @@ private:
         const float limit = only_nearer ? just_below(ray_.t_limit) : ray_.t_limit;
         const WideScene scene = inside(instance);
         WideRay ray;
-        bool hit;
-        switch (scene.tree.nodes.width()) {
-            case 4:
-                hit = trace_inside<4>(scene, instance, limit, ray);
-                break;
-            case 8:
-                hit = trace_inside<8>(scene, instance, limit, ray);
-                break;
-            default:
-                hit = trace_inside<16>(scene, instance, limit, ray);
-        }
+        const bool hit = by_width<Inside>(scene, this, instance, limit, &ray);
         if (!hit) return false;
         ray_.t_limit = ray.t_limit;
         ray_.u = ray.u, ray_.v = ray.v;
@@ -93,12 +83,15 @@ private:
         return true;
     }
     template <int W>
-    HWY_INLINE bool trace_inside(const WideScene& scene, std::uint32_t instance, float limit, WideRay& ray) {
-        const WideInstance& placed = scene_.all[instance];
-        prepare<W>(way_back<true>(placed, origin_), way_back<false>(placed, direction_), ray_.t_min, limit,
-                   scene.tree.bounds, 0.0f, ray);
-        return ray.usable && trace_one<W, wanted>(scene, ray);
-    }
+    struct Inside {
+        static HWY_INLINE bool answer(const WideScene& scene, const InstanceLeaves* leaves,
+                                      std::uint32_t instance, float limit, WideRay* ray) {
+            const WideInstance& placed = leaves->scene_.all[instance];
+            prepare<W>(way_back<true>(placed, leaves->origin_), way_back<false>(placed, leaves->direction_),
+                       leaves->ray_.t_min, limit, scene.tree.bounds, 0.0f, *ray);
+            return ray->usable && trace_one<W, wanted>(scene, *ray);
+        }
+    };
 
     const WideInstances& scene_;
     WideRay& ray_;

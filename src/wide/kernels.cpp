@@ -30,6 +30,7 @@ namespace hedgerow::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 // Each builds on those before it.
 // clang-format off
+#include "width-inl.h"
 #include "rays-inl.h"
 #include "reader-inl.h"
 #include "tests-inl.h"
@@ -41,18 +42,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 #include "many-inl.h"
 // clang-format on
 
-// F<W>::answer, W being the width of the scene's nodes.
-template <template <int> class F, class Scene, class... Arguments>
-HWY_INLINE auto by_width(const Scene& scene, Arguments... arguments) {
-    switch (scene.tree.nodes.width()) {
-        case 4:
-            return F<4>::answer(scene, arguments...);
-        case 8:
-            return F<8>::answer(scene, arguments...);
-        default:
-            return F<16>::answer(scene, arguments...);
-    }
-}
 template <Wanted wanted>
 struct Answering {
     template <int W>

@@ -210,7 +210,10 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keep
     if (found) ray.s_limit = s_limit_of(ray.t_limit, ray.z_length);
     return found;
 }
-// A function of its own: a call in the midst of the other costs registers, and 3% of any hit in a batch.
+HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
+    return test_block(block, ray, [](float, float, float, std::uint32_t) { return true; });
+}
+// A function of its own: a call in the midst of the other costs registers.
 [[gnu::cold]] HWY_NOINLINE bool test_block_filtered(const WideScene& scene, std::uint32_t leaf, WideRay& ray,
                                                     std::size_t number) {
     return test_block(scene.blocks[leaf], ray, [&](float t, float u, float v, std::uint32_t id) {
@@ -221,7 +224,7 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keep
 HWY_INLINE bool test_triangles(const WideScene& scene, std::uint32_t leaf, WideRay& ray, std::size_t number) {
     if (scene.filter.keeps != nullptr) [[unlikely]]
         return test_block_filtered(scene, leaf, ray, number);
-    return test_block(scene.blocks[leaf], ray, [](float, float, float, std::uint32_t) { return true; });
+    return test_block(scene.blocks[leaf], ray);
 }
 
 HWY_INLINE Hit<float> hit_of(const WideScene& scene, const WideRay& ray) {
