@@ -1,0 +1,83 @@
+/// What the tests of BVHs, binary and wide, share.
+#pragma once
+
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/sets.h>
+
+#include "contract.h"
+
+namespace hedgerow::trees {
+
+inline BvhOptions options_of(BvhBuilder builder, int reinsertion = 0) {
+    BvhOptions options;
+    options.builder = builder;
+    options.reinsertion = reinsertion;
+    return options;
+}
+/// Every builder, bare and improved.
+template <class F>
+void with_each_builder(F f) {
+    for (const auto builder : bvh_builders)
+        for (const int reinsertion : {0, 2}) {
+            SCOPED_TRACE(testing::Message() << "builder " << int(builder) << ", reinsertion " << reinsertion);
+            f(options_of(builder, reinsertion));
+        }
+}
+
+/// Of wide trees every builder and width.
+template <class F>
+void with_each_wide_builder(F f) {
+    for (const auto builder : wide_builders)
+        for (const int width : {4, 8, 16}) {
+            SCOPED_TRACE(testing::Message() << "wide, builder " << int(builder) << ", width " << width);
+            WideOptions options;
+            options.builder = builder, options.width = width, options.reinsertion = 2;
+            f(options);
+        }
+}
+
+/// Long and thin, and of very different lengths.
+inline TriangleMesh<float> needles(std::size_t n) {
+    TriangleMesh<float> mesh;
+    for (std::size_t i = 0; i < n; ++i) {
+        Random random(31, i);
+        const Vec3d from(random.uniform(), random.uniform(), random.uniform());
+        const double longest = 0.3 * std::pow(random.uniform(), 3);
+        const auto first = static_cast<std::uint32_t>(3 * i);
+        for (const Vec3d& v :
+             {from, from + random.direction<3>() * longest, from + random.direction<3>() * 0.003})
+            mesh.vertices.emplace_back(v);
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+}
+
+/// Small pieces, from the last to the first.
+class Backwards final : public Executor {
+public:
+    void for_each_piece(std::size_t count, std::size_t,
+                        FunctionRef<void(std::size_t, std::size_t)> body) override {
+        for (std::size_t end = count; end > 0; end -= std::min<std::size_t>(end, 7))
+            body(end - std::min<std::size_t>(end, 7), end);
+    }
+    void both(FunctionRef<void()> first, FunctionRef<void()> second) override { second(), first(); }
+};
+
+template <class S>
+bool same_below(const S& a, const S& b, NodeRef x, NodeRef y) {
+    if (x.first != y.first || x.count != y.count) return false;
+    if (x.leaf() || x.empty()) return true;
+    for (int i = 0; i < S::width; ++i) {
+        if (!same_below(a, b, a.child(x, i), b.child(y, i))) return false;
+        if (!a.child(x, i).empty() && a.volumes(x)[i] != b.volumes(y)[i]) return false;
+    }
+    return true;
+}
+template <class I>
+void expect_same_tree(const I& a, const I& b) {
+    EXPECT_TRUE(std::ranges::equal(a.structure().items(), b.structure().items()));
+    EXPECT_EQ(a.structure().depth(), b.structure().depth());
+    EXPECT_TRUE(same_below(a.structure(), b.structure(), a.structure().root(), b.structure().root()));
+}
+
+}  // namespace hedgerow::trees
