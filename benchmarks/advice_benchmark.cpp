@@ -10,7 +10,7 @@
 #include <hedgerow/compare/lists.h>
 #include <hedgerow/compare/measure.h>
 #include <hedgerow/error.h>
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 #include <hedgerow/scenes/generate.h>
 
 #include "measure/machine.h"

@@ -1,7 +1,7 @@
 /// Closest-hit rates and build times of the BVH, beside Embree in the same run when it is there.
 ///
 ///   rays_benchmark [SCENE ...]     a mesh file or gen:NAME[:SIZE]; default: gen:teapot-in-stadium
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 
 #include "measure/contest.h"
 #include "measure/machine.h"

@@ -4,7 +4,7 @@
 ///
 ///   volumes_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:100000
 ///   gen:hairball:20000; a mesh file is a scene
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 #include <hedgerow/structures/bvh/volume_bvh.h>
 
 #include "measure/contest.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 
 namespace hedgerow {
 

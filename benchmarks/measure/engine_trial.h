@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 
 #include "contest.h"
 #include "engine.h"

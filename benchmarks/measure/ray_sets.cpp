@@ -1,6 +1,6 @@
 #include "ray_sets.h"
 
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/scenes/generate.h>
 #include <hedgerow/scenes/random.h>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>

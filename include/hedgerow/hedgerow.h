@@ -1,7 +1,7 @@
 /// Everything.
 #pragma once
 
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 #include <hedgerow/primitives/instance_set.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>

@@ -1,24 +1,14 @@
-/// A structure built over primitives, and the questions it answers.
+/// A structure built over primitives. The questions it answers are in ask.h.
 #pragma once
 
-#include <atomic>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include <hedgerow/geometry/offset.h>
 #include <hedgerow/geometry/transform.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/primitives/triangle_mesh.h>
-#include <hedgerow/queries/all_hits.h>
-#include <hedgerow/queries/any_hit.h>
-#include <hedgerow/queries/closest_hit.h>
-#include <hedgerow/queries/closest_point.h>
-#include <hedgerow/queries/hit_count.h>
-#include <hedgerow/queries/nearest.h>
-#include <hedgerow/queries/overlapping.h>
-#include <hedgerow/ray_array.h>
+#include <hedgerow/queries/filter.h>
 #include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/bvh/wide/kernels.h>
 #include <hedgerow/structures/bvh/wide/wide_bvh.h>
@@ -275,168 +265,6 @@ auto build(P&& primitives,
 template <class P>
 auto build(P&& primitives, Executor& executor = serial_executor()) {
     return build<WideBvh>(std::forward<P>(primitives), {}, executor);
-}
-
-template <class I>
-using RayOf = Ray<typename I::Scalar, I::dimension>;
-template <class I>
-using HitOf = Hit<typename I::Scalar>;
-template <class I>
-using PointOf = Vec<typename I::Scalar, I::dimension>;
-template <class I>
-using NearOf = Near<typename I::Scalar, I::dimension>;
-
-inline constexpr NoVisits no_visits{};
-
-/// The kernels that are to answer, if any do: they do not count.
-template <class S, class P, class Count = const NoVisits>
-const WideKernels* kernels_for(const Index<S, P>&) {
-    using I = Index<S, P>;
-    if constexpr ((I::by_kernels || I::instances_by_kernels) && std::same_as<Count, const NoVisits>)
-        return wide_kernels();
-    else
-        return nullptr;
-}
-
-/// The hit of least t in [t_min, t_max], if any. `filter(hit)` may refuse; `count` may be a Visits.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
-                                                   const Ray<typename P::Scalar, P::dimension>& ray,
-                                                   const Filter& filter = {}, Count& count = no_visits) {
-    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
-    [[maybe_unused]] const auto found = [](const Hit<float>& hit) {
-        return hit ? std::optional(hit) : std::nullopt;
-    };
-    if constexpr (Index<S, P>::by_kernels) {
-        if (kernels != nullptr)
-            return found(in_ieee_mode(
-                [&] { return kernels->closest_hit(index.wide_scene(hit_filter(filter)), ray); }));
-    } else if constexpr (Index<S, P>::instances_by_kernels) {
-        if (kernels != nullptr)
-            return found(in_ieee_mode([&] {
-                return kernels->closest_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
-            }));
-    }
-    return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
-}
-/// Whether anything is hit.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
-             const Filter& filter = {}, Count& count = no_visits) {
-    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
-    if constexpr (Index<S, P>::by_kernels) {
-        if (kernels != nullptr)
-            return in_ieee_mode([&] { return kernels->any_hit(index.wide_scene(hit_filter(filter)), ray); });
-    } else if constexpr (Index<S, P>::instances_by_kernels) {
-        if (kernels != nullptr)
-            return in_ieee_mode([&] {
-                return kernels->any_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
-            });
-    }
-    return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
-}
-/// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
-                     std::vector<Hit<typename P::Scalar>>& hits, const Filter& filter = {},
-                     Count& count = no_visits) {
-    return index.template answer<AllHits<P, Filter>>(count, ray, hits, filter);
-}
-/// How many primitives are hit (two at a shared edge). A structure that may offer a primitive twice has its
-/// hits kept until they are told apart, in memory that the thread keeps.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
-                      const Filter& filter = {}, Count& count = no_visits) {
-    if (index.structure().exclusive() && offers_once(index.primitives())) {
-        return index.template answer<HitCount<P, Filter>>(count, ray, filter);
-    } else {
-        static thread_local std::vector<Hit<typename P::Scalar>> hits;
-        return all_hits(index, ray, hits, filter, count);
-    }
-}
-/// The closest point of any primitive within a squared distance.
-template <class S, class P, class Count = const NoVisits>
-std::optional<Near<typename P::Scalar, P::dimension>> closest_point(
-    const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
-    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
-    Count& count = no_visits) {
-    return index.template answer<ClosestPoint<P>>(count, point, max_distance2);
-}
-/// The k nearest primitives within a squared distance, in the order of (distance², id), into `found`.
-template <class S, class P, class Count = const NoVisits>
-std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
-                    std::size_t k, std::vector<Near<typename P::Scalar, P::dimension>>& found,
-                    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
-                    Count& count = no_visits) {
-    return index.template answer<Nearest<P>>(count, point, k, max_distance2, found);
-}
-/// The primitives that overlap a box, ascending, into `found`: their positions, among instances PlacedIds.
-template <class S, class P, class Count = const NoVisits>
-std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, P::dimension>& box,
-                        std::vector<IdOf<P>>& found, Count& count = no_visits) {
-    return index.template answer<Overlapping<P>>(count, box, found);
-}
-
-namespace detail {
-inline void expect_room(std::size_t rays, std::size_t answers) {
-    if (answers < rays)
-        throw InputError("there are " + std::to_string(rays) + " rays, but room for " +
-                         std::to_string(answers) +
-                         " answers: make the array of answers as long as that of rays");
-}
-/// Rays `begin` to `end` of a batch by `by_kernels(kernels, scene, begin, end)` where kernels answer, else
-/// `one(i, filter)` each; in pieces over the executor.
-template <class S, class P, class Filter, class ByKernels, class One>
-KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& executor, const Filter& filter,
-                       ByKernels by_kernels, One one) {
-    std::atomic<std::size_t> phased{0}, packets{0};
-    executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
-        if constexpr (Index<S, P>::by_kernels)
-            if (const auto* kernels = kernels_for(index)) {
-                const WideScene scene = index.wide_scene(hit_filter(filter), begin);
-                const KernelUse use = in_ieee_mode([&] { return by_kernels(*kernels, scene, begin, end); });
-                phased += use.phased, packets += use.packets;
-                return;
-            }
-        for (std::size_t i = begin; i < end; ++i) one(i, filter_of_ray(filter, i));
-    });
-    return {count - phased - packets, phased, packets};
-}
-}  // namespace detail
-
-/// One answer a ray, in pieces over the executor. The rays may lie in memory as they like (ray_array.h); a
-/// vector or a span of them will do. `filter(hit)` or `filter(i, hit)`, for ray i, may refuse
-/// (queries/hit.h). Where nothing is hit, a Hit that is false. Throws InputError, and writes nothing, if
-/// there are fewer places for answers than rays. Returns which algorithms answered
-/// (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a WideBvh go ray by
-/// ray.
-///
-///   closest_hits(index, rays, hits, default_executor(),
-///                [&](std::size_t i, const Hit<float>& h) { return h.element != starts_on[i]; });
-template <class S, class P, class Filter = KeepAll>
-KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                       std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor(),
-                       const Filter& filter = {}) {
-    detail::expect_room(rays.size(), hits.size());
-    return detail::answer_batch(
-        index, rays.size(), executor, filter,
-        [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.closest_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
-        },
-        [&](std::size_t i, const auto& own) {
-            hits[i] = closest_hit(index, rays[i], own).value_or(Hit<typename P::Scalar>{});
-        });
-}
-template <class S, class P, class Filter = KeepAll>
-KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                   std::span<bool> hits, Executor& executor = serial_executor(), const Filter& filter = {}) {
-    detail::expect_room(rays.size(), hits.size());
-    return detail::answer_batch(
-        index, rays.size(), executor, filter,
-        [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.any_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
-        },
-        [&](std::size_t i, const auto& own) { hits[i] = any_hit(index, rays[i], own); });
 }
 
 }  // namespace hedgerow

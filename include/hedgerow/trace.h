@@ -3,7 +3,7 @@
 
 #include <unordered_map>
 
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 #include <hedgerow/structures/outline.h>
 
 namespace hedgerow {

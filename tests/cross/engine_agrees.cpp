@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <memory>
 
-#include <hedgerow/index.h>
+#include <hedgerow/ask.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/structures/brute_force.h>
