@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cstdio>
 
+#include <hedgerow/ask.h>
 #include <hedgerow/compare/advice.h>
 #include <hedgerow/compare/lists.h>
 #include <hedgerow/compare/measure.h>
 #include <hedgerow/error.h>
-#include <hedgerow/ask.h>
 #include <hedgerow/scenes/generate.h>
 
 #include "measure/machine.h"
