@@ -174,6 +174,35 @@ TEST(Wide, CoherentRays) {
     }
 }
 
+/// Where a picture's rays change sign along axes, and their longest axis: up to four ways in a packet, in any
+/// order, one ray of a way or many, components that are 0 and -0 among them.
+TEST(Wide, RaysThatGoSeveralWaysTogether) {
+    const auto mesh = teapot_in_stadium<float>(3000);
+    const auto index = build<WideBvh>(mesh);
+    const Vec3f center = index.bounds().center();
+    std::vector<Ray3f> rays;
+    for (int bunch = 0; bunch < 96; ++bunch)
+        for (int i = 0; i < 64; ++i) {
+            Random random(29, static_cast<std::uint64_t>(bunch));
+            const int alone = bunch % 3 == 0 ? 16 : 4;  // how many go one way before the next
+            const float x = (i / alone) % 2 == 0 ? -0.05f : 0.05f, y = (i / 8) % 2 == 0 ? 0.04f : -0.04f;
+            Vec3f d(x, bunch % 2 == 0 ? y : 0.04f, 1 + 0.001f * float(i));
+            if (bunch % 4 == 1) d[0] = i % 2 == 0 ? 0.0f : -0.0f;
+            if (bunch % 5 == 2) d[1] = i % 7 == 0 ? 1.2f : 0.9f;  // z is the longest, or y
+            const Vec3f turned(d[bunch % 3], d[(bunch + 1) % 3], d[(bunch + 2) % 3]);
+            const Vec3f origin = bunch % 6 < 3 ? center : center + Vec3f(random.direction<3>()) * float(i);
+            rays.push_back({origin, turned});
+        }
+    const auto want = hits_of_the_walk(index, rays);
+    std::vector<Hit<float>> hits(rays.size());
+    for (const auto set : instruction_sets()) {
+        SCOPED_TRACE(set);
+        const Using use(set);
+        expect_hits(want, Answers(index, rays));
+        EXPECT_EQ(closest_hits(index, rays, hits).packets, set == "plain" ? 0 : rays.size());
+    }
+}
+
 /// A batch says by what it was answered.
 TEST(Wide, KernelsAreChosenByWhatRaysDo) {
     const auto mesh = teapot_in_stadium<float>(3000);

@@ -171,6 +171,19 @@ private:
         s_last_ = range_of(s_limit_).high;
     }
 
+    /// Where along an axis the first ray meets a box's near plane, and the last one its far plane.
+    template <class B>
+    HWY_INLINE hn::Vec<B> earliest(B b, int k, hn::Vec<B> planes) const {
+        const auto ahead = hn::Sub(planes, hn::Set(b, enters_[k]));
+        return hn::Min(hn::Mul(ahead, hn::Set(b, inverses_[k].low)),
+                       hn::Mul(ahead, hn::Set(b, inverses_[k].high)));
+    }
+    template <class B>
+    HWY_INLINE hn::Vec<B> latest(B b, int k, hn::Vec<B> planes) const {
+        const auto behind = hn::Sub(planes, hn::Set(b, leaves_at_[k]));
+        return hn::Max(hn::Mul(behind, hn::Set(b, inverses_[k].low)),
+                       hn::Mul(behind, hn::Set(b, inverses_[k].high)));
+    }
     /// The children that some ray may enter, and where the first of them does at the earliest.
     HWY_INLINE Boxes<W> boxes_of(const std::byte* node) const {
         using B = Floats<W>;
@@ -179,12 +192,8 @@ private:
         for (int p = 0; p < Boxes<W>::parts; ++p) {
             hn::Vec<B> near_s[3], far_s[3];
             for (int k = 0; k < 3; ++k) {
-                const auto low = hn::Set(b, inverses_[k].low), high = hn::Set(b, inverses_[k].high);
-                const auto ahead = hn::Sub(Boxes<W>::row(node, near_row_[k], p), hn::Set(b, enters_[k]));
-                const auto behind =
-                    hn::Sub(Boxes<W>::row(node, near_row_[k] ^ (4 * W), p), hn::Set(b, leaves_at_[k]));
-                near_s[k] = hn::Min(hn::Mul(ahead, low), hn::Mul(ahead, high));
-                far_s[k] = hn::Max(hn::Mul(behind, low), hn::Mul(behind, high));
+                near_s[k] = earliest(b, k, Boxes<W>::row(node, near_row_[k], p));
+                far_s[k] = latest(b, k, Boxes<W>::row(node, near_row_[k] ^ (4 * W), p));
             }
             boxes.entry[p] = hn::Max(hn::Max(near_s[0], near_s[1]), hn::Max(near_s[2], hn::Set(b, s_first_)));
             boxes.entered[p] = hn::Le(
@@ -274,9 +283,7 @@ private:
         }
         return found;
     }
-    /// The corners by the rays' axes, and which triangles some ray may meet: not those all whose corners lie,
-    /// for every ray, on the same side of it. What is asked is what the test of a ray computes, for the rays
-    /// of least and of most shear, between which rounding keeps all others.
+    /// The corners by the rays' axes, and which triangles some ray may meet.
     HWY_INLINE unsigned seen_of(const TriangleBlock<float>& block, float (&corner)[3][3][8]) const {
         using E = Floats<8>;
         constexpr E e;
@@ -289,19 +296,39 @@ private:
                     if (common_origin_) c[k][i] = hn::Sub(c[k][i], hn::Set(e, origin_[k][0]));
                     hn::Store(c[k][i], e, corner[k][i] + at);
                 }
-            auto kept = hn::Eq(c[0][0], c[0][0]);  // not NaN
-            for (int k = 0; k < 2 && common_origin_; ++k) {
-                auto least = hn::Set(e, std::numeric_limits<float>::infinity()), most = hn::Neg(least);
-                for (int i = 0; i < 3; ++i)
-                    for (const float shear : {shears_[k].low, shears_[k].high}) {
-                        const auto x = hn::Sub(c[k][i], hn::Mul(hn::Set(e, shear), c[2][i]));
-                        least = hn::Min(least, x), most = hn::Max(most, x);
-                    }
-                kept = hn::And(kept, hn::And(hn::Le(least, hn::Zero(e)), hn::Ge(most, hn::Zero(e))));
-            }
-            seen |= bits_of(e, kept) << at;
+            const auto filled = hn::Eq(c[0][0], c[0][0]);  // not NaN
+            seen |= bits_of(e, hn::And(filled, common_origin_ ? around_origin(e, c) : entered(e, c))) << at;
         }
         return seen;
+    }
+    /// Not those all whose corners lie, for every ray, on the same side of it. What is asked is what the test
+    /// of a ray computes, for the rays of least and of most shear, between which rounding keeps all others.
+    template <class E>
+    HWY_INLINE hn::Mask<E> around_origin(E e, const hn::Vec<E> (&c)[3][3]) const {
+        auto around = hn::Eq(hn::Zero(e), hn::Zero(e));
+        for (int k = 0; k < 2; ++k) {
+            auto least = hn::Set(e, std::numeric_limits<float>::infinity()), most = hn::Neg(least);
+            for (int i = 0; i < 3; ++i)
+                for (const float shear : {shears_[k].low, shears_[k].high}) {
+                    const auto x = hn::Sub(c[k][i], hn::Mul(hn::Set(e, shear), c[2][i]));
+                    least = hn::Min(least, x), most = hn::Max(most, x);
+                }
+            around = hn::And(around, hn::And(hn::Le(least, hn::Zero(e)), hn::Ge(most, hn::Zero(e))));
+        }
+        return around;
+    }
+    /// Those whose boxes some ray may enter.
+    template <class E>
+    HWY_INLINE hn::Mask<E> entered(E e, const hn::Vec<E> (&c)[3][3]) const {
+        auto entry = hn::Set(e, s_first_), exit = hn::Set(e, s_last_);
+        for (int k = 0; k < 3; ++k) {
+            const auto low = hn::Min(c[k][0], hn::Min(c[k][1], c[k][2]));
+            const auto high = hn::Max(c[k][0], hn::Max(c[k][1], c[k][2]));
+            const bool down = down_[axis_[k]];
+            entry = hn::Max(entry, earliest(e, axis_[k], down ? high : low));
+            exit = hn::Min(exit, latest(e, axis_[k], down ? low : high));
+        }
+        return hn::Le(entry, exit);
     }
     HWY_INLINE Corners<F> corners_of(const float (&corner)[3][3][8], int i, int at) const {
         const auto from_origin = [&](int k, int c) {
