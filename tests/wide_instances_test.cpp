@@ -135,9 +135,9 @@ TEST(WideInstances, PlacedInEveryWay) {
 
 TEST(WideInstances, Sheared) {
     auto all = transforms<3>(20, Scales::any, 20);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        all[i] =
-            all[i] * Transform<3>({Vec3d(1, 0.5, -2), Vec3d(0, 1, 3), Vec3d(0.25, 0, -1)}, Vec3d(1, 2, 3));
+    for (auto& placed : all)
+        placed =
+            placed * Transform<3>({Vec3d(1, 0.5, -2), Vec3d(0, 1, 3), Vec3d(0.25, 0, -1)}, Vec3d(1, 2, 3));
     expect_brute_force("sheared", {meshes(), all}, 300);
 }
 
