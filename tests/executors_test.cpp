@@ -9,6 +9,7 @@
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "backwards.h"
 #include "contract.h"
 
 using namespace hedgerow;
@@ -83,18 +84,6 @@ private:
     std::deque<Task> tasks_;
     bool closing_ = false;
     std::vector<std::thread> threads_;
-};
-
-/// All that an executor may do and few do: small pieces, from the last to the first, and the second before
-/// the first.
-class Backwards final : public Executor {
-public:
-    void for_each_piece(std::size_t count, std::size_t,
-                        FunctionRef<void(std::size_t, std::size_t)> body) override {
-        for (std::size_t end = count; end > 0; end -= std::min<std::size_t>(end, 7))
-            body(end - std::min<std::size_t>(end, 7), end);
-    }
-    void both(FunctionRef<void()> first, FunctionRef<void()> second) override { second(), first(); }
 };
 
 /// oneTBB is left out under ThreadSanitizer, which does not see how it hands work over and takes that for

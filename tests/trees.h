@@ -4,6 +4,7 @@
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "backwards.h"
 #include "contract.h"
 
 namespace hedgerow::trees {
@@ -51,17 +52,6 @@ inline TriangleMesh<float> needles(std::size_t n) {
     }
     return mesh;
 }
-
-/// Small pieces, from the last to the first.
-class Backwards final : public Executor {
-public:
-    void for_each_piece(std::size_t count, std::size_t,
-                        FunctionRef<void(std::size_t, std::size_t)> body) override {
-        for (std::size_t end = count; end > 0; end -= std::min<std::size_t>(end, 7))
-            body(end - std::min<std::size_t>(end, 7), end);
-    }
-    void both(FunctionRef<void()> first, FunctionRef<void()> second) override { second(), first(); }
-};
 
 template <class S>
 bool same_below(const S& a, const S& b, NodeRef x, NodeRef y) {
