@@ -27,6 +27,11 @@ inline constexpr float wider = 0x1p-22f, underflow = 0x1p-126f;
 HWY_INLINE float s_limit_of(float t, float z_length) {
     return t * z_length * (1 + wider) + underflow * (1 + z_length);
 }
+template <class F>
+HWY_INLINE hn::Vec<F> s_limit_of(F f, hn::Vec<F> t, hn::Vec<F> z_length) {
+    return hn::MulAdd(hn::Mul(t, z_length), hn::Set(f, 1 + wider),
+                      hn::Mul(hn::Set(f, underflow), hn::Add(hn::Set(f, 1.0f), z_length)));
+}
 
 // By which of the scene's axes is the longest: the others in their turn.
 alignas(16) inline constexpr std::int32_t turned[3][4] = {{1, 2, 0, 3}, {2, 0, 1, 3}, {0, 1, 2, 3}};

@@ -7,15 +7,15 @@ class RayReader {
 public:
     HWY_INLINE explicit RayReader(const RayArray<float, 3>& rays) : rays_(rays) {}
 
-    // The 8 numbers of ray i; i never descends.
+    // The 8 numbers of ray i; several are asked for in turn.
     HWY_INLINE const std::byte* at(std::size_t i) {
         if (rays_.together()) return rays_.at(i);
-        if (i >= first_ + count_) fill(i);
+        if (i - first_ >= count_) fill(i);
         return reinterpret_cast<const std::byte*>(&ahead_[i - first_]);
     }
 
 private:
-    static constexpr std::size_t most = 32;
+    static constexpr std::size_t most = 8;
 
     HWY_NOINLINE void fill(std::size_t from) {
         first_ = from;
@@ -28,21 +28,30 @@ private:
     Ray<float, 3> ahead_[most];
 };
 
-// Rays `first` and on, as many as there are lanes, a row each of their 8 numbers.
-template <int lanes>
-HWY_INLINE void read_rows(const RayArray<float, 3>& rays, std::size_t first, float (&rows)[8][lanes]) {
+// The 8 numbers of as many rays as F has lanes, a row each: half of them from `first` on, the others from
+// `second` on.
+template <class F, int lanes>
+HWY_INLINE void read_rows(F f, const RayArray<float, 3>& rays, std::size_t first, std::size_t second,
+                          float (&rows)[8][lanes]) {
+    constexpr std::size_t half = lanes / 2;
     if (rays.together() && rays.stride() == sizeof(Ray<float, 3>)) {
-        const std::byte* const from = rays.at(first);
-        for (std::size_t i = 0; i < lanes; ++i)
-            for (std::size_t w = 0; w < 8; ++w)
-                std::memcpy(&rows[w][i], from + (8 * i + w) * sizeof(float), sizeof(float));
+        // Every fourth number of half the rays is by turns number w and w + 4.
+        hn::Vec<F> a[4], b[4];
+        hn::LoadInterleaved4(f, reinterpret_cast<const float*>(rays.at(first)), a[0], a[1], a[2], a[3]);
+        hn::LoadInterleaved4(f, reinterpret_cast<const float*>(rays.at(second)), b[0], b[1], b[2], b[3]);
+        for (int w = 0; w < 4; ++w) {
+            hn::Store(hn::ConcatEven(f, b[w], a[w]), f, rows[w]);
+            hn::Store(hn::ConcatOdd(f, b[w], a[w]), f, rows[w + 4]);
+        }
         return;
     }
     for (std::size_t w = 0; w < 8; ++w) {
-        if (rays.stride(w) == sizeof(float))
-            std::memcpy(rows[w], rays.at(first, w), sizeof rows[w]);
-        else
-            for (std::size_t i = 0; i < lanes; ++i) rows[w][i] = rays.word(first + i, w);
+        if (rays.stride(w) == sizeof(float)) {
+            std::memcpy(rows[w], rays.at(first, w), half * sizeof(float));
+            std::memcpy(rows[w] + half, rays.at(second, w), half * sizeof(float));
+        } else
+            for (std::size_t i = 0; i < half; ++i)
+                rows[w][i] = rays.word(first + i, w), rows[w][half + i] = rays.word(second + i, w);
     }
 }
 

@@ -29,6 +29,9 @@ HWY_INLINE V sorted_descending(D d, V v) {
     return v;
 }
 
+// Whether compress is an instruction.
+inline constexpr bool compresses = HWY_TARGET == HWY_AVX3;
+
 // The entries (s, their bits as integers, whose order is the same since they are not negative) and words of a
 // ray's stack. Its places are the caller's; the lowest holds what ends the walk.
 template <int W>
@@ -106,8 +109,6 @@ public:
     }
 
 private:
-    // Whether compress is an instruction.
-    static constexpr bool compresses = HWY_TARGET == HWY_AVX3;
     static constexpr hn::RebindToSigned<Floats<W>> i32{};
     using Lanes = hn::Vec<hn::RebindToSigned<Floats<W>>>;
 

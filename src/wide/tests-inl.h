@@ -96,13 +96,16 @@ struct Corners {
     // between its corners: one that does not reach into the interval is not looked at closer. What is not
     // filled is NaN and fails every comparison.
     HWY_INLINE hn::Mask<F> may_meet(F f, V direction_z, V s_low, V s_limit) const {
-        const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
-        const V u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(f);
         const auto forward = [&](V along) { return hn::Xor(along, hn::And(direction_z, hn::Set(f, -0.0f))); };
         const V a = forward(z[0]), b = forward(z[1]), c = forward(z[2]);
-        return hn::And(
-            hn::Or(hn::Ge(hn::Min(u, hn::Min(v, w)), zero), hn::Le(hn::Max(u, hn::Max(v, w)), zero)),
-            hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), s_limit), hn::Ge(hn::Max(a, hn::Max(b, c)), s_low)));
+        return hn::And(around(f), hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), s_limit),
+                                          hn::Ge(hn::Max(a, hn::Max(b, c)), s_low)));
+    }
+    // Its first half: whether the ray may pass between the edges.
+    HWY_INLINE hn::Mask<F> around(F f) const {
+        const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
+        const V u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(f);
+        return hn::Or(hn::Ge(hn::Min(u, hn::Min(v, w)), zero), hn::Le(hn::Max(u, hn::Max(v, w)), zero));
     }
 };
 
@@ -174,6 +177,12 @@ HWY_INLINE bool kept(const WideScene& scene, std::size_t ray, float t, float u, 
     return scene.filter.keeps(scene.filter.filter, scene.first_ray + ray, hit_of(scene, t, u, v, element));
 }
 
+// Whether a meeting at t is what the ray hits, instead of what it has hit so far.
+HWY_INLINE bool nearer(float t, std::uint32_t id, float t_min, float t_limit, std::uint32_t element) {
+    return t >= t_min && t <= std::numeric_limits<float>::max() &&
+           (t < t_limit || (t == t_limit && id < element));
+}
+
 // Tests the triangles of a block; what is nearer than the ray's hit (or as near, and of a lower number)
 // becomes the hit, if `keeps(t, u, v, id)`. True if there was one.
 template <class Keeps>
@@ -198,8 +207,7 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keep
             const int i = std::countr_zero(candidates);
             const float t = m.t[i];
             const std::uint32_t id = block.id[at + i];
-            if (!(t >= ray.t_min) || !(t <= ray.t_limit) || t > std::numeric_limits<float>::max()) continue;
-            if (t == ray.t_limit && id > ray.element) continue;
+            if (!nearer(t, id, ray.t_min, ray.t_limit, ray.element)) continue;
             if (!keeps(t, m.u[i], m.v[i], id)) continue;
             ray.t_limit = t;
             ray.u = m.u[i], ray.v = m.v[i];
