@@ -136,7 +136,7 @@ TYPED_TEST(Allocation, WideBuildsStayWithinTheirBound) {
     TriangleMesh<T> equal = cube<T>(12);
     equal.triangles.assign(3000, equal.triangles[0]);
     for (const auto& mesh : {soup<T>(20000), teapot_in_stadium<T>(20000), cube<T>(12), equal})
-        for (const int width : {4, 8, 16})
+        for (const int width : wide_widths)
             for (const auto builder : wide_builders)
                 for (const std::uint32_t leaf : {1u, 8u}) {
                     WideOptions options;

@@ -35,7 +35,7 @@ void expect_by_every_kernel(const TriangleMesh<float>& mesh) {
     const Box3f box = brute.bounds();
     const Expected<float> separate(brute, apart(box, targets_of(mesh), 700)),
         coherent(brute, together(box, 700));
-    for (const int width : {4, 8, 16}) {
+    for (const int width : wide_widths) {
         WideOptions options;
         options.width = width;
         const auto index = build<WideBvh>(mesh, options);

@@ -56,7 +56,7 @@ void expect_the_same(const Index& index, std::span<const Ray3f> rays) {
 
 TEST(Pictures, OfAnyRowsGiveTheBitsOfSingleRays) {
     const auto mesh = teapot_in_stadium<float>(2000);
-    for (const int width : {4, 8, 16}) {
+    for (const int width : wide_widths) {
         WideOptions options;
         options.width = width;
         const auto index = build<WideBvh>(mesh, options);

@@ -91,7 +91,7 @@ void expect_same_in_every_layout(const Index& index, std::span<const Ray<T, 3>> 
 TEST(RayArrays, EveryLayoutGivesTheSameBits) {
     const auto mesh = teapot_in_stadium<float>(1000);
     const auto targets = targets_of(mesh);
-    for (const int width : {4, 8, 16}) {
+    for (const int width : wide_widths) {
         WideOptions options;
         options.width = width;
         const auto index = build<WideBvh>(mesh, options);
@@ -135,6 +135,23 @@ TEST(RayArrays, OfDoubleAndOverOtherStructures) {
     std::vector<Ray3d> doubles;
     for (std::size_t i = 0; i < 300; ++i) doubles.push_back(ray_of(index.bounds(), targets_of(of_double), i));
     expect_same_in_every_layout<decltype(index), double>(index, doubles);
+}
+
+TEST(RayArrays, GoThroughAnyIndexToTheKernels) {
+    const auto mesh = soup<float>(12);
+    const auto index = build<WideBvh>(mesh);
+    const auto any_index = build_any("wide", mesh);
+    const auto rays = together(index.bounds(), 960);
+    std::vector<Hit<float>> hits(rays.size());
+    std::vector<Visits> visits(rays.size());
+    in_every_layout<float>(rays, [&](const char* layout, const RayArray<float, 3>& array) {
+        EXPECT_EQ(any_index->closest_hits(array, hits).packets, wide_kernels() == nullptr ? 0u : 960u)
+            << layout;
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            ASSERT_EQ(hits[i], closest_hit(index, rays[i]).value_or(Hit<float>())) << layout << ", ray " << i;
+        EXPECT_EQ(any_index->closest_hits(array, hits, visits).single, 960u) << layout << ", counted";
+    });
+    EXPECT_GT(visits[0].nodes, 0u);
 }
 
 TEST(RayArrays, WithoutIntervalsRaysGoOnForEver) {

@@ -29,7 +29,7 @@ void with_each_builder(F f) {
 template <class F>
 void with_each_wide_builder(F f) {
     for (const auto builder : wide_builders)
-        for (const int width : {4, 8, 16}) {
+        for (const int width : wide_widths) {
             SCOPED_TRACE(testing::Message() << "wide, builder " << int(builder) << ", width " << width);
             WideOptions options;
             options.builder = builder, options.width = width, options.reinsertion = 2;

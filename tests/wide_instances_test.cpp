@@ -105,7 +105,7 @@ void expect_brute_force(const char* name, const Scene& scene, std::size_t count,
     for (const auto instructions : instruction_sets()) {
         const Using use(instructions);
         SCOPED_TRACE(instructions);
-        for (const int width : {4, 8, 16}) {
+        for (const int width : wide_widths) {
             SCOPED_TRACE(width);
             WideOptions options;
             options.width = width;

@@ -65,7 +65,7 @@ void expect_brute_force(const char* name, const Mesh& mesh, std::size_t count) {
     if (targets.empty()) rays.push_back({Vec3f(0, 0, 0), Vec3f(1, 2, 3)});
     std::vector<Hit<float>> want(rays.size());
     closest_hits(brute, std::span<const Ray3f>(rays), std::span(want), default_executor());
-    for (const int width : {4, 8, 16})
+    for (const int width : wide_widths)
         for (const auto builder : wide_builders) {
             WideOptions options;
             options.width = width;
@@ -132,7 +132,7 @@ TEST(Wide, DegenerateMeshesAsBruteForce) {
 TEST(Wide, BatchesOfAnySize) {
     const auto mesh = teapot_in_stadium<float>(1000);
     const auto targets = targets_of(mesh);
-    for (const int width : {4, 8, 16}) {
+    for (const int width : wide_widths) {
         WideOptions options;
         options.width = width;
         const auto index = build<WideBvh>(mesh, options);

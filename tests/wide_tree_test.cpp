@@ -132,7 +132,7 @@ TEST(Wide, CostsLessThanTheGreedyCollapse) {
             const auto whole = [](PrimitiveId) { return Corners<float, 3>(); };
             const auto tree = build_tree<float, 3>(references_of(mesh.view(), serial_executor()), whole,
                                                    options_of(builder), serial_executor());
-            for (const int width : {4, 8, 16}) {
+            for (const int width : wide_widths) {
                 const double least = cost(WideCollapse<float, 3>(tree, width, serial_executor()).build());
                 const double greedy = greedy_cost(tree, 0, width);
                 EXPECT_LT(least, greedy) << int(builder) << ' ' << width;

@@ -35,11 +35,12 @@ public:
     /// What is wrong with the structure; empty if nothing is.
     virtual std::string validate() const = 0;
 
-    /// One hit a ray (false where nothing is hit). With `visits`, one count a ray is added to.
-    virtual void closest_hits(std::span<const Ray<T, D>> rays, std::span<Hit<T>> hits,
-                              std::span<Visits> visits = {}) const = 0;
-    virtual void any_hits(std::span<const Ray<T, D>> rays, std::span<bool> hits,
-                          std::span<Visits> visits = {}) const = 0;
+    /// One hit a ray (false where nothing is hit), by what the call returns. With `visits`, one count a ray
+    /// is added to, and no kernel answers.
+    virtual KernelUse closest_hits(const RayArray<T, D>& rays, std::span<Hit<T>> hits,
+                                   std::span<Visits> visits = {}) const = 0;
+    virtual KernelUse any_hits(const RayArray<T, D>& rays, std::span<bool> hits,
+                               std::span<Visits> visits = {}) const = 0;
     virtual std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits,
                                  Visits* visits = nullptr) const = 0;
     /// One a point; element none where there is no primitive.

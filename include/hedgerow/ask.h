@@ -31,51 +31,32 @@ using NearOf = Near<typename I::Scalar, I::dimension>;
 
 inline constexpr NoVisits no_visits{};
 
-/// The kernels that are to answer, if any do: they do not count.
+/// Whether kernels may answer for a ray: they do not count.
 template <class S, class P, class Count = const NoVisits>
-const WideKernels* kernels_for(const Index<S, P>&) {
-    using I = Index<S, P>;
-    if constexpr ((I::by_kernels || I::instances_by_kernels) && std::same_as<Count, const NoVisits>)
-        return wide_kernels();
-    else
-        return nullptr;
-}
+inline constexpr bool goes_to_kernels =
+    (Index<S, P>::by_kernels || Index<S, P>::instances_by_kernels) && std::same_as<Count, const NoVisits>;
 
 /// The hit of least t in [t_min, t_max], if any. `filter(hit)` may refuse; `count` may be a Visits.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
                                                    const Ray<typename P::Scalar, P::dimension>& ray,
                                                    const Filter& filter = {}, Count& count = no_visits) {
-    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
-    [[maybe_unused]] const auto found = [](const Hit<float>& hit) {
-        return hit ? std::optional(hit) : std::nullopt;
-    };
-    if constexpr (Index<S, P>::by_kernels) {
-        if (kernels != nullptr)
-            return found(in_ieee_mode(
-                [&] { return kernels->closest_hit(index.wide_scene(hit_filter(filter)), ray); }));
-    } else if constexpr (Index<S, P>::instances_by_kernels) {
-        if (kernels != nullptr)
-            return found(in_ieee_mode([&] {
-                return kernels->closest_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
-            }));
-    }
+    if constexpr (goes_to_kernels<S, P, Count>)
+        if (const WideKernels* kernels = wide_kernels()) {
+            const Hit<float> hit = in_ieee_mode(
+                [&] { return kernels->closest(index.kernel_scene(ray, hit_filter(filter)), ray); });
+            return hit ? std::optional(hit) : std::nullopt;
+        }
     return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
 }
 /// Whether anything is hit.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
              const Filter& filter = {}, Count& count = no_visits) {
-    [[maybe_unused]] const auto* kernels = kernels_for<S, P, Count>(index);
-    if constexpr (Index<S, P>::by_kernels) {
-        if (kernels != nullptr)
-            return in_ieee_mode([&] { return kernels->any_hit(index.wide_scene(hit_filter(filter)), ray); });
-    } else if constexpr (Index<S, P>::instances_by_kernels) {
-        if (kernels != nullptr)
-            return in_ieee_mode([&] {
-                return kernels->any_hit_of_instances(index.wide_instances(ray, hit_filter(filter)), ray);
-            });
-    }
+    if constexpr (goes_to_kernels<S, P, Count>)
+        if (const WideKernels* kernels = wide_kernels())
+            return in_ieee_mode(
+                [&] { return kernels->any(index.kernel_scene(ray, hit_filter(filter)), ray); });
     return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
 }
 /// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.
@@ -135,7 +116,7 @@ KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& ex
     std::atomic<std::size_t> phased{0}, packets{0};
     executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
         if constexpr (Index<S, P>::by_kernels)
-            if (const auto* kernels = kernels_for(index)) {
+            if (const WideKernels* kernels = wide_kernels()) {
                 const WideScene scene = index.wide_scene(hit_filter(filter), begin);
                 const KernelUse use = in_ieee_mode([&] { return by_kernels(*kernels, scene, begin, end); });
                 phased += use.phased, packets += use.packets;

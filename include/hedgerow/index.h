@@ -168,6 +168,14 @@ public:
         requires(instances_by_kernels) {
         return {structure_.tree(), primitives_.for_kernels(), primitives_.hit_error(ray), filter};
     }
+    /// Whichever of both this index is to them.
+    auto kernel_scene(const Ray<Scalar, dimension>& ray, const HitFilter& filter) const
+        requires(by_kernels || instances_by_kernels) {
+        if constexpr (by_kernels)
+            return wide_scene(filter);
+        else
+            return wide_instances(ray, filter);
+    }
     /// The kernels in use, if any.
     static const WideKernels* kernels() { return wide_kernels(); }
 

@@ -36,17 +36,19 @@ public:
     int depth() const override { return index_.structure().depth(); }
     std::string validate() const override { return index_.validate(); }
 
-    void closest_hits(std::span<const Ray<T, D>> rays, std::span<Hit<T>> hits,
-                      std::span<Visits> visits) const override {
-        if (visits.empty()) return void(hedgerow::closest_hits(index_, rays, hits));
+    KernelUse closest_hits(const RayArray<T, D>& rays, std::span<Hit<T>> hits,
+                           std::span<Visits> visits) const override {
+        if (visits.empty()) return hedgerow::closest_hits(index_, rays, hits);
         for (std::size_t i = 0; i < rays.size(); ++i)
             hits[i] = closest_hit(index_, rays[i], KeepAll{}, visits[i]).value_or(Hit<T>{});
+        return {rays.size(), 0, 0};
     }
-    void any_hits(std::span<const Ray<T, D>> rays, std::span<bool> hits,
-                  std::span<Visits> visits) const override {
-        if (visits.empty()) return void(hedgerow::any_hits(index_, rays, hits));
+    KernelUse any_hits(const RayArray<T, D>& rays, std::span<bool> hits,
+                       std::span<Visits> visits) const override {
+        if (visits.empty()) return hedgerow::any_hits(index_, rays, hits);
         for (std::size_t i = 0; i < rays.size(); ++i)
             hits[i] = any_hit(index_, rays[i], KeepAll{}, visits[i]);
+        return {rays.size(), 0, 0};
     }
     // Counting costs these some percent: less than another instance of each would cost the compiler.
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits) const override {

@@ -1,4 +1,5 @@
 /// Wide BVHs, built once for all sets.
+#include <algorithm>
 #include <cmath>
 
 #include <hedgerow/structures/bvh/builders/build.h>
@@ -31,7 +32,7 @@ BvhOptions binary(const WideOptions& options) {
 WideOptions resolved(const WideOptions& options) {
     const auto is_cost = [](double x) { return x >= 0 && std::isfinite(x); };
     const int w = options.width;
-    require(w == 0 || w == 4 || w == 8 || w == 16, "width", w, "0, 4, 8 or 16");
+    require(w == 0 || std::ranges::count(wide_widths, w) == 1, "width", w, "0, 4, 8 or 16");
     require(options.max_leaf_size >= 1 && options.max_leaf_size <= wide_leaf_size, "max_leaf_size",
             options.max_leaf_size, "a number from 1 to 8");
     require(is_cost(options.traversal_cost), "traversal_cost", options.traversal_cost, "a cost");

@@ -86,11 +86,10 @@ public:
             push(boxes, children);  // a sort takes less than a compress by table
     }
     HWY_INLINE std::uint32_t push_others_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
-        if constexpr (Boxes<W>::parts == 1 && !compresses) return push_others(boxes, children);
         const unsigned entered = boxes.bits();
         const int last = static_cast<int>(std::bit_width(entered)) - 1;
         const std::uint64_t others = entered ^ (1u << last);
-        if constexpr (Boxes<W>::parts > 1)
+        if constexpr (Boxes<W>::parts > 1 || !compresses)
             put_each_unsorted(static_cast<unsigned>(others), children);
         else
             put_unsorted(hn::LoadMaskBits(i32, reinterpret_cast<const std::uint8_t*>(&others)), children);

@@ -52,7 +52,7 @@ bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count
     }
     std::printf("%-10s %zu of %zu rays hit, sum %016llx\n", name, found, count,
                 static_cast<unsigned long long>(sum));
-    for (const int width : {4, 8, 16}) {
+    for (const int width : wide_widths) {
         WideOptions options;
         options.width = width;
         const auto index = build<WideBvh>(mesh, options);

@@ -70,6 +70,17 @@ struct WideKernels {
     KernelUse (*any_hits)(const WideScene&, const RayArray<float, 3>&, bool*);
     Hit<float> (*closest_hit_of_instances)(const WideInstances&, const Ray<float, 3>&);
     bool (*any_hit_of_instances)(const WideInstances&, const Ray<float, 3>&);
+
+    Hit<float> closest(const WideScene& scene, const Ray<float, 3>& ray) const {
+        return closest_hit(scene, ray);
+    }
+    Hit<float> closest(const WideInstances& scene, const Ray<float, 3>& ray) const {
+        return closest_hit_of_instances(scene, ray);
+    }
+    bool any(const WideScene& scene, const Ray<float, 3>& ray) const { return any_hit(scene, ray); }
+    bool any(const WideInstances& scene, const Ray<float, 3>& ray) const {
+        return any_hit_of_instances(scene, ray);
+    }
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses: what the environment names in

@@ -11,7 +11,8 @@ namespace hedgerow {
 
 /// Leaves hold at most this many primitives, and each begins at a multiple of it among the items.
 inline constexpr std::uint32_t wide_leaf_size = 8;
-/// The most children that a node may have.
+/// How many children the nodes of a tree may have, and the most.
+inline constexpr int wide_widths[] = {4, 8, 16};
 inline constexpr int most_wide = 16;
 
 /// Where a child leads, in one word: the number of an inner node, or of a leaf's block of items with the
