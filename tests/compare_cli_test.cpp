@@ -41,7 +41,7 @@ protected:
 };
 
 TEST_F(Compare, TellsWhatEachStructureCosts) {
-    const json j = parsed("gen:teapot:400 --structures bvh,kdtree,octree");
+    const json j = parsed("gen:teapot:400 --time 50 --structures bvh,kdtree,octree");
     ASSERT_EQ(j["structures"].size(), 4u) << "brute force is always there";
     EXPECT_EQ(j["structures"][0]["structure"], "brute-force");
     EXPECT_EQ(j["primitive"], "triangles");
