@@ -4,14 +4,11 @@
 
 template <Wanted wanted>
 struct PacketHits : PacketRays {
-    alignas(64) float t_limit[size], u[size], v[size];
+    alignas(64) float u[size], v[size];  // and t_limit
     alignas(64) std::uint32_t element[size];
 
     /// None is hit yet.
-    HWY_INLINE void clear_hits() {
-        std::copy_n(t_max, size, t_limit);
-        std::fill_n(element, size, Hit<float>::none);
-    }
+    HWY_INLINE void clear_hits() { std::fill_n(element, size, Hit<float>::none); }
     /// True if one of the rays that are active (a bit each) was hit. What few of them ask of eight triangles
     /// is less work than to ask all rays of each triangle.
     HWY_INLINE bool test_leaf(const WideScene& scene, const TriangleBlock<float>& block,

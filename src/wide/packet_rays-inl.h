@@ -17,7 +17,7 @@ struct PacketRays {
     // Those that are answered: see WideRay.
     alignas(64) float inverse[3][size], enter[3][size], leave[3][size], enter_at[3][size], leave_at[3][size];
     alignas(64) float origin[3][size], shear[2][size], z[size], z_length[size];
-    alignas(64) float s_low[size], s_min[size], s_limit[size], t_min[size], t_max[size];
+    alignas(64) float s_low[size], s_min[size], s_limit[size], t_min[size], t_limit[size];
     // All of them together.
     struct Range {
         float low, high;
@@ -153,7 +153,7 @@ private:
         hn::Store(hn::IfThenElse(goes, s_limit_of(f, to, longest), all(-1.0f)), f, s_limit + at);
         hn::Store(longest, f, z_length + at);
         hn::Store(from, f, t_min + at);
-        hn::Store(to, f, t_max + at);
+        hn::Store(to, f, t_limit + at);
     }
 
     static HWY_INLINE Range range_of(const float* values) {

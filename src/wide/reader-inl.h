@@ -7,15 +7,15 @@ class RayReader {
 public:
     HWY_INLINE explicit RayReader(const RayArray<float, 3>& rays) : rays_(rays) {}
 
-    // The 8 numbers of ray i; several are asked for in turn.
+    // The 8 numbers of ray i; i never descends.
     HWY_INLINE const std::byte* at(std::size_t i) {
         if (rays_.together()) return rays_.at(i);
-        if (i - first_ >= count_) fill(i);
+        if (i >= first_ + count_) fill(i);
         return reinterpret_cast<const std::byte*>(&ahead_[i - first_]);
     }
 
 private:
-    static constexpr std::size_t most = 8;
+    static constexpr std::size_t most = 32;
 
     HWY_NOINLINE void fill(std::size_t from) {
         first_ = from;
