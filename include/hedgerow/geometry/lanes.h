@@ -1,6 +1,6 @@
-/// Four numbers side by side: the one file that knows an instruction set. Float uses SSE2 or NEON, which
-/// every x86-64 and AArch64 processor has; double, and any other processor, plain loops with the same
-/// results.
+/// Four numbers side by side: the one file that knows an instruction set. SSE2, which every x86-64 processor
+/// has, for float and double; NEON, which every AArch64 processor has, for float; elsewhere plain loops with
+/// the same results.
 #pragma once
 
 #include <bit>
@@ -146,6 +146,72 @@ struct Lanes<float> {
 
 private:
     static unsigned bits(__m128 mask) { return static_cast<unsigned>(_mm_movemask_ps(mask)); }
+};
+/// Two registers.
+template <>
+struct Lanes<double> {
+    __m128d low, high;
+
+    static Lanes all(double x) { return {_mm_set1_pd(x), _mm_set1_pd(x)}; }
+    static Lanes halves(double low, double high) { return {_mm_set1_pd(low), _mm_set1_pd(high)}; }
+    static Lanes load(const double* p) { return load_pairs(p, p + 2); }
+    template <int D>
+    static Lanes of(const Vec<double, D>& a) {
+        return {_mm_setr_pd(a[0], a[1]), D == 3 ? _mm_set_sd(a[D - 1]) : _mm_setzero_pd()};
+    }
+    static Lanes load_pairs(const double* p, const double* q) { return {_mm_loadu_pd(p), _mm_loadu_pd(q)}; }
+    void store(double* p) const {
+        _mm_storeu_pd(p, low);
+        _mm_storeu_pd(p + 2, high);
+    }
+    friend Lanes operator+(Lanes a, Lanes b) {
+        return {_mm_add_pd(a.low, b.low), _mm_add_pd(a.high, b.high)};
+    }
+    friend Lanes operator-(Lanes a, Lanes b) {
+        return {_mm_sub_pd(a.low, b.low), _mm_sub_pd(a.high, b.high)};
+    }
+    friend Lanes operator*(Lanes a, Lanes b) {
+        __m128d p = _mm_mul_pd(a.low, b.low), q = _mm_mul_pd(a.high, b.high);
+        asm("" : "+x"(p), "+x"(q));  // rounded before they are added
+        return {p, q};
+    }
+    friend Lanes min(Lanes a, Lanes b) { return {_mm_min_pd(a.low, b.low), _mm_min_pd(a.high, b.high)}; }
+    friend Lanes max(Lanes a, Lanes b) { return {_mm_max_pd(a.low, b.low), _mm_max_pd(a.high, b.high)}; }
+    friend Lanes operator/(Lanes a, Lanes b) {
+        return {_mm_div_pd(a.low, b.low), _mm_div_pd(a.high, b.high)};
+    }
+    friend Lanes abs(Lanes a) {
+        const __m128d sign = _mm_set1_pd(-0.0);
+        return {_mm_andnot_pd(sign, a.low), _mm_andnot_pd(sign, a.high)};
+    }
+    friend Lanes copysign(Lanes a, Lanes b) {
+        const __m128d sign = _mm_set1_pd(-0.0);
+        const Lanes value = abs(a);
+        return {_mm_or_pd(value.low, _mm_and_pd(sign, b.low)),
+                _mm_or_pd(value.high, _mm_and_pd(sign, b.high))};
+    }
+    Lanes normal_or_zero() const {
+        const __m128d least = _mm_set1_pd(std::numeric_limits<double>::min());
+        const Lanes value = abs(*this);
+        return {_mm_andnot_pd(_mm_cmplt_pd(value.low, least), low),
+                _mm_andnot_pd(_mm_cmplt_pd(value.high, least), high)};
+    }
+    Lanes halves_swapped() const { return {high, low}; }
+    Lanes next_corner() const { return {_mm_shuffle_pd(low, high, 1), _mm_shuffle_pd(low, high, 2)}; }
+    Lanes previous_corner() const { return {_mm_shuffle_pd(high, low, 0), _mm_shuffle_pd(low, high, 3)}; }
+    unsigned negative() const { return less(*this, all(0)); }
+    unsigned positive() const { return less(all(0), *this); }
+    friend unsigned less_equal(Lanes a, Lanes b) {
+        return bits(_mm_cmple_pd(a.low, b.low), _mm_cmple_pd(a.high, b.high));
+    }
+
+private:
+    static unsigned less(Lanes a, Lanes b) {
+        return bits(_mm_cmplt_pd(a.low, b.low), _mm_cmplt_pd(a.high, b.high));
+    }
+    static unsigned bits(__m128d low, __m128d high) {
+        return static_cast<unsigned>(_mm_movemask_pd(low) | _mm_movemask_pd(high) << 2);
+    }
 };
 #elif defined(__aarch64__)
 template <>

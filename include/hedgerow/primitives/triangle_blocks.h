@@ -1,8 +1,11 @@
 /// Triangles copied in blocks of eight, as rows: what a leaf of a wide BVH is tested in at once.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <limits>
 
+#include <hedgerow/geometry/lanes.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/stored.h>
 
@@ -51,21 +54,48 @@ public:
         set(i, {nothing, nothing, nothing}, no_primitive);
     }
 
-    /// One by one, for any query and scalar. What is fast is the kernels (structures/bvh/wide/kernels.h).
+    /// The filter of the watertight test on four triangles at once; what passes goes to `meet_exactly`. For
+    /// any query and scalar: what is fastest is the kernels (structures/bvh/wide/kernels.h).
     template <class Query>
     Flow test_leaf(const RayProbe<T, 3>& probe, const Leaf& leaf, Query& query) const {
+        const WatertightRay<T>& ray = probe.watertight();
         const Block& b = blocks_[leaf.first / Block::size];
-        for (std::uint32_t i = 0; i < leaf.count; ++i) {
-            const auto corner = [&](int c) {
-                return Vec<T, 3>(b.corner[0][c][i], b.corner[1][c][i], b.corner[2][c][i]);
-            };
-            const auto m = meet(probe.watertight(), Triangle<T, 3>{corner(0), corner(1), corner(2)});
-            if (m && query.offer({m->t, m->u, m->v, b.id[i]}) == Flow::stop) return Flow::stop;
+        for (std::uint32_t k = 0; k < leaf.count; k += 4) {
+            const unsigned places = (1u << std::min(4u, leaf.count - k)) - 1;
+            for (unsigned left = may_meet(ray, b, k) & places; left != 0; left &= left - 1) {
+                const std::uint32_t i = k + static_cast<std::uint32_t>(std::countr_zero(left));
+                const auto corner = [&](int c) {
+                    return shear(ray, Vec<T, 3>(b.corner[0][c][i], b.corner[1][c][i], b.corner[2][c][i]));
+                };
+                const auto m = meet_exactly(ray, corner(0), corner(1), corner(2));
+                if (m && query.offer({m->t, m->u, m->v, b.id[i]}) == Flow::stop) return Flow::stop;
+            }
         }
         return Flow::go_on;
     }
 
 private:
+    /// Of the triangles from k to k + 3 those that the ray's line does not pass by.
+    static unsigned may_meet(const WatertightRay<T>& ray, const Block& b, std::uint32_t k) {
+        using L = Lanes<T>;
+        L x[3], y[3];
+        for (int c = 0; c < 3; ++c) {
+            const auto from_origin = [&](int axis) {
+                return L::load(b.corner[axis][c] + k) - L::all(ray.origin[axis]);
+            };
+            const L z = from_origin(ray.kz);
+            x[c] = from_origin(ray.kx) - L::all(ray.shear_x) * z;
+            y[c] = from_origin(ray.ky) - L::all(ray.shear_y) * z;
+        }
+        unsigned left_of = 0, right_of = 0;
+        for (int c = 0; c < 3; ++c) {
+            const int next = (c + 1) % 3, previous = (c + 2) % 3;
+            const L edge = x[previous] * y[next] - y[previous] * x[next];
+            left_of |= edge.negative(), right_of |= edge.positive();
+        }
+        return ~(left_of & right_of);
+    }
+
     Stored<Block> blocks_;
 };
 

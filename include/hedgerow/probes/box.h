@@ -1,6 +1,7 @@
 /// A box as a probe: it enters what it overlaps, in no order.
 #pragma once
 
+#include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/geometry/lattice.h>
 #include <hedgerow/geometry/overlap.h>
 #include <hedgerow/probes/concepts.h>
@@ -22,6 +23,17 @@ public:
     bool enter(const Box<T, D>& box, T, T& at) const {
         at = T(0);
         return overlap(box_, box);
+    }
+    unsigned enter(const BoxRows<T, D>& boxes, T, T* at) const {
+        using L = Lanes<T>;
+        return boxes.by_fours([&](int k) {
+            unsigned overlapping = 15;
+            for (int i = 0; i < D; ++i)
+                overlapping &= less_equal(L::load(boxes.low(i) + k), L::all(box_.high[i])) &
+                               less_equal(L::all(box_.low[i]), L::load(boxes.high(i) + k));
+            L::all(T(0)).store(at + k);
+            return overlapping;
+        });
     }
     /// Any other volume (geometry/volumes.h).
     template <class Volume>

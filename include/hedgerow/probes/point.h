@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/geometry/distance.h>
 #include <hedgerow/geometry/lattice.h>
 #include <hedgerow/probes/concepts.h>
@@ -27,6 +28,21 @@ public:
     bool enter(const Box<T, D>& box, T limit, T& at) const {
         at = distance2(point_, box);
         return at <= limit;
+    }
+    /// As distance2 of each, in lanes.
+    unsigned enter(const BoxRows<T, D>& boxes, T limit, T* at) const {
+        using L = Lanes<T>;
+        return boxes.by_fours([&](int k) {
+            L sum = L::all(T(0));
+            for (int i = 0; i < D; ++i) {
+                const L p = L::all(point_[i]);
+                const L below = L::load(boxes.low(i) + k) - p, above = p - L::load(boxes.high(i) + k);
+                const L outside = max(below, max(above, L::all(T(0))));
+                sum = sum + outside * outside;
+            }
+            sum.store(at + k);
+            return less_equal(sum, L::all(limit));
+        });
     }
     /// Any other volume (geometry/volumes.h), by a bound in double. It is lowered by more than the distance
     /// to an answer may err by, and in T, where squares of tiny scenes underflow.

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include <hedgerow/geometry/box_pair.h>
+#include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/geometry/entry.h>
 #include <hedgerow/geometry/lanes.h>
 #include <hedgerow/geometry/lattice.h>
@@ -98,6 +99,22 @@ public:
         }
         t.store(at);
         return less_equal(t + t.halves_swapped(), L::all(T(0))) & 3u;
+    }
+    unsigned enter(const BoxRows<T, D>& boxes, T limit, T* at) const {
+        using L = Lanes<T>;
+        return boxes.by_fours([&](int k) {
+            L entry = L::all(ray_.t_min), exit = L::all(limit);
+            for (int i = 0; i < D; ++i) {
+                const bool down = near_row_[i] != 0;
+                const L near = L::load((down ? boxes.high(i) : boxes.low(i)) + k);
+                const L far = L::load((down ? boxes.low(i) : boxes.high(i)) + k);
+                const L inverse = L::all(inverse_[i]);
+                entry = max((near - L::all(near_origin_[i])) * inverse, entry);
+                exit = min((far - L::all(far_origin_[i])) * inverse, exit);
+            }
+            entry.store(at + k);
+            return less_equal(entry, exit);
+        });
     }
     /// Any other volume (geometry/volumes.h), by the part of the line in it: computed in double, and rounded
     /// to T only where it is kept, which is monotone.

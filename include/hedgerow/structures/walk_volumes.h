@@ -1,6 +1,8 @@
 /// The walk through nested volumes: BVHs of any width, octrees.
 #pragma once
 
+#include <bit>
+
 #include <hedgerow/queries/concepts.h>
 
 namespace hedgerow {
@@ -85,15 +87,16 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
                     node = right;
                     continue;
                 }
-            }
-            const int first = top;
-            for (int i = 0; i < S::width; ++i) {
-                if (!(entered >> i & 1u)) continue;
-                int place = top++;
-                if constexpr (order == Order::nearest)
-                    for (; place > first && stack[place - 1].at < at[i]; --place)
-                        stack[place] = stack[place - 1];
-                stack[place] = kept(tree.child(node, i), at[i]);
+            } else {
+                const int first = top;
+                for (; entered != 0; entered &= entered - 1) {
+                    const int i = std::countr_zero(entered);
+                    int place = top++;
+                    if constexpr (order == Order::nearest)
+                        for (; place > first && stack[place - 1].at < at[i]; --place)
+                            stack[place] = stack[place - 1];
+                    stack[place] = kept(tree.child(node, i), at[i]);
+                }
             }
         }
         do {

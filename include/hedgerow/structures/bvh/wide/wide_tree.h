@@ -2,7 +2,7 @@
 /// a plane of every child.
 #pragma once
 
-#include <hedgerow/geometry/box.h>
+#include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/stored.h>
 #include <hedgerow/structures/walk_volumes.h>
@@ -13,7 +13,7 @@ namespace hedgerow {
 inline constexpr std::uint32_t wide_leaf_size = 8;
 /// How many children the nodes of a tree may have, and the most.
 inline constexpr int wide_widths[] = {4, 8, 16};
-inline constexpr int most_wide = 16;
+inline constexpr int most_wide = BoxRows<float, 3>::width;
 
 /// Where a child leads, in one word: the number of an inner node, or of a leaf's block of items with the
 /// highest bit set. Where there is no child it is all ones, and the box is one that nothing enters.
@@ -27,30 +27,6 @@ struct WideChild {
     bool empty() const { return word == none().word; }
     bool leaf() const { return (word & leaf_bit) != 0; }
     std::uint32_t block() const { return word & ~leaf_bit; }
-};
-
-/// The boxes of one node: of each axis the row of the low planes, then that of the high ones. A row has
-/// `places`, of which the first `boxes` are in use.
-template <std::floating_point T, int D>
-class BoxRows {
-public:
-    using Scalar = T;
-    static constexpr int dimension = D;
-    static constexpr int width = most_wide;  // at most
-
-    BoxRows(const T* rows, int places, int boxes) : rows_(rows), places_(places), boxes_(boxes) {}
-
-    int size() const { return boxes_; }
-    Box<T, D> operator[](int i) const {
-        Box<T, D> b;
-        for (int k = 0; k < D; ++k)
-            b.low[k] = rows_[2 * k * places_ + i], b.high[k] = rows_[(2 * k + 1) * places_ + i];
-        return b;
-    }
-
-private:
-    const T* rows_;
-    int places_, boxes_;
 };
 
 /// Nodes of `width` children, each of which begins a line of the cache: 2·D rows of planes, a row of
