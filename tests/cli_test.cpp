@@ -132,6 +132,18 @@ TEST_F(Cli, StepsAreDrawnAndReported) {
     EXPECT_NE(image.at(140, 120), image.at(0, 0));
 }
 
+TEST_F(Cli, KernelsRenderTheBitsOfWalksThatCount) {
+    const std::string scene = "render gen:teapot-in-stadium:2000 --json --size 333x101 --spp 3 -o ";
+    const auto fast = run(scene + file("fast.png")), counted = run(scene + file("counted.png") + " --counts"),
+               other = run(scene + file("other.png") + " --structure kdtree");
+    for (const auto& r : {fast, counted, other}) ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_EQ(fast.output.find("nodes_per_ray"), std::string::npos) << fast.output;
+    EXPECT_NE(counted.output.find("nodes_per_ray"), std::string::npos) << counted.output;
+    EXPECT_NE(counted.output.find("\"packets\": 0"), std::string::npos) << counted.output;
+    EXPECT_EQ(bytes_of(file("fast.png")), bytes_of(file("counted.png")));
+    EXPECT_EQ(bytes_of(file("fast.png")), bytes_of(file("other.png")));
+}
+
 TEST_F(Cli, WhatIsGeneratedCanBeRead) {
     ASSERT_EQ(run("generate gen:cube:300 -o " + file("cube.ply")).code, 0);
     const auto r = run("info --json " + file("cube.ply"));

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench_report.h"
+#include "kernel_use.h"
 
 namespace hedgerow::cli {
 
@@ -26,8 +27,7 @@ ordered_json json_of(const OurRate& r, Mode mode, const BenchReport& report) {
                       {"primitives", r.primitives},
                       {"cycles_a_visit", cycles},
                       {"times_floor", cycles / floor_of(mode)}};
-    if (mode == Mode::batch)
-        j["rays_by"] = {{"single", r.use.single}, {"phased", r.use.phased}, {"packets", r.use.packets}};
+    if (mode == Mode::batch) j["rays_by"] = rays_by(r.use);
     if (r.on_threads > 0)
         j["on_threads"] = {
             {"threads", report.threads}, {"mrays", mrays(r.on_threads)}, {"scaling", r.scaling}};

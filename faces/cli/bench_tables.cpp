@@ -6,6 +6,7 @@
 #include <hedgerow/compare/quantity.h>
 
 #include "bench_report.h"
+#include "kernel_use.h"
 
 namespace hedgerow::cli {
 
@@ -55,18 +56,6 @@ Table builds_table(const BenchReport& r, const SceneCosts& s) {
     return t;
 }
 
-/// Which algorithm answered most.
-std::string use_text(const Row& row) {
-    const KernelUse& u = row.best().use;
-    const std::size_t most = std::max({u.single, u.phased, u.packets});
-    if (row.mode == Mode::one || most == 0) return "";
-    return fmt::format("{} {:.0f}%",
-                       most == u.packets  ? "packets"
-                       : most == u.phased ? "phased"
-                                          : "single",
-                       100 * static_cast<double>(most) / static_cast<double>(row.rays));
-}
-
 Table rays_table(const BenchReport& r, const SceneCosts& s) {
     Table t{
         s.name + ": rays",
@@ -91,7 +80,8 @@ Table rays_table(const BenchReport& r, const SceneCosts& s) {
                           std::string(name_of(best.builder)), fmt::format("{:.2f}", best.nodes),
                           fmt::format("{:.2f}", best.leaves), fmt::format("{:.2f}", best.primitives),
                           fmt::format("{:.1f}", best.cycles_a_visit(r.gigahertz)),
-                          fmt::format("{:.2f}", r.times_floor(row)), use_text(row)});
+                          fmt::format("{:.2f}", r.times_floor(row)),
+                          row.mode == Mode::one ? "" : most_used(row.best().use, row.rays)});
         auto& cells = t.rows.back();
         if (r.threads > 1) {
             cells.push_back(best.on_threads > 0 ? rate_text(best.on_threads) : "");

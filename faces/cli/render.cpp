@@ -7,6 +7,7 @@
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/render/raycast.h>
 
+#include "kernel_use.h"
 #include "verbs.h"
 #include "view.h"
 
@@ -15,12 +16,12 @@ namespace hedgerow::cli {
 namespace {
 
 struct RenderArguments : Common {
-    std::string structure = "bvh", shading = "diffuse";
+    std::string structure = "wide", shading = "diffuse";
     ViewArguments view;
     int spp = 1;
     unsigned threads = 0;
     std::uint64_t steps_max = 0;
-    bool layers = false;  // as the output's ending asks
+    bool counts = false, layers = false;  // layers: as the output's ending asks
 };
 
 struct Outcome {
@@ -39,34 +40,40 @@ constexpr const char* layers_help =
     "  nodes leaves primitives  looked at to find the hit; mean\n\n";
 
 void report(const RenderArguments& a, const Outcome& o) {
-    const double rays = double(std::max<std::uint64_t>(o.picture.rays, 1));
-    const Visits& v = o.picture.visits;
+    const Picture& p = o.picture;
+    const double rays = double(std::max<std::uint64_t>(p.rays, 1));
+    const auto a_ray = [&](std::uint64_t count) { return double(count) / rays; };
+    const bool counted = p.visits != Visits();
     if (a.json) {
-        const nlohmann::ordered_json j = {{"structure", a.structure},
-                                          {"output", a.output},
-                                          {"width", o.picture.image.width},
-                                          {"height", o.picture.image.height},
-                                          {"primitives", o.primitives},
-                                          {"bytes", o.bytes},
-                                          {o.loaded ? "load_seconds" : "build_seconds", o.build_seconds},
-                                          {"rays", o.picture.rays},
-                                          {"seconds", o.seconds},
-                                          {"rays_per_second", rays / o.seconds},
-                                          {"nodes_per_ray", double(v.nodes) / rays},
-                                          {"leaves_per_ray", double(v.leaves) / rays},
-                                          {"primitives_per_ray", double(v.primitives) / rays},
-                                          {"finished", !interrupted.load()}};
+        nlohmann::ordered_json j = {{"structure", a.structure},
+                                    {"output", a.output},
+                                    {"width", p.image.width},
+                                    {"height", p.image.height},
+                                    {"primitives", o.primitives},
+                                    {"bytes", o.bytes},
+                                    {o.loaded ? "load_seconds" : "build_seconds", o.build_seconds},
+                                    {"rays", p.rays},
+                                    {"rays_by", rays_by(p.use)},
+                                    {"seconds", o.seconds},
+                                    {"rays_per_second", rays / o.seconds},
+                                    {"finished", !interrupted.load()}};
+        if (counted) {
+            j["nodes_per_ray"] = a_ray(p.visits.nodes);
+            j["leaves_per_ray"] = a_ray(p.visits.leaves);
+            j["primitives_per_ray"] = a_ray(p.visits.primitives);
+        }
         fmt::print("{}\n", j.dump(2));
     } else if (!a.quiet) {
         fmt::print("{}: {}x{}, {} primitives, {} {} in {:.1f} ms, {:.1f} bytes a primitive\n", a.output,
-                   o.picture.image.width, o.picture.image.height, o.primitives, a.structure,
-                   o.loaded ? "loaded" : "built", o.build_seconds * 1e3,
-                   double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
-        fmt::print(
-            "{} rays in {:.3f} s: {:.3f} million a second; a ray visits {:.1f} nodes, {:.1f} leaves, "
-            "{:.1f} primitives\n",
-            o.picture.rays, o.seconds, rays / o.seconds * 1e-6, double(v.nodes) / rays,
-            double(v.leaves) / rays, double(v.primitives) / rays);
+                   p.image.width, p.image.height, o.primitives, a.structure, o.loaded ? "loaded" : "built",
+                   o.build_seconds * 1e3, double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
+        fmt::print("{} rays in {:.3f} s: {:.3f} million a second", p.rays, o.seconds,
+                   rays / o.seconds * 1e-6);
+        if (p.use.packets + p.use.phased > 0) fmt::print("; {}", most_used(p.use, p.rays));
+        if (counted)
+            fmt::print("; a ray visits {:.1f} nodes, {:.1f} leaves, {:.1f} primitives", a_ray(p.visits.nodes),
+                       a_ray(p.visits.leaves), a_ray(p.visits.primitives));
+        fmt::print("\n");
     }
 }
 
@@ -77,7 +84,7 @@ int render(const RenderArguments& a, const Any& index, const P& primitives, Outc
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = a.spp, options.seed = a.seed, options.steps_max = a.steps_max;
     options.shading = parse_shading(a.shading);
-    options.layers = a.layers;
+    options.layers = a.layers, options.counts = a.counts;
     o.primitives = index.size(), o.bytes = index.bytes();
     options.camera = camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)});
     {
@@ -143,6 +150,8 @@ Run add_render(CLI::App& verb) {
         ->capture_default_str()
         ->check(CLI::IsMember({"normals", "depth", "diffuse", "steps"}));
     verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
+    verb.add_flag("--counts", a->counts,
+                  "count what rays visit, without the engine's kernels; layers and steps are counts already");
     verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");

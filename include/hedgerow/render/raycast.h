@@ -1,6 +1,7 @@
 /// Ray casting: a picture from any index, in tiles over an executor.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <mutex>
 
@@ -38,12 +39,20 @@ struct RenderOptions {
     std::uint64_t steps_max = 0;
     /// Whether the picture keeps what its rays met, for `Picture::layers`.
     bool layers = false;
+    /// Whether what rays visit is counted, which no kernel does. Layers and what shows counts ask for it by
+    /// themselves.
+    bool counts = false;
+
+    bool counted() const {
+        return counts || layers || shading == Shading::steps || shading == Shading::tests;
+    }
 };
 
 struct Picture {
     Image image;
     std::uint64_t rays = 0;
-    Visits visits;
+    Visits visits;  // unless counted, 0
+    KernelUse use;  // what answered; where counted, no kernel
     /// Of what is counted: the mean and the most of all pixels, and how many lie beyond the scale.
     double mean = 0, most = 0;
     std::uint64_t beyond = 0;
@@ -57,8 +66,8 @@ struct Picture {
     Layers layers() const&& = delete;
 };
 
-/// Casts one or more rays a pixel; diffuse adds a shadow ray where the light is faced. Rows that are not done
-/// when the progress is cancelled stay black, and saw nothing.
+/// Casts one or more rays a pixel; diffuse adds a shadow ray where the light is faced. A block of pixels is
+/// asked for at once. Rows that are not done when the progress is cancelled stay black, and saw nothing.
 template <class T, class P>
 class Raycast {
 public:
@@ -75,108 +84,143 @@ public:
               static_cast<float>(length(index.bounds().empty() ? Vec<T, 3>() : index.bounds().extent()))) {}
 
     Picture run(Executor& executor, const Progress& progress) {
+        const int bands = (o_.height + band_rows - 1) / band_rows;
         std::atomic<std::uint64_t> rows{0};
-        executor.for_each_piece(static_cast<std::size_t>(o_.height), 1,
-                                [&](std::size_t begin, std::size_t end) {
-                                    for (std::size_t y = begin; y < end && !progress.cancelled(); ++y) {
-                                        if (!row(static_cast<int>(y), progress)) return;
-                                        progress(++rows, static_cast<std::uint64_t>(o_.height));
-                                    }
-                                });
+        executor.for_each_piece(static_cast<std::size_t>(bands), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end && !progress.cancelled(); ++k) {
+                const int top = static_cast<int>(k) * band_rows;
+                const int height = std::min(band_rows, o_.height - top);
+                if (!band(top, height, progress)) return;
+                progress(rows += static_cast<std::uint64_t>(height), static_cast<std::uint64_t>(o_.height));
+            }
+        });
         return develop();
     }
 
 private:
+    /// Blocks are of so many pixels: enough for the kernels, few enough to be cancelled soon.
+    static constexpr int band_rows = 8, block_columns = 64;
+    struct Block {
+        int left, top, width, height;
+
+        std::size_t size() const {
+            return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+        }
+        int x(std::size_t i) const { return left + static_cast<int>(i) % width; }
+        int y(std::size_t i) const { return top + static_cast<int>(i) / width; }
+    };
+    template <class V>
+    using OfBlock = std::array<V, static_cast<std::size_t>(band_rows) * block_columns>;
+    /// Rays from the eye, a pixel of a block each, what they met, and the normals there on their side.
+    struct Looks {
+        OfBlock<Ray<T, 3>> rays;
+        OfBlock<Hit<T>> hits;
+        OfBlock<Vec3f> normals;
+    };
+    struct Total {
+        Visits visits;
+        std::uint64_t rays = 0;
+        KernelUse use;
+    };
+
     static Vec3f light_of(const Camera& c) {
         if (length2(c.light) > 0) return normalized(c.light);
         const Vec3f forward = normalized(c.target - c.eye);
         return normalized(c.up + cross(forward, c.up) * 0.5f - forward * 0.35f);
     }
-    /// A ray from the eye, and what it met.
-    struct Look {
-        Ray<T, 3> ray;
-        Hit<T> hit;
-        Visits visits;
-    };
-    struct Total {
-        Visits visits;
-        std::uint64_t rays = 0;
-    };
+    std::size_t pixel(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) + static_cast<std::size_t>(x);
+    }
 
-    /// A row is kept whole or not at all.
-    bool row(int y, const Progress& progress) {
-        const auto width = static_cast<std::size_t>(o_.width), first = static_cast<std::size_t>(y) * width;
-        std::vector<Vec3f> values(width);
-        std::vector<Seen> seen(o_.layers ? width : 0);
+    /// Rows are kept whole or not at all.
+    bool band(int top, int height, const Progress& progress) {
         Total total;
-        for (std::size_t x = 0; x < width; ++x) {
-            if (x % 16 == 0 && progress.cancelled()) return false;
-            values[x] = pixel(static_cast<int>(x), y, o_.layers ? &seen[x] : nullptr, total);
+        Block block{0, top, 0, height};
+        for (; block.left < o_.width; block.left += block.width) {
+            block.width = std::min(block_columns, o_.width - block.left);
+            if (!see(block, total, progress)) break;
         }
-        std::copy(values.begin(), values.end(), &values_[first]);
-        if (o_.layers) std::copy(seen.begin(), seen.end(), &seen_[first]);
+        const bool whole = block.left == o_.width;
+        if (!whole) {
+            const auto begin = static_cast<std::ptrdiff_t>(pixel(0, top));
+            const auto end = static_cast<std::ptrdiff_t>(pixel(0, top + height));
+            std::fill(values_.begin() + begin, values_.begin() + end, Vec3f());
+            if (o_.layers) std::fill(seen_.begin() + begin, seen_.begin() + end, Seen());
+            return false;
+        }
         const std::lock_guard lock(mutex_);
-        done_[static_cast<std::size_t>(y)] = 1;
-        visits_ += total.visits;
-        rays_ += total.rays;
+        std::fill_n(done_.begin() + top, height, std::uint8_t{1});
+        total_.visits += total.visits;
+        total_.rays += total.rays;
+        total_.use += total.use;
         return true;
     }
 
-    /// Colour, or what is counted: the mean of the samples.
-    Vec3f pixel(int x, int y, Seen* seen, Total& total) const {
-        Vec3f sum;
-        Visits visits;
-        for (int s = 0; s < o_.samples; ++s) {
-            const Look look = cast(ray_through(x, y, s));
-            visits += look.visits;
-            sum = sum + shade(look, total);
-            if (seen != nullptr && s == 0 && look.hit) see(look, *seen);
+    /// Every sample of a block's pixels; false where it was cancelled.
+    bool see(const Block& block, Total& total, const Progress& progress) {
+        OfBlock<Visits> visits{};
+        for (int sample = 0; sample < o_.samples; ++sample) {
+            if (progress.cancelled()) return false;
+            look(block, sample, visits, total);
         }
-        if (seen != nullptr) count(visits, *seen);
-        total.visits += visits;
-        total.rays += static_cast<std::uint64_t>(o_.samples);
-        return sum / static_cast<float>(o_.samples);
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            const std::size_t p = pixel(block.x(i), block.y(i));
+            const Visits& counts = visits[i];
+            const auto mean = [&](std::uint64_t all) { return static_cast<float>(double(all) / o_.samples); };
+            if (o_.shading == Shading::steps)
+                values_[p] = Vec3f::all(mean(counts.nodes + counts.leaves + counts.primitives));
+            else if (o_.shading == Shading::tests)
+                values_[p] = Vec3f::all(mean(counts.primitives));
+            else
+                values_[p] = values_[p] / static_cast<float>(o_.samples);
+            if (o_.layers) {
+                seen_[p].nodes = mean(counts.nodes);
+                seen_[p].leaves = mean(counts.leaves);
+                seen_[p].primitives = mean(counts.primitives);
+            }
+            total.visits += counts;
+        }
+        return true;
+    }
+    /// Adds a sample of each of a block's pixels.
+    void look(const Block& block, int sample, OfBlock<Visits>& visits, Total& total) {
+        const std::size_t n = block.size();
+        Looks looks;
+        for (std::size_t i = 0; i < n; ++i) looks.rays[i] = ray_through(block.x(i), block.y(i), sample);
+        total.rays += n;
+        total.use += index_.closest_hits(std::span(looks.rays).first(n), std::span(looks.hits).first(n),
+                                         std::span(visits).first(o_.counted() ? n : 0));
+        for (std::size_t i = 0; i < n; ++i) {
+            const Hit<T>& hit = looks.hits[i];
+            if (hit) looks.normals[i] = facing_normal(hit, looks.rays[i]);
+            const std::size_t p = pixel(block.x(i), block.y(i));
+            values_[p] = values_[p] + colour(looks.rays[i], hit, looks.normals[i]);
+            if (o_.layers && sample == 0 && hit) {
+                seen_[p].depth = static_cast<float>(hit.t);  // directions have length 1
+                seen_[p].normal = looks.normals[i];
+                seen_[p].id = hit.primitive;
+            }
+        }
+        if (o_.shading == Shading::diffuse) add_light(block, looks, total);
     }
     /// Through the pixel's middle, or where there are several samples anywhere in it.
     Ray<T, 3> ray_through(int x, int y, int sample) const {
         const auto left = static_cast<float>(x), top = static_cast<float>(y);
         if (o_.samples == 1) return make_.template ray<T>(left + 0.5f, top + 0.5f);
-        Random random(o_.seed, (static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(o_.width) +
-                                static_cast<std::uint64_t>(x)) *
-                                       static_cast<std::uint64_t>(o_.samples) +
+        Random random(o_.seed, std::uint64_t{pixel(x, y)} * static_cast<std::uint64_t>(o_.samples) +
                                    static_cast<std::uint64_t>(sample));
         const auto dx = static_cast<float>(random.uniform()), dy = static_cast<float>(random.uniform());
         return make_.template ray<T>(left + dx, top + dy);
     }
-    Look cast(const Ray<T, 3>& ray) const {
-        Look look{ray, {}, {}};
-        index_.closest_hits({&ray, 1}, {&look.hit, 1}, {&look.visits, 1});
-        return look;
-    }
 
-    Vec3f shade(const Look& look, Total& total) const {
-        const Visits& counts = look.visits;
-        if (o_.shading == Shading::steps)
-            return Vec3f::all(static_cast<float>(counts.nodes + counts.leaves + counts.primitives));
-        if (o_.shading == Shading::tests) return Vec3f::all(static_cast<float>(counts.primitives));
-        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(look.ray));
-        if (!look.hit) return background();
+    /// What is seen there, but for counts and what the light adds.
+    Vec3f colour(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& normal) const {
+        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(ray));
+        if (!hit) return {0.28f, 0.36f, 0.48f};
         if (o_.shading == Shading::depth)
-            return Vec3f::all(std::exp(-1.5f * static_cast<float>(look.hit.t) / (diagonal_ + 1e-30f)));
-        const Vec3f n = facing_normal(look);
-        if (o_.shading == Shading::normals) return (n + Vec3f(1, 1, 1)) * 0.5f;
-        return lit(look, n, total);
-    }
-    void see(const Look& look, Seen& seen) const {
-        seen.depth = static_cast<float>(look.hit.t);  // directions have length 1
-        seen.normal = facing_normal(look);
-        seen.id = look.hit.primitive;
-    }
-    void count(const Visits& visits, Seen& seen) const {
-        const auto mean = [&](std::uint64_t all) { return static_cast<float>(double(all) / o_.samples); };
-        seen.nodes = mean(visits.nodes);
-        seen.leaves = mean(visits.leaves);
-        seen.primitives = mean(visits.primitives);
+            return Vec3f::all(std::exp(-1.5f * static_cast<float>(hit.t) / (diagonal_ + 1e-30f)));
+        if (o_.shading == Shading::normals) return (normal + Vec3f(1, 1, 1)) * 0.5f;
+        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(normal, o_.camera.up)) * 0.62f;  // the sky's
     }
     float nanoseconds(const Ray<T, 3>& ray) const {
         using Clock = std::chrono::steady_clock;
@@ -189,28 +233,38 @@ private:
         }
         return std::chrono::duration<float, std::nano>(least).count();
     }
-    Vec3f lit(const Look& look, const Vec3f& n, Total& total) const {
-        const Vec3f sky = Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(n, o_.camera.up));
-        const float facing = dot(n, light_);
-        Vec3f light = sky;
-        if (facing > 0) {
-            const Vec<T, 3> origin = offset_origin(look.ray, look.hit.t, primitives_.bounds(look.hit.element),
-                                                   Vec<T, 3>(n), Vec<T, 3>(n));
-            const Ray<T, 3> shadow{origin, Vec<T, 3>(light_)};
-            bool blocked = false;
-            Visits here;
-            index_.any_hits({&shadow, 1}, {&blocked, 1}, {&here, 1});
-            ++total.rays;
-            total.visits += here;
-            if (!blocked) light = light + Vec3f(0.85f, 0.80f, 0.70f) * facing;
+    /// Where it is faced and nothing stands between.
+    void add_light(const Block& block, const Looks& looks, Total& total) {
+        OfBlock<Ray<T, 3>> shadows;
+        OfBlock<std::size_t> pixels;
+        OfBlock<float> facing;
+        OfBlock<bool> blocked;
+        OfBlock<Visits> visits{};
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            const Hit<T>& hit = looks.hits[i];
+            if (!hit) continue;
+            facing[n] = dot(looks.normals[i], light_);
+            if (!(facing[n] > 0)) continue;
+            const Vec<T, 3> normal(looks.normals[i]);
+            shadows[n] = {
+                offset_origin(looks.rays[i], hit.t, primitives_.bounds(hit.element), normal, normal),
+                Vec<T, 3>(light_)};
+            pixels[n++] = pixel(block.x(i), block.y(i));
         }
-        return light * 0.62f;
+        total.rays += n;
+        total.use += index_.any_hits(std::span(shadows).first(n), std::span(blocked).first(n),
+                                     std::span(visits).first(o_.counted() ? n : 0));
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!blocked[i])
+                values_[pixels[i]] = values_[pixels[i]] + Vec3f(0.85f, 0.80f, 0.70f) * facing[i] * 0.62f;
+            total.visits += visits[i];
+        }
     }
-    static Vec3f background() { return {0.28f, 0.36f, 0.48f}; }
 
-    Vec3f facing_normal(const Look& look) const {
-        const Vec3f n = normal(look.hit, look.ray);
-        return dot(n, Vec3f(look.ray.direction)) > 0 ? -n : n;
+    Vec3f facing_normal(const Hit<T>& hit, const Ray<T, 3>& ray) const {
+        const Vec3f n = normal(hit, ray);
+        return dot(n, Vec3f(ray.direction)) > 0 ? -n : n;
     }
     Vec3f normal(const Hit<T>& hit, const Ray<T, 3>& ray) const {
         if constexpr (requires { primitives_.normal(hit.element); })
@@ -222,7 +276,7 @@ private:
     Picture develop() {
         Picture picture;
         picture.image = Image(o_.width, o_.height);
-        picture.rays = rays_, picture.visits = visits_;
+        picture.rays = total_.rays, picture.visits = total_.visits, picture.use = total_.use;
         for (const auto& v : values_) {
             picture.most = std::max(picture.most, double(v[0]));
             picture.mean += double(v[0]) / double(values_.size());
@@ -232,8 +286,7 @@ private:
         for (int y = 0; y < o_.height; ++y) {
             if (!done_[static_cast<std::size_t>(y)]) continue;
             for (int x = 0; x < o_.width; ++x) {
-                const Vec3f& v = values_[static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) +
-                                         static_cast<std::size_t>(x)];
+                const Vec3f& v = values_[pixel(x, y)];
                 picture.image.at(x, y) = counted(o_.shading) ? heat(most > 0 ? v[0] / most : 0) : srgb(v);
             }
         }
@@ -250,8 +303,7 @@ private:
     std::vector<Seen> seen_;
     std::vector<std::uint8_t> done_;
     std::mutex mutex_;
-    Visits visits_;
-    std::uint64_t rays_ = 0;
+    Total total_;
     Vec3f light_;
     float diagonal_;
 };
