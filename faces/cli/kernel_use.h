@@ -9,7 +9,8 @@
 
 namespace hedgerow::cli {
 
-/// What answered most of so many rays: "packets 97%"; empty where no kernel did.
+/// What answered most of so many rays: "packets 97%"; "single" also where there is no kernel. Empty without
+/// rays.
 std::string most_used(const KernelUse& use, std::uint64_t rays);
 nlohmann::ordered_json rays_by(const KernelUse& use);
 

@@ -140,12 +140,9 @@ Run add_render(CLI::App& verb) {
     add_common(verb, *a, true);
     verb.get_option("--output")->description("the file to write: .png, or .exr for layers of numbers");
     verb.footer(layers_help + verb.get_footer());
-    auto* const structure =
-        verb.add_option(
-                "--structure", a->structure,
-                "NAME[:OPTION=VALUE,...]; of a .hedgerow file 'wide', as it was saved, unless another "
-                "is named")
-            ->capture_default_str();
+    verb.add_option("--structure", a->structure,
+                    "NAME[:OPTION=VALUE,...]; of a .hedgerow file 'wide' is the index as it was saved")
+        ->capture_default_str();
     verb.add_option("--shading", a->shading, "normals, depth, diffuse or steps")
         ->capture_default_str()
         ->check(CLI::IsMember({"normals", "depth", "diffuse", "steps"}));
@@ -155,9 +152,8 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
-    return [a, structure] {
+    return [a] {
         const bool saved = names_index_file(a->scene);
-        if (saved && structure->count() == 0) a->structure = "wide";
         parse_size(a->view.size);
         check_writable(a->output);
         a->layers = asks_for_layers(a->output);
