@@ -27,7 +27,8 @@ struct RenderArguments : Common {
 struct Outcome {
     Picture picture;
     std::size_t primitives = 0, bytes = 0;
-    bool loaded = false;  // not built
+    bool loaded = false;   // not built
+    bool counted = false;  // what rays visit
     double build_seconds = 0, seconds = 0;
 };
 
@@ -43,7 +44,6 @@ void report(const RenderArguments& a, const Outcome& o) {
     const Picture& p = o.picture;
     const double rays = double(std::max<std::uint64_t>(p.rays, 1));
     const auto a_ray = [&](std::uint64_t count) { return double(count) / rays; };
-    const bool counted = p.visits != Visits();
     if (a.json) {
         nlohmann::ordered_json j = {{"structure", a.structure},
                                     {"output", a.output},
@@ -57,7 +57,7 @@ void report(const RenderArguments& a, const Outcome& o) {
                                     {"seconds", o.seconds},
                                     {"rays_per_second", rays / o.seconds},
                                     {"finished", !interrupted.load()}};
-        if (counted) {
+        if (o.counted) {
             j["nodes_per_ray"] = a_ray(p.visits.nodes);
             j["leaves_per_ray"] = a_ray(p.visits.leaves);
             j["primitives_per_ray"] = a_ray(p.visits.primitives);
@@ -70,7 +70,7 @@ void report(const RenderArguments& a, const Outcome& o) {
         fmt::print("{} rays in {:.3f} s: {:.3f} million a second", p.rays, o.seconds,
                    rays / o.seconds * 1e-6);
         if (p.use.packets + p.use.phased > 0) fmt::print("; {}", most_used(p.use, p.rays));
-        if (counted)
+        if (o.counted)
             fmt::print("; a ray visits {:.1f} nodes, {:.1f} leaves, {:.1f} primitives", a_ray(p.visits.nodes),
                        a_ray(p.visits.leaves), a_ray(p.visits.primitives));
         fmt::print("\n");
@@ -85,7 +85,7 @@ int render(const RenderArguments& a, const Any& index, const P& primitives, Outc
     options.samples = a.spp, options.seed = a.seed, options.steps_max = a.steps_max;
     options.shading = parse_shading(a.shading);
     options.layers = a.layers, options.counts = a.counts;
-    o.primitives = index.size(), o.bytes = index.bytes();
+    o.primitives = index.size(), o.bytes = index.bytes(), o.counted = options.counted();
     options.camera = camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)});
     {
         ProgressLine line("rendering", a.quiet);
