@@ -18,13 +18,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-Section<2> section_of(const DrawArguments& a, const Box2d&) {
+Section<2> section_of(const DrawArguments& a, const Box2d&, const Upright&) {
     if (!a.slice.empty())
         throw InputError(a.scene + " is flat already, and has no slices: leave --slice out");
     return {};
 }
 /// Across an axis: "z=0.5" is a fraction of the scene's extent, "z=@12.5" a position.
-Section<3> section_of(const DrawArguments& a, const Box3d& bounds) {
+Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright& upright) {
     const std::string_view text = a.slice;
     const auto bad = [&]() {
         return InputError(
@@ -46,8 +46,10 @@ Section<3> section_of(const DrawArguments& a, const Box3d& bounds) {
     }
     Section<3> section;
     section.origin[axis] = section.within.low[axis] = section.within.high[axis] = value;
-    section.right[axis == 0 ? 1 : 0] = 1;
-    section.up[axis == 2 ? 1 : 2] = 1;
+    // Up is up in the picture, unless the plane lies across it.
+    const int up = axis != upright.axis ? upright.axis : (axis == 2 ? 1 : 2);
+    section.right[3 - axis - up] = 1;
+    section.up[up] = 1;
     return section;
 }
 
@@ -63,7 +65,7 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
     for (const auto& spec : specs) {
         const auto index = build_any(spec, set);
         const auto bounds = bounds_of(*index);
-        const auto section = section_of(a, bounds);
+        const auto section = section_of(a, bounds, upright_of(a.view, a, set));
         const auto limits = section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels);
         const auto cells = few(index->outline(limits));
         NamedStructure s{spec, {}, flat_structure(cells, section)};

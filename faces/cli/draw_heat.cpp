@@ -30,7 +30,9 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     options.shading = parse_shading(a.heat);
     options.steps_max = a.scale > 0 ? a.scale : usual_scale(options.shading);
     const auto index = build_any(a.structure, set);
-    options.camera = camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)});
+    const Upright upright = upright_of(a.view, a, set);
+    options.camera =
+        camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)}, upright);
     Picture picture;
     {
         ProgressLine line("casting rays", a.quiet);
@@ -59,9 +61,9 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     else if (!a.quiet)
         fmt::print(
             "{}: {} a ray: {:.1f} on average, at most {:.0f}; the scale ends at {}, and {:.2f}% of the "
-            "pixels lie beyond\n",
+            "pixels lie beyond\n{}",
             a.structure, unit, picture.mean, picture.most, options.steps_max,
-            100 * double(picture.beyond) / pixels);
+            100 * double(picture.beyond) / pixels, up_text(a.view, a, upright));
     return interrupted ? 130 : 0;
 }
 

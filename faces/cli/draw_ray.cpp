@@ -8,7 +8,6 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/error.h>
 #include <hedgerow/io/text_file.h>
-#include <hedgerow/render/camera.h>
 
 #include "draw.h"
 #include "section.h"
@@ -23,16 +22,17 @@ using nlohmann::ordered_json;
 constexpr std::size_t most_behind = 20'000;
 
 template <class T>
-Section<2> section_along(const Ray<T, 2>&, const Box2d&) {
+Section<2> section_along(const Ray<T, 2>&, const Upright&) {
     return {};
 }
 /// The plane that holds the ray and the scene's upward direction, or another where that runs along the ray.
 template <class T>
-Section<3> section_along(const Ray<T, 3>& ray, const Box3d& bounds) {
+Section<3> section_along(const Ray<T, 3>& ray, const Upright& upright) {
     Section<3> section;
     section.origin = Vec3d(ray.origin);
     section.right = normalized(Vec3d(ray.direction));
-    Vec3d up(automatic_camera({Vec3f(bounds.low), Vec3f(bounds.high)}).up);
+    Vec3d up;
+    up[upright.axis] = 1;
     if (std::abs(dot(up, section.right)) > 0.9) up = {up[2], up[0], up[1]};
     section.up = normalized(up - section.right * dot(up, section.right));
     return section;
@@ -127,7 +127,7 @@ int draw_ray_in(const DrawArguments& a, const P& set) {
     const auto ray = ray_of<T, D>(a);
     const auto index = build_any(a.structure, set);
     const auto bounds = bounds_of(*index);
-    const auto section = section_along(ray, bounds);
+    const auto section = section_along(ray, upright_of(a.view, a, set));
     const auto table = table_of(a.structure, ray, index->trace(ray), section);
     FlatScene scene = flat_scene(a, set, section, bounds);
     scene.title += D == 2 ? ": what a ray visits" : ": what a ray visits, in a plane along it";

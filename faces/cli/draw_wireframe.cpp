@@ -125,8 +125,9 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
         options.width = std::max(1, (options.width - 4) / 2);
     }
     const auto seen_index = build_any("bvh", seen);
-    options.camera =
-        camera_of(a.view, a, Box3f{Vec3f(seen_index->bounds().low), Vec3f(seen_index->bounds().high)});
+    const Upright upright = upright_of(a.view, a, set);
+    options.camera = camera_of(
+        a.view, a, Box3f{Vec3f(seen_index->bounds().low), Vec3f(seen_index->bounds().high)}, upright);
     std::optional<Image> image;
     ordered_json report = ordered_json::array();
     std::string text;
@@ -149,7 +150,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     if (a.json)
         fmt::print("{}\n", ordered_json{{"output", a.output}, {"structures", report}}.dump(2));
     else if (!a.quiet)
-        fmt::print("{}", text);
+        fmt::print("{}{}", text, up_text(a.view, a, upright));
     return 0;
 }
 

@@ -27,6 +27,8 @@ struct RenderArguments : Common {
 struct Outcome {
     Picture picture;
     std::size_t primitives = 0, bytes = 0;
+    Upright upright{2, ""};
+    Vec3f up;
     bool loaded = false;   // not built
     bool counted = false;  // what rays visit
     double build_seconds = 0, seconds = 0;
@@ -52,6 +54,7 @@ void report(const RenderArguments& a, const Outcome& o) {
                                     {"primitives", o.primitives},
                                     {"bytes", o.bytes},
                                     {o.loaded ? "load_seconds" : "build_seconds", o.build_seconds},
+                                    {"up", {o.up[0], o.up[1], o.up[2]}},
                                     {"rays", p.rays},
                                     {"rays_by", rays_by(p.use)},
                                     {"seconds", o.seconds},
@@ -73,7 +76,7 @@ void report(const RenderArguments& a, const Outcome& o) {
         if (o.counted)
             fmt::print("; a ray visits {:.1f} nodes, {:.1f} leaves, {:.1f} primitives", a_ray(p.visits.nodes),
                        a_ray(p.visits.leaves), a_ray(p.visits.primitives));
-        fmt::print("\n");
+        fmt::print("\n{}", up_text(a.view, a, o.upright));
     }
 }
 
@@ -86,7 +89,10 @@ int render(const RenderArguments& a, const Any& index, const P& primitives, Outc
     options.shading = parse_shading(a.shading);
     options.layers = a.layers, options.counts = a.counts;
     o.primitives = index.size(), o.bytes = index.bytes(), o.counted = options.counted();
-    options.camera = camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)});
+    o.upright = upright_of(a.view, a, primitives);
+    options.camera =
+        camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)}, o.upright);
+    o.up = options.camera.up;
     {
         ProgressLine line("rendering", a.quiet);
         const double start = now();

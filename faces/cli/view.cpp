@@ -17,7 +17,9 @@ void add_view(CLI::App& verb, ViewArguments& view) {
     verb.add_option("--eye", view.eye, "x,y,z")->delimiter(',')->expected(3);
     verb.add_option("--target", view.target, "x,y,z")->delimiter(',')->expected(3);
     verb.add_option("--light", view.light, "x,y,z: towards the light")->delimiter(',')->expected(3);
-    verb.add_option("--up", view.up, "x, y or z")->check(CLI::IsMember({"auto", "x", "y", "z"}));
+    verb.add_option("--up", view.up, "x, y or z; auto: y for glTF, OBJ, PLY, z for STL, points, gen:")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"auto", "x", "y", "z"}));
     verb.add_option("--fov", view.fov, "vertical angle of view in degrees; 45 if not given")
         ->check(CLI::Range(1.0f, 170.0f));
     verb.add_option("--radius", view.radius, "of points, drawn as spheres; 0: by their number")
@@ -52,14 +54,20 @@ void save(const std::string& output, const Picture& picture) {
         save_exr(output, picture.layers());
 }
 
-Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds) {
-    Camera c = camera_for(generated_name(common)).value_or(automatic_camera(bounds));
+std::string up_text(const ViewArguments& view, const Common& common, const Upright& upright) {
+    if (view.up != "auto" || common.scene.starts_with("gen:")) return {};
+    return fmt::format("{} is up, {}; --up turns the view\n", upright.letter(), upright.reason);
+}
+
+Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,
+                 const Upright& upright) {
+    auto c = automatic_camera(bounds, upright.axis);
+    // A scene's own view serves unless the user turns it.
+    if (const auto own = camera_for(generated_name(common)); own && (view.up == "auto" || own->up == c.up))
+        c = *own;
     if (view.eye.size() == 3) c.eye = {view.eye[0], view.eye[1], view.eye[2]};
     if (view.target.size() == 3) c.target = {view.target[0], view.target[1], view.target[2]};
     if (view.light.size() == 3) c.light = {view.light[0], view.light[1], view.light[2]};
-    if (view.up == "x") c.up = {1, 0, 0};
-    if (view.up == "y") c.up = {0, 1, 0};
-    if (view.up == "z") c.up = {0, 0, 1};
     if (view.fov > 0) c.field_of_view = view.fov;
     if (length2(cross(c.target - c.eye, c.up)) == 0)
         throw InputError("the camera looks along its up direction; change --eye, --target or --up");

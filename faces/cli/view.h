@@ -12,6 +12,7 @@
 #include <hedgerow/render/raycast.h>
 
 #include "common.h"
+#include "upright.h"
 
 namespace hedgerow::cli {
 
@@ -26,8 +27,18 @@ void add_view(CLI::App& verb, ViewArguments& view);
 /// Width and height. Throws InputError unless it is WIDTHxHEIGHT, each from 1 to 32768.
 std::pair<int, int> parse_size(const std::string& text);
 
+/// Which way is up: as the user says, or as the scene does.
+template <class P>
+Upright upright_of(const ViewArguments& view, const Common& common, const P& primitives) {
+    if (view.up != "auto") return {view.up[0] - 'x', ""};
+    return upright_of(common, primitives);
+}
+/// A line for people: what was chosen for them. Empty where nothing was, and for generated scenes.
+std::string up_text(const ViewArguments& view, const Common& common, const Upright& upright);
+
 /// Where the scene is best seen from, but for what the user says. Throws InputError for a view along up.
-Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds);
+Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,
+                 const Upright& upright);
 
 /// Whether a picture's file is .exr, layers of numbers, or .png, colours. Throws InputError for any other
 /// ending, and for .exr in a build without OpenEXR.

@@ -1,6 +1,7 @@
 /// A pinhole camera, and where to put it when nobody says.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -16,17 +17,23 @@ struct Camera {
     Vec3f light{0, 0, 0};
 };
 
-/// From three quarters above, far enough back that the box fills most of the picture. A box that is flattest
-/// along y stands on y, any other on z.
-inline Camera automatic_camera(const Box3f& box) {
+/// From three quarters above, far enough back that the box fills most of the picture. `up_axis` is 0 for x,
+/// 1 for y or 2 for z. The front is -y where z is up, and +z where y is up.
+inline Camera automatic_camera(const Box3f& box, int up_axis) {
+    constexpr float beside = 0.45f, above = 0.42f, before = 0.8f;
+    const Vec3f away[3] = {{above, beside, -before}, {beside, above, before}, {beside, -before, above}};
     Camera c;
-    const Vec3f extent = box.empty() ? Vec3f(1, 1, 1) : box.extent();
     c.target = box.empty() ? Vec3f() : box.center();
-    const bool y_up = extent[1] < extent[2] && extent[1] < extent[0];
-    c.up = y_up ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1);
-    c.eye =
-        c.target + (y_up ? Vec3f(0.45f, 0.42f, 0.8f) : Vec3f(0.45f, -0.8f, 0.42f)) * (1.25f * length(extent));
+    c.up = {0, 0, 0};
+    c.up[up_axis] = 1;
+    c.eye = c.target + away[up_axis] * (1.25f * (box.empty() ? std::sqrt(3.f) : length(box.extent())));
     return c;
+}
+/// The camera of a box alone, for rays that must not depend on where a scene comes from. Up is y for a box
+/// that is flattest along y, z for any other.
+inline Camera automatic_camera(const Box3f& box) {
+    const Vec3f extent = box.empty() ? Vec3f(1, 1, 1) : box.extent();
+    return automatic_camera(box, extent[1] < extent[2] && extent[1] < extent[0] ? 1 : 2);
 }
 
 /// Where a generated scene is best seen from, for those that the automatic view does not serve.
