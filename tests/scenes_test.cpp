@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <hedgerow/error.h>
+#include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/generate.h>
 #include <hedgerow/scenes/random.h>
 
@@ -154,7 +155,7 @@ TEST(Scenes, HaveTheSameBitsTwiceAndAnotherSeedOthers) {
         const SceneSpec spec{std::string(info.name), 3000, 5};
         EXPECT_EQ(hash_of(spec), hash_of(spec)) << info.name;
         const bool random = info.yields != "triangles" || info.name == "terrain" || info.name == "grass" ||
-                            info.name == "hairball" || info.name == "soup";
+                            info.name == "hairball" || info.name == "soup" || info.name == "interior";
         EXPECT_EQ(hash_of(spec) != hash_of({spec.name, 3000, 6}), random) << info.name;
     }
 }
@@ -168,6 +169,7 @@ TEST(Scenes, HaveTheBitsTheyAlwaysHad) {
         {"points2d", 0xe3dcdc158aeb987a},    {"clusters2d", 0x9052bdd410191d66},
         {"segments2d", 0x0e079425abdea6d3},  {"turned-stadium", 0x19bc07f5a57c7359},
         {"grass", 0xbacafbd0405bd287},       {"hairball", 0x197857a0ed444a36},
+        {"interior", 0x5e64906f6b485afa},
     };
     for (const SceneInfo& info : scene_list()) {
         const std::uint64_t size = std::min<std::uint64_t>(info.default_size, 10'000);
@@ -424,6 +426,61 @@ TEST(Terrain, IsOneSheetThatLooksUp) {
     for (const auto& t : mesh.triangles) EXPECT_GT(triangle(mesh, t).normal()[2], 0);
     EXPECT_GT(bounds(mesh).extent()[2], 0.05);
     EXPECT_LT(bounds(mesh).high[2], 0.25);
+}
+
+TEST(Interior, HoldsThingsFromTwelveMetresToAMillimetre) {
+    const auto mesh = interior<double>(300'000);
+    const Box3d box = bounds(mesh);
+    EXPECT_LT(length(box.low - Vec3d(-0.36, -0.36, -0.312)), 1e-12);
+    EXPECT_LT(length(box.high - Vec3d(12.76, 8.96, 3.1)), 1e-12);
+    double longest = 0, shortest = 1;
+    std::size_t slivers = 0, along_axes = 0;
+    for (const TriangleIndices& t : mesh.triangles) {
+        const auto tri = triangle(mesh, t);
+        const double edges[] = {length(tri.b - tri.a), length(tri.c - tri.b), length(tri.a - tri.c)};
+        const auto [least, most] = std::minmax_element(edges, edges + 3);
+        longest = std::max(longest, *most), shortest = std::min(shortest, *least);
+        slivers += length(tri.normal()) < 0.01 * *most * *most;  // a hundred times as long as high
+        along_axes += max_component(abs(normalized(tri.normal()))) > 1 - 1e-9;
+    }
+    EXPECT_GT(longest, 12);
+    EXPECT_LT(shortest, 0.0011);
+    EXPECT_GT(slivers, mesh.size() / 50) << "mouldings, planks, bars";
+    EXPECT_GT(along_axes, mesh.size() / 4);
+    EXPECT_LT(along_axes, 3 * mesh.size() / 4);
+}
+
+TEST(Interior, IsClosedButForItsWindows) {
+    for (const unsigned size : {2000u, 100'000u}) {
+        const auto mesh = interior<float>(size);
+        const auto index = build(mesh);
+        const Vec3f eyes[] = {{2.5f, 2.3f, 1.7f}, {6.6f, 6.7f, 1.7f}, {10, 2, 1.7f}, {9.2f, 5.6f, 1.7f}};
+        for (const Vec3f& eye : eyes) {
+            int missed = 0;
+            for (std::uint64_t i = 0; i < 1000; ++i)
+                missed += !closest_hit(index, Ray3f{eye, Vec3f(Random(1, i).direction<3>())});
+            EXPECT_LT(missed, 120) << size << " " << eye[0];
+        }
+        EXPECT_FALSE(any_hit(index, Ray3f{{3.4f, 1, 1.41f}, {0, -1, 0}}))
+            << "out of a window, between its bars";
+        EXPECT_TRUE(any_hit(index, Ray3f{{3.2f, 1, 0.5f}, {0, -1, 0}})) << "the wall below it";
+    }
+}
+
+TEST(Interior, GainsThingsAndThenRoundness) {
+    // The first things are the slabs and the walls, whatever the size.
+    const auto few = interior<double>(500), more = interior<double>(5000);
+    EXPECT_TRUE(std::equal(few.triangles.begin(), few.triangles.begin() + 300, more.triangles.begin()));
+    EXPECT_TRUE(std::equal(few.vertices.begin(), few.vertices.begin() + 150, more.vertices.begin()));
+    // Things that are round are divided more finely, so that area grows by little.
+    const auto area = [](const TriangleMesh<double>& mesh) {
+        double sum = 0;
+        for (const auto& t : mesh.triangles) sum += length(triangle(mesh, t).normal()) / 2;
+        return sum;
+    };
+    const double coarse = area(interior<double>(252'740)), fine = area(interior<double>(967'616));
+    EXPECT_GT(fine, coarse);
+    EXPECT_LT(fine, 1.05 * coarse);
 }
 
 TEST(SceneSpec, IsRead) {

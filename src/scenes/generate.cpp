@@ -47,6 +47,8 @@ constexpr SceneInfo scenes[] = {
           []<class T>(In<T>, U n, U seed) { return hairball<T>(n, seed); }),
     scene("soup", 1'000'000, "triangles", 3, "separate random triangles in the unit cube",
           []<class T>(In<T>, U n, U seed) { return soup<T>(n, seed); }),
+    scene("interior", 967'616, "triangles", 3, "a furnished flat of six rooms, from walls to pens",
+          []<class T>(In<T>, U n, U seed) { return interior<T>(n, seed); }),
     scene("cornell-box", 32, "triangles", 3, "the Cornell box: a room with a light and two blocks",
           []<class T>(In<T>, U n, U) { return cornell_box<T>(n); }),
     scene("cube", 12, "triangles", 3, "the closed cube from -1 to 1",

@@ -1,9 +1,9 @@
 /// The teapot in a stadium.
-#include <cmath>
 #include <vector>
 
 #include <hedgerow/scenes/meshes.h>
 
+#include "circle.h"
 #include "precision.h"
 #include "sizing.h"
 #include "welding.h"
@@ -21,27 +21,6 @@ constexpr double teapot_height_above_field = 0x1p-6;  // nothing touches
 struct SectionPoint {
     double outside, z, scale = 1;
 };
-
-/// 8n points of the unit circle, counterclockwise, symmetric to all eight of its axes: one octant by the
-/// rational parametrisation (steps differ by up to 17 %), the others mirrored.
-std::vector<Vec2d> circle(std::uint64_t n) {
-    const double tan_eighth = std::sqrt(2.0) - 1;
-    std::vector<Vec2d> quarter(2 * n + 1);
-    for (std::uint64_t i = 0; i <= n; ++i) {
-        const double t = product(tan_eighth, static_cast<double>(i) / static_cast<double>(n));
-        const double t2 = product(t, t);
-        const Vec2d p((1 - t2) / (1 + t2), 2 * t / (1 + t2));
-        quarter[2 * n - i] = Vec2d(p[1], p[0]);
-        quarter[i] = p;
-    }
-    std::vector<Vec2d> points;
-    for (const Vec2d& turn : {Vec2d(1, 0), Vec2d(0, 1), Vec2d(-1, 0), Vec2d(0, -1)})
-        for (std::uint64_t i = 0; i < 2 * n; ++i) {
-            const Vec2d p = quarter[i];
-            points.push_back({turn[0] * p[0] - turn[1] * p[1], turn[1] * p[0] + turn[0] * p[1]});
-        }
-    return points;
-}
 
 /// From near the middle of the field to the foot of the outer wall.
 std::vector<SectionPoint> section(std::uint64_t rows, int field_rings) {
@@ -62,7 +41,7 @@ TriangleMesh<double> bowl(std::uint64_t size) {
     const int field_rings = size < 4000 ? 1 : 2;
     // Eight segments a column; four triangles a row of seats, and the field and the outer wall.
     const detail::Split split = detail::nearest_split(size, {32, 16 * field_rings + 8, 0.5});
-    const std::vector<Vec2d> around = circle(split.columns);
+    const std::vector<Vec2d> around = detail::circle(split.columns);
     const auto n = static_cast<std::uint32_t>(around.size());
     TriangleMesh<double> mesh;
     mesh.vertices.push_back({});

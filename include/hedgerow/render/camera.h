@@ -51,6 +51,8 @@ inline std::optional<Camera> camera_for(std::string_view scene) {
     }
     if (scene == "cornell-box")  // through its open side, as it was photographed (Goral et al. 1984)
         return Camera{{278, 273, -800}, {278, 273, 0}, {0, 1, 0}, 39.3f, {0.3f, 0.25f, -1}};
+    if (scene == "interior")  // from a corner of the living room, through the next one; the sun shines in
+        return Camera{{0.5f, 4.2f, 1.6f}, {3.6f, 1.4f, 1}, {0, 0, 1}, 62, {0.35f, -1, 0.6f}};
     return std::nullopt;
 }
 

@@ -51,6 +51,15 @@ TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed = 0);
 template <class T>
 TriangleMesh<T> hairball(std::uint64_t size, std::uint64_t seed = 0);
 
+/// A furnished flat of six rooms, 13 m × 9 m and 2.8 m high, in metres: walls with doors and windows that are
+/// open, mouldings 5 m long and 5 mm wide, planks, tables, chairs, shelves of books, curtains, lamps, crockery
+/// and cutlery of 1 mm. Most of it lies along the axes. Things come in the order of their importance, the
+/// last ones only if there are triangles left for them; a larger size divides what is round more finely. Each
+/// thing is a mesh of its own, and some are open sheets. The floor is at z = 0. `seed` chooses how far
+/// doors are open, books, planks, fruit, leaves and pens.
+template <class T>
+TriangleMesh<T> interior(std::uint64_t size, std::uint64_t seed = 0);
+
 /// `size` separate triangles in the unit cube, evenly spread and evenly turned, each on a circumscribed
 /// sphere of radius size^(-1/3)/2. Throws InputError beyond 2^32/3 triangles, when indices no longer fit.
 template <class T>

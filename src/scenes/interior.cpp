@@ -1,0 +1,63 @@
+/// The interior: a flat of six rooms, furnished as finely as the size allows.
+
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/random.h>
+
+#include "interior_flat.h"
+#include "precision.h"
+#include "welding.h"
+
+namespace hedgerow {
+namespace {
+
+using namespace detail;
+
+/// Adds things in order, but for those that would make it larger than `size`. The first stands always.
+TriangleMesh<double> furnished(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t size,
+                               std::uint64_t seed) {
+    TriangleMesh<double> mesh;
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        Model model(level);
+        things[i](model, Random(seed, i));
+        if (i == 0 || mesh.size() + model.mesh.size() <= size) append(mesh, model.mesh);
+    }
+    return mesh;
+}
+
+/// Whether all things together have so many triangles.
+bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t size, std::uint64_t seed) {
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < things.size() && count < size; ++i) {
+        Model model(level);
+        things[i](model, Random(seed, i));
+        count += model.mesh.size();
+    }
+    return count >= size;
+}
+
+TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
+    const std::vector<Thing> things = flat();
+    // The least level that fills the size: counts grow with levels.
+    std::uint64_t below = 0, enough = 0;
+    for (std::uint64_t step = 1; !fills(things, enough, size, seed); step *= 2)
+        below = enough + 1, enough += step;
+    while (below < enough) {
+        const std::uint64_t middle = below + (enough - below) / 2;
+        if (fills(things, middle, size, seed))
+            enough = middle;
+        else
+            below = middle + 1;
+    }
+    return furnished(things, enough, size, seed);
+}
+
+}  // namespace
+
+template <class T>
+TriangleMesh<T> interior(std::uint64_t size, std::uint64_t seed) {
+    return in_precision<T>([&] { return build(size, seed); });
+}
+template TriangleMesh<float> interior<float>(std::uint64_t, std::uint64_t);
+template TriangleMesh<double> interior<double>(std::uint64_t, std::uint64_t);
+
+}  // namespace hedgerow

@@ -1,0 +1,18 @@
+/// The plan of the flat and what stands where in it.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "interior_things.h"
+
+namespace hedgerow::detail {
+
+/// Adds a thing to a model; the random numbers are its own.
+using Thing = std::function<void(Model&, Random)>;
+
+/// All things, in the order of their importance: the shell, what closes its openings, furniture, mouldings,
+/// and small things.
+std::vector<Thing> flat();
+
+}  // namespace hedgerow::detail
