@@ -14,46 +14,6 @@ namespace {
 
 using Mesh = TriangleMesh<float>;
 
-/// What the engine answers to rays: in a batch, and one at a time.
-struct Answers {
-    std::vector<Hit<float>> batch, one;
-    std::vector<char> any_batch, any_one;
-
-    template <class Index>
-    Answers(const Index& index, std::span<const Ray3f> rays) : batch(rays.size()) {
-        closest_hits(index, rays, std::span(batch));
-        const std::unique_ptr<bool[]> any(new bool[rays.size() + 1]);
-        any_hits(index, rays, {any.get(), rays.size()});
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            one.push_back(closest_hit(index, rays[i]).value_or(Hit<float>()));
-            any_batch.push_back(any[i]);
-            any_one.push_back(any_hit(index, rays[i]));
-        }
-    }
-};
-
-/// What the plain walk answers, whatever kernels there are: they do not count.
-template <class Index>
-std::vector<Hit<float>> hits_of_the_walk(const Index& index, std::span<const Ray3f> rays) {
-    std::vector<Hit<float>> hits;
-    for (const auto& r : rays) {
-        Visits visits;
-        hits.push_back(closest_hit(index, r, KeepAll{}, visits).value_or(Hit<float>()));
-    }
-    return hits;
-}
-
-void expect_hits(std::span<const Hit<float>> want, const Answers& got) {
-    for (std::size_t i = 0; i < want.size(); ++i) {
-        ASSERT_EQ(want[i], got.batch[i])
-            << "in a batch, ray " << i << ": t " << want[i].t << " and " << got.batch[i].t;
-        ASSERT_EQ(want[i], got.one[i])
-            << "alone, ray " << i << ": t " << want[i].t << " and " << got.one[i].t;
-        ASSERT_EQ(bool(want[i]), bool(got.any_batch[i])) << "any, in a batch, ray " << i;
-        ASSERT_EQ(bool(want[i]), bool(got.any_one[i])) << "any, alone, ray " << i;
-    }
-}
-
 /// All sets × widths × builders, on `count` rays of every kind.
 void expect_brute_force(const char* name, const Mesh& mesh, std::size_t count) {
     SCOPED_TRACE(name);

@@ -77,8 +77,9 @@ HWY_INLINE void prepare(hn::Vec<hn::FixedTag<float, 4>> origin, hn::Vec<hn::Fixe
     const auto row = hn::Sub(hn::ShiftLeft<1>(hn::Iota(i32, 0)), down);
     hn::Store(hn::BitCast(u32, hn::ShiftLeft<std::countr_zero(4u * W)>(row)), u32, ray.near_row);
 
-    const auto is_longest = hn::Eq(length, longest);
-    const std::int32_t* const turn = turned[hn::FindKnownFirstTrue(f, hn::And(is_longest, axes))];
+    // The first of the longest. Of NaN none is: then z, for a ray that is not usable.
+    const auto is_longest = hn::Or(hn::Eq(length, longest), hn::Not(hn::FirstN(f, 2)));
+    const std::int32_t* const turn = turned[hn::FindKnownFirstTrue(f, is_longest)];
     const auto order = hn::SetTableIndices(f, turn);
     const auto along = hn::TableLookupLanes(d, order);
     ray.z = hn::GetLane(hn::Shuffle1032(along));
