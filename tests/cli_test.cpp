@@ -9,12 +9,30 @@ using namespace hedgerow;
 using Cli = ToolTest;
 
 TEST_F(Cli, HelpOpensWithExamples) {
-    for (const char* verb : {"", "render ", "build ", "draw ", "compare ", "info ", "generate "}) {
+    for (const char* verb :
+         {"", "render ", "build ", "draw ", "compare ", "info ", "generate ", "structures "}) {
         const auto r = run(std::string(verb) + "--help");
         EXPECT_EQ(r.code, 0);
         EXPECT_EQ(r.output.rfind("Examples:", 0), 0u) << r.output;
     }
     EXPECT_EQ(run("--version").code, 0);
+}
+
+TEST_F(Cli, StructuresAreListedAndHaveTheirOptionsOnRequest) {
+    const auto all = run("structures");
+    EXPECT_EQ(all.code, 0);
+    for (const char* name : {"brute-force", "grid", "kdtree", "octree", "bsp", "bvh", "wide"})
+        EXPECT_NE(("\n" + all.output).find("\n" + std::string(name) + " "), std::string::npos) << name;
+    EXPECT_EQ(all.output.find("traversal_cost"), std::string::npos) << "a short list";
+    const auto one = run("structures kdtree");
+    EXPECT_EQ(one.code, 0);
+    EXPECT_NE(one.output.find("traversal_cost="), std::string::npos);
+    EXPECT_EQ(one.output.find("heuristic="), std::string::npos) << "of another structure";
+    EXPECT_NE(run("structures bvh --json").output.find("\"options\""), std::string::npos);
+    expect_bad("structures kdtre", "did you mean 'kdtree'");
+    for (const char* verb : {"", "render ", "compare ", "draw "})
+        EXPECT_EQ(run(std::string(verb) + "--help").output.find("traversal_cost"), std::string::npos) << verb;
+    EXPECT_NE(run("--help").output.find("interior"), std::string::npos) << "scenes are listed";
 }
 
 TEST_F(Cli, WrongUsageIsTwo) {

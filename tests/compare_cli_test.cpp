@@ -1,4 +1,5 @@
 /// `hedgerow compare` as its user sees it: tables, JSON, the page, messages and exit codes.
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -70,16 +71,77 @@ TEST_F(Compare, HasTheSameCountsEachTime) {
     EXPECT_EQ(first.size(), 3u * 12);
     EXPECT_EQ(first, counts());
 }
-TEST_F(Compare, PrintsTablesAndAdvice) {
+std::ptrdiff_t lines_of(const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+}
+TEST_F(Compare, PrintsAdviceAndOneTable) {
     const auto r = run("gen:segments2d:300");
     ASSERT_EQ(r.code, 0) << r.errors;
-    for (const char* said : {"quadtree", "bvh:builder=lbvh", "closest hit, random rays", "8 nearest",
-                             "box overlap", "break-even", "all by", "For a few queries", "For many queries",
-                             "For moving primitives", "For little memory", "Note: built on one thread"})
+    for (const char* said :
+         {"quadtree", "bvh:builder=lbvh", "a closest-hit query", "For a few queries", "For many queries",
+          "For moving primitives", "For little memory", "at most 10 times", "Note: built on one thread",
+          "rays that meet nothing:", "--full"})
         EXPECT_NE(r.output.find(said), std::string::npos) << said << "\n" << r.output;
+    EXPECT_LT(r.output.find("For many queries"), r.output.find("build  ")) << "advice comes first";
     EXPECT_EQ(r.output.find("octree"), std::string::npos) << "which lives in space";
+    EXPECT_EQ(r.output.find("break-even"), r.output.rfind("break-even")) << "only where --full is named";
+    EXPECT_LT(lines_of(r.output), 60);
     EXPECT_EQ(r.errors, "");
     EXPECT_NE(run("gen:cube --quiet").output.find("For moving primitives"), std::string::npos);
+}
+TEST_F(Compare, PrintsAllTablesWhenAskedTo) {
+    const auto r = run("gen:segments2d:300 --full");
+    ASSERT_EQ(r.code, 0) << r.errors;
+    for (const char* said : {"closest hit, random rays", "8 nearest", "box overlap", "break-even", "all by"})
+        EXPECT_NE(r.output.find(said), std::string::npos) << said << "\n" << r.output;
+}
+TEST_F(Compare, CountsWithoutTimes) {
+    const json j = parsed("gen:teapot:300 --counts --for closest-hit --structures bvh,octree");
+    ASSERT_EQ(j["structures"].size(), 3u);
+    for (const auto& s : j["structures"]) {
+        ASSERT_EQ(s["queries"].size(), 3u) << "of that kind alone";
+        for (const auto& q : s["queries"]) {
+            EXPECT_GE(q["asked"], 49);
+            EXPECT_EQ(q["seconds"], 0);
+        }
+    }
+    EXPECT_FALSE(j.contains("advice")) << "which rests on times";
+    const auto r = run("gen:teapot:300 --counts --structures bvh,octree --full");
+    ASSERT_EQ(r.code, 0) << r.errors;
+    EXPECT_NE(r.output.find("nothing is timed"), std::string::npos) << r.output;
+    EXPECT_EQ(r.output.find("nan"), std::string::npos) << r.output;
+}
+TEST_F(Compare, SeesInteriorsFromInside) {
+    const std::string rest = " --queries 400 --counts --for closest-hit --structures grid,kdtree,bvh";
+    const std::string outside = " --eye 30,-30,20 --target 6,4,1";
+    const json from_inside = parsed("gen:interior:20000" + rest),
+               from_outside = parsed("gen:interior:20000" + rest + outside);
+    const auto tests = [](const json& j, std::size_t structure) {
+        return j["structures"][structure]["queries"][0]["primitives"].get<double>();
+    };
+    EXPECT_GT(tests(from_inside, 1), 2 * tests(from_outside, 1)) << "a grid's cells are full of small things";
+    EXPECT_GT(tests(from_inside, 1), 4 * tests(from_inside, 3)) << "a BVH's leaves are not";
+    EXPECT_EQ(from_inside["seen_from_outside"], 1);
+    EXPECT_LT(from_outside["seen_from_outside"], 0.5);
+    for (const auto& set : from_inside["rays"]) EXPECT_LE(set["missed"], set["rays"]);
+    EXPECT_LT(from_inside["rays"][0]["missed"], 100) << "through the windows";
+
+    const std::string large = "gen:interior:100000 --queries 100 --counts --for closest-hit --structures bvh";
+    const auto warned = run(large + outside), not_warned = run(large);
+    EXPECT_NE(warned.output.find("look from inside with --eye"), std::string::npos) << warned.output;
+    EXPECT_EQ(not_warned.output.find("look from inside"), std::string::npos) << not_warned.output;
+}
+TEST_F(Compare, SaysWhichStructureIsBestInsideAndWhy) {
+    const json j =
+        parsed("gen:interior:50000 --queries 400 --time 0.05 --structures grid,octree,kdtree,bvh,wide");
+    const json& many = j["advice"][1];
+    EXPECT_EQ(many["need"], "many queries");
+    const json& best = many["ranking"][0];
+    EXPECT_EQ(many["structure"], best["structure"]);
+    EXPECT_NE(many["reason"].get<std::string>().find(" tests a query"), std::string::npos) << many["reason"];
+    EXPECT_NE(many["reason"].get<std::string>().find(" takes "), std::string::npos) << many["reason"];
+    EXPECT_NE(run("gen:interior:20000 --structures wide").output.find("counted by a walk without them"),
+              std::string::npos);
 }
 TEST_F(Compare, IsAboutTheQueryThatIsAskedFor) {
     const json j = parsed("gen:points:300 --structures kdtree --for overlap");
@@ -139,6 +201,8 @@ TEST_F(Compare, RefusesWhatIsWrong) {
     expect_refused(2, "gen:cube --for nonsense", "nonsense");
     expect_refused(2, "gen:cube --sizes 1,2,3", "--scale");
     expect_refused(2, "gen:cube --queries 1", "1");
+    expect_refused(3, "gen:points2d:100 --eye 1,2,3", "in space");
+    expect_refused(3, "gen:cube --eye 0,0,9 --target 0,0,0", "--eye");
     expect_refused(3, "gen:cube --structures kdtre", "did you mean 'kdtree'");
     expect_refused(3, "gen:cube --structures bins=8", "option without a structure");
     expect_refused(3, "gen:cube --structures quadtree", "in space use 'octree'");

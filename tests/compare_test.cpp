@@ -14,6 +14,7 @@
 #include <hedgerow/compare/measure.h>
 #include <hedgerow/compare/quantity.h>
 #include <hedgerow/compare/questions.h>
+#include <hedgerow/compare/reason.h>
 #include <hedgerow/error.h>
 #include <hedgerow/scenes/generate.h>
 
@@ -86,6 +87,8 @@ const Comparison made_up{"made up",
                          {costing("none", 0, 1e-3, 10, 0), costing("quick", 0.1, 2e-6, 5000, 0.1),
                           costing("best", 9, 1e-6, 9000, 9), costing("lean", 0.5, 2.9e-6, 100, 0.5),
                           costing("supple", 0.6, 1.5e-6, 8000, 0.01, 1.2)},
+                         {},
+                         1,
                          true};
 
 TEST(Advice, RestsOnTheFigures) {
@@ -100,11 +103,48 @@ TEST(Advice, RestsOnTheFigures) {
     EXPECT_DOUBLE_EQ(all[2].ranking[0].figure, 0.01 + 1e6 * 1.5e-6 * 1.2);
     EXPECT_EQ(all[3].ranking[0].structure, "lean");
     EXPECT_EQ(all[3].ranking.size(), 4u) << "what is too slow is not among them";
+    // The engine may be several times as fast as all others: a slow and small structure is not absurd then.
+    Comparison with_engine = made_up;
+    with_engine.structures.push_back(costing("engine", 1, 4e-7, 20'000, 1));
+    EXPECT_EQ(advise(with_engine, Ask::closest_hit)[3].ranking[0].structure, "lean");
+    EXPECT_NE(all[3].reason.find("absurdly slow: none (1,000 times)"), std::string::npos) << all[3].reason;
+    EXPECT_NE(all[0].reason.find("that of best"), std::string::npos) << all[0].reason;
+    EXPECT_NE(all[2].reason.find("anew"), std::string::npos) << all[2].reason;
     for (const auto& r : all) {
         EXPECT_TRUE(std::is_sorted(r.ranking.begin(), r.ranking.end(),
                                    [](const auto& a, const auto& b) { return a.figure < b.figure; }));
         EXPECT_FALSE(r.ranking[0].terms.empty());
     }
+}
+/// Counts made up: what a query visits, and what the structure holds.
+StructureCost counting(std::string name, std::size_t items, std::size_t leaves, double nodes_met,
+                       double leaves_met, double tests) {
+    StructureCost s;
+    s.structure = std::move(name), s.nodes = leaves == 1 ? 0 : leaves, s.leaves = leaves, s.items = items;
+    s.queries = {
+        {Ask::closest_hit, "closest hit, coherent rays", 10, 1e-6, 0, nodes_met, leaves_met, tests, 0}};
+    return s;
+}
+TEST(Advice, GivesAReasonFromTheCounts) {
+    Comparison c{"made up", "triangles", 10'000, 3, {}, {}, 1, true};
+    const auto said = [&](const StructureCost& s) { return reason(s, c, Ask::closest_hit); };
+    EXPECT_EQ(said(counting("brute-force", 10'000, 1, 0, 1, 10'000)),
+              "10,000 tests a query of all 10,000 triangles");
+    EXPECT_EQ(
+        said(counting("grid", 30'000, 10'000, 9.9, 7, 1'568)),
+        "1,568 tests a query: a leaf that it looks into holds 224 triangles, a leaf on the mean 3, so the "
+        "detail lies in few leaves");
+    EXPECT_EQ(said(counting("kdtree", 250'000, 50'000, 50, 4, 21.5)),
+              "50 nodes and 21.5 tests a query: each of the triangles stands in 25 leaves");
+    EXPECT_EQ(said(counting("bvh", 10'000, 3'000, 20, 1.5, 4.5)), "20 nodes and 4.50 tests a query");
+    EXPECT_NE(said(counting("wide:width=8", 10'000, 3'000, 5, 1.5, 9)).find("vector instructions"),
+              std::string::npos);
+
+    c.structures = {counting("bvh", 10'000, 3'000, 20, 1.5, 4.5),
+                    counting("grid", 30'000, 10'000, 9.9, 7, 1'568)};
+    c.structures[1].queries[0].seconds = 4e-6;
+    const std::string why = advise(c, Ask::closest_hit)[1].reason;
+    EXPECT_NE(why.find("grid takes 4 times as long with 1,568 tests"), std::string::npos) << why;
 }
 TEST(Advice, IsForTheQueryThatIsAsked) {
     EXPECT_EQ(advise(made_up, Ask::nearest)[1].ranking[0].structure, "none");
@@ -284,6 +324,72 @@ TEST(Measure, CountsWhatIsVisited) {
             EXPECT_EQ(c.structures[i].queries[k].nodes, again.structures[i].queries[k].nodes);
             EXPECT_EQ(c.structures[i].queries[k].primitives, again.structures[i].queries[k].primitives);
         }
+}
+TEST(Measure, CountsWithoutTimesWhenThereAreNoRounds) {
+    const auto mesh = teapot<float>(600);
+    const Strings structures = {"brute-force", "bvh", "octree"};
+    MeasureOptions counts = quick_options();
+    counts.rounds = 0, counts.seconds = 1e-9;
+    const Comparison timed = measure(mesh, structures, quick_options()),
+                     c = measure(mesh, structures, counts);
+    EXPECT_TRUE(c.finished);
+    ASSERT_EQ(c.structures.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 12; ++k) {
+            const QueryCost &one = c.structures[i].queries.at(k), &other = timed.structures[i].queries.at(k);
+            EXPECT_EQ(one.asked, 64u);
+            EXPECT_EQ(one.seconds, 0);
+            EXPECT_EQ(one.nodes, other.nodes);
+            EXPECT_EQ(one.primitives, other.primitives);
+        }
+}
+/// A closed room around a fine teapot: who looks from outside sees the walls alone.
+TriangleMesh<float> teapot_in_a_room() {
+    TriangleMesh<float> mesh = teapot<float>(2000);
+    const auto walls = cube<float>(12);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3f& p : walls.vertices) mesh.vertices.push_back(p * 8.f);
+    for (const auto& [a, b, c] : walls.triangles)  // as seen from inside
+        mesh.triangles.push_back({first + a, first + c, first + b});
+    return mesh;
+}
+TEST(Measure, LeavesAllSurfacesWithIncoherentRays) {
+    const Strings structures = {"bvh"};
+    MeasureOptions o = quick_options();
+    o.queries = 400, o.asks = {Ask::closest_hit};
+    const auto mesh = teapot_in_a_room();
+    const Comparison outside = measure(mesh, structures, o);
+    const auto& queries = outside.structures[0].queries;
+    ASSERT_EQ(queries.size(), 3u);
+    ASSERT_EQ(outside.rays.size(), 3u);
+    EXPECT_EQ(outside.rays[1].kind, "incoherent");
+    EXPECT_EQ(outside.rays[1].rays, 400u);
+    EXPECT_EQ(outside.rays[1].missed, 0u) << "the room is closed";
+    EXPECT_GT(queries[1].nodes, queries[0].nodes + 1) << "from inside, though the camera is outside";
+    EXPECT_LT(outside.seen_from_outside, 0.03) << "twelve walls of 2000 triangles";
+
+    o.camera = Camera{{-7, -7, 2}, {0, 0, 1.5f}, {0, 0, 1}, 40};
+    const Comparison inside = measure(mesh, structures, o);
+    EXPECT_EQ(inside.seen_from_outside, 1);
+    EXPECT_EQ(inside.rays[0].missed, 0u);
+    EXPECT_GT(inside.structures[0].queries[0].nodes, queries[0].nodes);
+    EXPECT_EQ(inside.structures[0].queries[1].nodes, queries[1].nodes)
+        << "places do not depend on the camera";
+
+    EXPECT_GT(measure(teapot<float>(2000), structures, o).seen_from_outside, 0.2)
+        << "a thing that is all outside";
+    EXPECT_GT(measure(soup<float>(2000), structures, o).rays[1].missed, 20u);
+}
+TEST(Measure, SpreadsIncoherentRaysByArea) {
+    // One large triangle faces away from a thousand small ones: nearly all rays leave it, and meet nothing.
+    TriangleMesh<float> mesh{{{0, 0, -9}, {0, 100, -9}, {100, 0, -9}}, {{0, 1, 2}}, {}};
+    const auto ball = teapot<float>(1000);
+    for (const Vec3f& p : ball.vertices) mesh.vertices.push_back(p);
+    for (const auto& [a, b, c] : ball.triangles) mesh.triangles.push_back({3 + a, 3 + b, 3 + c});
+    MeasureOptions o = quick_options();
+    o.queries = 400, o.asks = {Ask::closest_hit};
+    const Strings structures = {"bvh"};
+    EXPECT_GT(measure(mesh, structures, o).rays[1].missed, 390u);
 }
 TEST(Measure, TakesEveryKindOfPrimitives) {
     const auto kinds = [](const auto& set, const char* tree) {

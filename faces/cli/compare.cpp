@@ -10,6 +10,7 @@
 
 #include "compare_report.h"
 #include "verbs.h"
+#include "view.h"
 
 namespace hedgerow::cli {
 
@@ -18,18 +19,46 @@ namespace {
 struct CompareArguments : Common {
     std::string structures, html, sizes, ask;
     std::vector<std::string> sweeps;
-    bool scale = false;
+    bool scale = false, full = false, counts = false;
+    ViewArguments view;
     unsigned threads = 1;
     std::size_t queries = 10'000;
     double seconds = 0.1;
 };
+
+compare::Ask ask_named(const std::string& name) {
+    return static_cast<compare::Ask>(
+        std::find(std::begin(compare::ask_names), std::end(compare::ask_names), name) - compare::ask_names);
+}
 
 compare::MeasureOptions measure_options(const CompareArguments& a, bool all) {
     compare::MeasureOptions o;
     o.queries = a.queries, o.seconds = a.seconds, o.seed = a.seed;
     o.camera = camera_for(generated_name(a));
     o.updates = all;
+    if (a.counts) {
+        o.rounds = 0;
+        if (!a.ask.empty()) o.asks = {ask_named(a.ask)};
+    }
     return o;
+}
+
+/// The camera that the user placed; none where nobody did.
+template <class P>
+std::optional<Camera> placed_camera(const CompareArguments& a, const P& primitives) {
+    if (a.view.eye.empty() && a.view.target.empty() && a.view.fov == 0 && a.view.up == "auto")
+        return std::nullopt;
+    if constexpr (P::dimension == 3) {
+        const auto view = view_of(primitives);
+        Box3f box;
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            const auto bounds = view.bounds(i);
+            box.expand(Vec3f(bounds.low)).expand(Vec3f(bounds.high));
+        }
+        return camera_of(a.view, a, box, upright_of(a.view, a, primitives));
+    } else {
+        throw InputError(a.scene + ": --eye, --target, --up and --fov are for scenes in space");
+    }
 }
 
 /// The names and options are right: one primitive is enough to see that, before a long run.
@@ -47,6 +76,7 @@ public:
     explicit Comparing(const CompareArguments& a)
         : a_(a), limit_(a.threads), executor_(a.threads == 1 ? serial_executor() : default_executor()) {
         report_.scene = a.scene;
+        report_.timed = !a.counts;
         for (const std::string& s : a.sweeps) report_.sweeps.push_back({compare::sweep_of(s), {}});
     }
 
@@ -93,18 +123,21 @@ public:
     }
 
     const CompareReport& report() {
-        note(
-            fmt::format("built on {}, asked on one thread; times are medians of {} rounds; the counts beside "
-                        "them are the "
-                        "same on every machine where all queries were asked",
-                        a_.threads == 1   ? "one thread"
-                        : a_.threads == 0 ? "all cores"
-                                          : fmt::format("{} threads", a_.threads),
-                        compare::MeasureOptions().rounds));
-        note(fmt::format(
-            "{} queries of each kind; where 'asked' is less, it was a sample of them, evenly taken, that "
-            "fits into {} s",
-            a_.queries, a_.seconds));
+        if (a_.counts) {
+            note(fmt::format("{} queries of each kind, asked once; nothing is timed", a_.queries));
+        } else {
+            note(fmt::format(
+                "built on {}, asked on one thread; times are medians of {} rounds; the counts beside "
+                "them are the same on every machine where all queries were asked",
+                a_.threads == 1   ? "one thread"
+                : a_.threads == 0 ? "all cores"
+                                  : fmt::format("{} threads", a_.threads),
+                compare::MeasureOptions().rounds));
+            note(fmt::format(
+                "{} queries of each kind; where 'asked' (--full) is less, it was a sample of them, evenly "
+                "taken, that fits into {} s",
+                a_.queries, a_.seconds));
+        }
         if (interrupted) note("interrupted: only what was finished is here");
         return report_;
     }
@@ -117,18 +150,20 @@ private:
     template <class P>
     compare::Comparison measured(const P& primitives, const std::vector<std::string>& structures, bool all,
                                  const std::string& what) {
+        auto options = measure_options(a_, all);
+        if (const auto placed = placed_camera(a_, primitives)) options.camera = placed;
         ProgressLine line(what, a_.quiet);
-        auto c =
-            compare::measure(primitives, structures, measure_options(a_, all), executor_, line.progress());
+        auto c = compare::measure(primitives, structures, options, executor_, line.progress());
         c.scene = a_.scene;
+        for (auto& text : ray_notes(c)) note(std::move(text));
         return c;
     }
     compare::Ask ask_for(const compare::Comparison& c) const {
         if (a_.ask.empty()) return compare::usual_ask(c);
-        const auto ask = static_cast<compare::Ask>(
-            std::find(std::begin(compare::ask_names), std::end(compare::ask_names), a_.ask) -
-            compare::ask_names);
-        if (!c.structures.empty() && compare::query_mean(c.structures.front(), ask) == 0)
+        const auto ask = ask_named(a_.ask);
+        if (!c.structures.empty() &&
+            std::none_of(c.structures.front().queries.begin(), c.structures.front().queries.end(),
+                         [&](const auto& q) { return q.ask == ask; }))
             throw InputError(
                 fmt::format("--for {}: {} cannot be asked that; try --for nearest", a_.ask, c.primitive));
         return ask;
@@ -166,6 +201,15 @@ void run_scale(const CompareArguments& a, Comparing& comparing) {
     }
 }
 
+/// In lines of a terminal, all but the first indented.
+std::string paragraph(const std::string& text) {
+    constexpr std::size_t letters = 110;
+    std::string result;
+    for (const std::string& line : wrapped(text, letters))
+        result += (result.empty() ? "" : "  ") + line + "\n";
+    return result;
+}
+
 void show(const CompareArguments& a, const CompareReport& r) {
     if (!a.html.empty()) save_text(a.html, page_of(r));
     if (a.json) {
@@ -174,9 +218,13 @@ void show(const CompareArguments& a, const CompareReport& r) {
         std::string text = r.scene;
         if (r.comparison) text += fmt::format(": {} {}", r.comparison->size, r.comparison->primitive);
         text += "\n\n";
-        for (const Table& t : tables_of(r)) text += text_of(t) + "\n";
-        for (const std::string& line : advice_lines(r)) text += "For " + line + "\n";
-        for (const std::string& n : r.notes) text += "Note: " + n + ".\n";
+        for (const std::string& line : advice_lines(r)) text += paragraph("For " + line);
+        if (const auto summary = summary_of(r)) text += "\n" + text_of(*summary) + "\n";
+        if (a.full || !r.comparison)
+            for (const Table& t : tables_of(r)) text += text_of(t) + "\n";
+        for (const std::string& n : r.notes) text += paragraph("Note: " + n + ".");
+        if (r.comparison && !a.full)
+            text += paragraph("Note: --full shows each kind of query, changes and break-even.");
         fmt::print("{}", text);
         if (!a.html.empty()) fmt::print("{}\n", a.html);
     }
@@ -209,6 +257,9 @@ Run add_compare(CLI::App& verb) {
     verb.add_option("--for", a->ask, "the query that break-even, advice and growth are about")
         ->check(CLI::IsMember(
             std::vector<std::string>(std::begin(compare::ask_names), std::end(compare::ask_names))));
+    verb.add_flag("--full", a->full, "also a table for each kind of query, for changes and for break-even");
+    verb.add_flag("--counts", a->counts, "counts alone: all queries are asked once, and nothing is timed");
+    add_camera(verb, a->view);
     verb.add_option("--html", a->html, "also write one page with plots, that needs no other file");
     verb.add_option("--queries", a->queries, "of each kind")
         ->capture_default_str()

@@ -47,10 +47,10 @@ ordered_json json_of(const StructureCost& s) {
 ordered_json json_of(const Comparison& c) {
     ordered_json structures = ordered_json::array();
     for (const auto& s : c.structures) structures.push_back(json_of(s));
-    return {{"primitive", c.primitive},
-            {"size", c.size},
-            {"dimension", c.dimension},
-            {"finished", c.finished},
+    ordered_json rays = ordered_json::array();
+    for (const RaySet& r : c.rays) rays.push_back({{"kind", r.kind}, {"rays", r.rays}, {"missed", r.missed}});
+    return {{"primitive", c.primitive}, {"size", c.size}, {"dimension", c.dimension},
+            {"finished", c.finished},   {"rays", rays},   {"seen_from_outside", c.seen_from_outside},
             {"structures", structures}};
 }
 
@@ -80,6 +80,7 @@ ordered_json advice_json(const Comparison& c, Ask ask) {
                        {"structure", r.ranking.front().structure},
                        {"by", r.rule},
                        {"unit", r.unit},
+                       {"reason", r.reason},
                        {"ranking", ranking}});
     }
     return all;
@@ -106,6 +107,7 @@ ordered_json json_of(const CompareReport& r) {
     ordered_json j = {{"scene", r.scene}, {"notes", r.notes}, {"ask", name_of(r.ask)}};
     if (r.comparison) {
         j.update(json_of(*r.comparison));
+        if (!r.timed) return j;
         j["break_even"] = break_even_json(*r.comparison, r.ask);
         j["advice"] = advice_json(*r.comparison, r.ask);
     }

@@ -19,6 +19,7 @@ struct CompareReport {
     std::string scene;
     std::vector<std::string> notes;                ///< what a reader of the figures must know
     compare::Ask ask = compare::Ask::closest_hit;  ///< what break-even, advice and growth are about
+    bool timed = true;                             ///< false: counts alone
     std::optional<compare::Comparison> comparison;
     struct Swept {
         compare::Sweep sweep;
@@ -30,8 +31,12 @@ struct CompareReport {
 
 /// Everything that is found, as tables: what the terminal and the page show.
 std::vector<Table> tables_of(const CompareReport& report);
-/// What to use for what, a line each.
+/// What to use for what and why, a line each. None without times.
 std::vector<std::string> advice_lines(const CompareReport& report);
+/// All structures, a row each; none where only an option or growth was looked at.
+std::optional<Table> summary_of(const CompareReport& report);
+/// What must be known of the rays to read the figures.
+std::vector<std::string> ray_notes(const compare::Comparison& comparison);
 
 nlohmann::ordered_json json_of(const CompareReport& report);
 /// One file, with plots, that needs no other.

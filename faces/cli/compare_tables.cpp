@@ -188,27 +188,13 @@ std::vector<Table> tables_of(const CompareReport& r) {
         all.push_back(structures_table(c));
         for (std::size_t kind = 0; kind < c.structures.front().queries.size(); ++kind)
             all.push_back(kind_table(c, kind));
-        all.push_back(update_table(c));
-        all.push_back(break_even_table(c, r.ask));
+        if (r.timed) all.push_back(update_table(c)), all.push_back(break_even_table(c, r.ask));
     }
     for (const auto& swept : r.sweeps)
         if (!swept.comparison.structures.empty()) all.push_back(sweep_table(swept, r.ask));
     if (!r.by_size.empty())
         for (const auto figure : growth_figures) all.push_back(growth_table(r, figure));
     return all;
-}
-
-std::vector<std::string> advice_lines(const CompareReport& r) {
-    std::vector<std::string> lines;
-    if (!r.comparison) return lines;
-    for (const Recommendation& a : advise(*r.comparison, r.ask)) {
-        std::string line = fmt::format("{}: {} ({})", a.need, a.ranking[0].structure, a.ranking[0].terms);
-        for (std::size_t i = 1; i < std::min<std::size_t>(3, a.ranking.size()); ++i)
-            line += fmt::format("; {} {} ({:.2f} x, {})", i == 1 ? "then" : "and", a.ranking[i].structure,
-                                a.ranking[i].figure / a.ranking[0].figure, a.ranking[i].terms);
-        lines.push_back(line + ". By " + a.rule + ".");
-    }
-    return lines;
 }
 
 }  // namespace hedgerow::cli

@@ -56,6 +56,7 @@ constexpr Verb verbs[] = {
      add_draw},
     {"compare",
      "Examples:\n  hedgerow compare dragon.ply\n  hedgerow compare gen:grass:20000 --html grass.html\n"
+     "  hedgerow compare house.glb --eye 2,3,1.6 --target 5,1,1\n"
      "  hedgerow compare gen:soup:50000 --sweep grid:resolution=8..256\n"
      "  hedgerow compare gen:terrain --scale --structures grid,kdtree,bvh\n\n"
      "every structure, every query: what each costs, and which to use",
@@ -73,16 +74,18 @@ constexpr Verb verbs[] = {
      "Examples:\n  hedgerow generate gen:teapot:100k -o teapot.stl\n"
      "  hedgerow generate gen:points -o points.npy\n\nwrite a generated scene",
      add_generate},
+    {"structures",
+     "Examples:\n  hedgerow structures\n  hedgerow structures kdtree\n\n"
+     "the structures that can be built, and the options of one",
+     add_structures},
 };
 
+constexpr const char* where_to_look =
+    "Structures and their options: hedgerow structures [NAME]. Generated scenes: hedgerow --help.";
+
 std::string footer() {
-    std::string text = "Structures (options behind a colon, as bvh:builder=sweep):\n";
-    for (const auto& s : structure_list()) {
-        text += fmt::format("  {:14} {}\n", s.name, s.description);
-        for (const auto& o : s.options)
-            text += fmt::format("    {}={} [{}]: {}\n", o.name, o.values, o.standard, o.meaning);
-    }
-    text += "Generated scenes (gen:NAME[:SIZE]):\n";
+    std::string text =
+        "Structures and their options: hedgerow structures [NAME].\nGenerated scenes (gen:NAME[:SIZE]):\n";
     for (const auto& s : scene_list()) text += fmt::format("  {:20} {}\n", s.name, s.description);
     return text;
 }
@@ -96,12 +99,13 @@ int run(int count, char** arguments) {
         "Spatial data structures for rays, geometric queries and particles.");
     app.set_version_flag("--version", "hedgerow 0.1.0");
     app.require_subcommand(1);
-    app.footer(footer());
     std::vector<std::pair<CLI::App*, Run>> runs;
     for (const Verb& v : verbs) {
         auto* const verb = app.add_subcommand(v.name, v.help);
+        verb->footer(where_to_look);
         runs.emplace_back(verb, v.add(*verb));
     }
+    app.footer(footer());
     try {
         app.parse(count, arguments);
     } catch (const CLI::ParseError& e) {

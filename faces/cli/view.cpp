@@ -12,16 +12,20 @@
 
 namespace hedgerow::cli {
 
-void add_view(CLI::App& verb, ViewArguments& view) {
-    verb.add_option("--size", view.size, "WIDTHxHEIGHT")->capture_default_str();
+void add_camera(CLI::App& verb, ViewArguments& view) {
     verb.add_option("--eye", view.eye, "x,y,z")->delimiter(',')->expected(3);
     verb.add_option("--target", view.target, "x,y,z")->delimiter(',')->expected(3);
-    verb.add_option("--light", view.light, "x,y,z: towards the light")->delimiter(',')->expected(3);
     verb.add_option("--up", view.up, "x, y or z; auto: y for glTF, OBJ, PLY, z for STL, points, gen:")
         ->capture_default_str()
         ->check(CLI::IsMember({"auto", "x", "y", "z"}));
     verb.add_option("--fov", view.fov, "vertical angle of view in degrees; 45 if not given")
         ->check(CLI::Range(1.0f, 170.0f));
+}
+
+void add_view(CLI::App& verb, ViewArguments& view) {
+    verb.add_option("--size", view.size, "WIDTHxHEIGHT")->capture_default_str();
+    add_camera(verb, view);
+    verb.add_option("--light", view.light, "x,y,z: towards the light")->delimiter(',')->expected(3);
     verb.add_option("--radius", view.radius, "of points, drawn as spheres; 0: by their number")
         ->check(CLI::NonNegativeNumber);
 }

@@ -23,6 +23,8 @@ struct ViewArguments {
     double radius = 0;
 };
 void add_view(CLI::App& verb, ViewArguments& view);
+/// Only where the camera is and where it looks.
+void add_camera(CLI::App& verb, ViewArguments& view);
 
 /// Width and height. Throws InputError unless it is WIDTHxHEIGHT, each from 1 to 32768.
 std::pair<int, int> parse_size(const std::string& text);

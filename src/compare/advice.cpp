@@ -5,6 +5,7 @@
 
 #include <hedgerow/compare/break_even.h>
 #include <hedgerow/compare/quantity.h>
+#include <hedgerow/compare/reason.h>
 
 namespace hedgerow::compare {
 
@@ -26,6 +27,69 @@ std::string times(double count, double seconds) {
     return number_text(count) + " x " + seconds_text(seconds);
 }
 
+const StructureCost& named(const Comparison& c, const std::string& structure) {
+    return *std::find_if(c.structures.begin(), c.structures.end(),
+                         [&](const StructureCost& s) { return s.structure == structure; });
+}
+std::string ratio(double one, double other) {
+    return other > 0 ? number_text(one / other) + " times" : "more than";
+}
+
+/// Sentences that compare the first of each need with the structure whose queries take least.
+class Reasons {
+public:
+    Reasons(const Comparison& c, Ask ask, double slack)
+        : c_(c), ask_(ask), slack_(slack), fastest_(c.structures.front()) {
+        for (const StructureCost& s : c.structures)
+            if (query(s) < query(fastest())) fastest_ = s;
+    }
+
+    std::string few(const StructureCost& s) const {
+        if (s.structure == fastest().structure)
+            return "Its queries take least, and its build little: " + reason(s, c_, ask_);
+        return "Its build takes " + ratio(s.build_seconds, fastest().build_seconds) + " that of " +
+               fastest().structure + ", and a query " + ratio(query(s), query(fastest())) + " the least";
+    }
+    std::string many(const StructureCost& s) const {
+        // What is slowest of all but brute force shows what the scene asks for.
+        const StructureCost* slowest = nullptr;
+        for (const StructureCost& o : c_.structures)
+            if (o.nodes > 0 && (!slowest || query(o) > query(*slowest))) slowest = &o;
+        std::string text = reason(s, c_, ask_);
+        if (slowest && slowest->structure != s.structure)
+            text += "; " + slowest->structure + " takes " + ratio(query(*slowest), query(s)) +
+                    " as long with " + reason(*slowest, c_, ask_);
+        return text;
+    }
+    std::string moving(const StructureCost& s) const {
+        if (s.update.how == "refit")
+            return "Its boxes follow in " + ratio(s.update.all, s.build_seconds) +
+                   " its build, and queries then take " + number_text(s.update.slowdown) + " times as long";
+        if (s.update.how == "one by one") return "Each primitive is erased and inserted in less than a build";
+        return "It is built anew in less time than others take to follow and to answer";
+    }
+    std::string memory(const StructureCost& s) const {
+        std::string text = number_text(static_cast<double>(s.bytes) / static_cast<double>(c_.size)) +
+                           " bytes a primitive, and a query takes " + ratio(query(s), query(fastest())) +
+                           " the least";
+        std::string slow;
+        for (const StructureCost& o : c_.structures)
+            if (o.bytes < s.bytes && query(o) > slack_ * query(fastest()))
+                slow +=
+                    (slow.empty() ? "" : ", ") + o.structure + " (" + ratio(query(o), query(fastest())) + ")";
+        return slow.empty() ? text : text + "; smaller but absurdly slow: " + slow;
+    }
+
+private:
+    double query(const StructureCost& s) const { return query_mean(s, ask_); }
+    const StructureCost& fastest() const { return fastest_; }
+
+    const Comparison& c_;
+    Ask ask_;
+    double slack_;
+    StructureCost fastest_;
+};
+
 }  // namespace
 
 std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOptions& options) {
@@ -35,14 +99,14 @@ std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOpt
     for (const StructureCost& s : c.structures) fastest = std::min(fastest, query(s));
     const double frame = static_cast<double>(c.size);
     const std::string few = number_text(options.few), slack = number_text(options.slack);
-    return {
-        least(c, {"a few queries", "a build and " + few + " queries", "s", {}},
+    std::vector<Recommendation> all = {
+        least(c, {"a few queries", "a build and " + few + " queries", "s", {}, {}},
               [&](const StructureCost& s) {
                   return Ranked{
                       s.structure, Cost{s.build_seconds, query(s)}.after(options.few),
                       seconds_text(s.build_seconds) + " to build + " + times(options.few, query(s))};
               }),
-        least(c, {"many queries", "a query, once it is built", "s", {}},
+        least(c, {"many queries", "a query, once it is built", "s", {}, {}},
               [&](const StructureCost& s) {
                   return Ranked{s.structure, query(s),
                                 seconds_text(query(s)) + " a query, after " + seconds_text(s.build_seconds) +
@@ -52,6 +116,7 @@ std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOpt
               {"moving primitives",
                "a frame: all primitives move, then one query is asked for each of them",
                "s",
+               {},
                {}},
               [&](const StructureCost& s) {
                   const double each = query(s) * s.update.slowdown;
@@ -63,6 +128,7 @@ std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOpt
               {"little memory",
                "bytes, of those that take at most " + slack + " times the fastest's time a query",
                "bytes",
+               {},
                {}},
               [&](const StructureCost& s) {
                   const bool quick = query(s) <= options.slack * fastest;
@@ -71,6 +137,13 @@ std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOpt
                       quick ? static_cast<double>(s.bytes) : std::numeric_limits<double>::infinity(),
                       bytes_text(static_cast<double>(s.bytes)) + ", " + seconds_text(query(s)) + " a query"};
               })};
+    const Reasons reasons(c, ask, options.slack);
+    const auto first = [&](std::size_t i) -> const StructureCost& {
+        return named(c, all[i].ranking[0].structure);
+    };
+    all[0].reason = reasons.few(first(0)), all[1].reason = reasons.many(first(1));
+    all[2].reason = reasons.moving(first(2)), all[3].reason = reasons.memory(first(3));
+    return all;
 }
 
 }  // namespace hedgerow::compare

@@ -53,13 +53,16 @@ public:
         if (primitives.size() == 0)
             throw InputError("there are no primitives, so there is nothing to compare");
         oracle_ = build_any("bvh", primitives, executor);
-        questions_ = SceneQuestions<P>(primitives, *oracle_, options).all();
+        const SceneQuestions<P> scene(primitives, *oracle_, options);
+        questions_ = scene.all();
+        ray_sets_ = scene.ray_sets();
+        seen_from_outside_ = scene.seen_from_outside();
         Visits ignored;
         for (Set& q : questions_) answers_.push_back(q.answers(*oracle_, ignored));
     }
 
     Comparison run(std::span<const std::string> structures) {
-        Comparison c{{}, noun(primitives_), primitives_.size(), D, {}, true};
+        Comparison c{{}, noun(primitives_), primitives_.size(), D, {}, ray_sets_, seen_from_outside_, true};
         steps_ = structures.size() * (static_cast<std::size_t>(o_.rounds) + 2);
         for (const std::string& s : structures) {
             if (progress_.cancelled()) break;
@@ -74,8 +77,9 @@ public:
                 step();
             }
         for (Contender& contender : contenders_) {
-            // One that has no round has nothing to say.
-            if (contender.trials.empty() || contender.trials.back().seconds.empty()) continue;
+            // One that has no round has nothing to say, if it should have one.
+            if (contender.trials.size() < questions_.size()) continue;
+            if (o_.rounds > 0 && contender.trials.back().seconds.empty()) continue;
             finish(contender);
             c.structures.push_back(std::move(contender.cost));
             step();
@@ -127,7 +131,7 @@ private:
     /// As many of the questions as there is time for, asked once to see that the answers are right.
     Trial trial(const Any& index, std::size_t i) {
         Set& all = questions_[i];
-        const std::size_t step = step_for(index, all);
+        const std::size_t step = o_.rounds > 0 ? step_for(index, all) : 1;
         Trial t;
         // Everyone who has time for all shares them.
         t.questions = step == 1 ? std::shared_ptr<Set>(std::shared_ptr<void>(), &all)
@@ -174,6 +178,10 @@ private:
 
     void finish(Contender& c) {
         for (Trial& t : c.trials) {
+            if (t.seconds.empty()) {
+                c.cost.queries.push_back(t.cost);
+                continue;
+            }
             const auto n = static_cast<double>(t.cost.asked);
             const double middle = median(t.seconds);
             const auto [least, most] = std::minmax_element(t.seconds.begin(), t.seconds.end());
@@ -182,7 +190,7 @@ private:
             c.cost.queries.push_back(t.cost);
         }
         c.cost.update.one = c.cost.update.all = c.cost.build_seconds;
-        if (!o_.updates || progress_.cancelled()) return;
+        if (!o_.updates || o_.rounds == 0 || progress_.cancelled()) return;
         if (c.index->changes_one_by_one()) change(c);
         if (c.index->refittable()) refit(c);
     }
@@ -252,6 +260,8 @@ private:
     const Progress& progress_;
     std::unique_ptr<Any> oracle_;
     std::vector<Set> questions_;
+    std::vector<RaySet> ray_sets_;
+    double seen_from_outside_ = 1;
     std::vector<std::vector<std::uint64_t>> answers_;
     std::vector<Contender> contenders_;
     std::uint64_t done_ = 0, steps_ = 0;

@@ -7,6 +7,8 @@
 #include <hedgerow/compare/questions.h>
 #include <hedgerow/scenes/random.h>
 
+#include "surface_samples.h"
+
 namespace hedgerow::compare {
 
 template <class P>
@@ -28,8 +30,7 @@ public:
             if (wanted && made.size() > 0) questions.push_back(std::move(made));
         };
         if constexpr (MeetsRays<ViewOf<P>> || requires { set_.triangle(0); }) {
-            const auto random = random_rays(), coherent = coherent_rays(),
-                       incoherent = incoherent_rays(coherent, random);
+            const auto random = random_rays(), coherent = coherent_rays(), incoherent = incoherent_rays();
             constexpr std::pair<Ask, const char*> asks[] = {
                 {Ask::closest_hit, "closest hit"}, {Ask::any_hit, "any hit"}, {Ask::all_hits, "all hits"}};
             for (const auto& [ask, name] : asks) {
@@ -45,9 +46,50 @@ public:
         return questions;
     }
 
+    /// How many rays of each set meet nothing.
+    std::vector<RaySet> ray_sets() const {
+        std::vector<RaySet> sets;
+        if constexpr (MeetsRays<ViewOf<P>> || requires { set_.triangle(0); }) {
+            const auto add = [&](std::string_view kind, const typename Set::Rays& rays) {
+                std::vector<Hit<T>> hits(rays.size());
+                index_.closest_hits(rays, hits);
+                const auto met =
+                    std::count_if(hits.begin(), hits.end(), [](const auto& h) { return bool(h); });
+                if (!rays.empty())
+                    sets.push_back({kind, rays.size(), rays.size() - static_cast<std::size_t>(met)});
+            };
+            add("coherent", coherent_rays());
+            add("incoherent", incoherent_rays());
+            add("random", random_rays());
+        }
+        return sets;
+    }
+    /// The share of the primitives that the eye of the coherent rays sees, by a sample; 1 if it is in the
+    /// scene's box.
+    double seen_from_outside() const {
+        if constexpr (D == 3 && requires { shape(0); }) {
+            const Vec<T, 3> eye(camera().eye);
+            if (box_.contains(eye)) return 1;
+            constexpr std::size_t some = 2000;
+            typename Set::Rays rays;
+            for (std::size_t i = 0; i < some; ++i) {
+                Random chance = random(of_sights, i);
+                const auto place = place_on(shape(chance.bits() % set_.size()), chance);
+                rays.push_back({eye, place.point - eye});
+            }
+            std::vector<Hit<T>> hits(some);
+            index_.closest_hits(rays, hits);
+            // What is met a thousandth of the way before the place hides it.
+            const auto hidden = std::count_if(hits.begin(), hits.end(),
+                                              [](const auto& h) { return h && h.t < T(1) - T(0x1p-10); });
+            return 1 - static_cast<double>(hidden) / static_cast<double>(some);
+        }
+        return 1;
+    }
+
 private:
     /// Each kind has random numbers of its own.
-    enum Stream : std::uint64_t { of_rays = 1, of_bounces, of_points, of_places };
+    enum Stream : std::uint64_t { of_rays = 1, of_bounces, of_points, of_places, of_sights };
     Random random(Stream stream, std::uint64_t i) const { return Random(scattered(o_.seed) + stream, i); }
 
     Vec<T, D> anywhere(Random& random) const {
@@ -88,8 +130,7 @@ private:
         typename Set::Rays all;
         if constexpr (D == 3) {
             const auto side = static_cast<int>(std::sqrt(static_cast<double>(o_.queries)));
-            const Box3f box{Vec3f(box_.low), Vec3f(box_.high)};
-            const RayMaker make(o_.camera.value_or(automatic_camera(box)), side, side);
+            const RayMaker make(camera(), side, side);
             for (int y = 0; y < side; ++y)
                 for (int x = 0; x < side; ++x)
                     all.push_back(
@@ -104,42 +145,33 @@ private:
         }
         return all;
     }
-    /// From the hits of `first`, or where there are none of `second`: about the normal by the cosine.
-    typename Set::Rays incoherent_rays(const typename Set::Rays& first,
-                                       const typename Set::Rays& second) const {
+    Camera camera() const requires(D == 3) {
+        return o_.camera.value_or(automatic_camera(Box3f{Vec3f(box_.low), Vec3f(box_.high)}));
+    }
+    /// From places on all surfaces, about the normal there by the cosine.
+    typename Set::Rays incoherent_rays() const {
         typename Set::Rays all;
-        for (const auto* from : {&first, &second}) {
-            std::vector<Hit<T>> hits(from->size());
-            index_.closest_hits(*from, hits);
-            std::vector<std::size_t> met;
-            for (std::size_t i = 0; i < hits.size(); ++i)
-                if (hits[i]) met.push_back(i);
-            for (std::size_t i = 0; i < o_.queries && !met.empty(); ++i) {
-                const std::size_t r = met[i * met.size() / o_.queries];
-                Random chance = random(of_bounces, i);
-                all.push_back(bounce((*from)[r], hits[r], chance));
-            }
-            if (!all.empty()) break;
+        const auto size_of_box = static_cast<double>(max_component(box_.extent()));
+        if (!(size_of_box > 0)) return all;
+        const SurfaceSamples samples([this](std::size_t i) { return shape(i); }, set_.size(), size_of_box);
+        if (samples.empty()) return all;
+        // A little off the surface, by more than its error: it is left, not hit.
+        const T off =
+            std::max(max_component(abs(box_.low)), max_component(abs(box_.high))) * (64 * unit_roundoff<T>);
+        for (std::size_t i = 0; i < o_.queries; ++i) {
+            Random chance = random(of_bounces, i);
+            const auto place = samples.place(chance);
+            all.push_back({place.point + Vec<T, D>(place.normal) * off,
+                           Vec<T, D>(normalized(place.normal + chance.direction<D>() * 0.999))});
         }
         return all;
     }
-    Ray<T, D> bounce(const Ray<T, D>& ray, const Hit<T>& hit, Random& random) const {
-        // A little before the surface: which ray it is matters to nobody, that all are asked the same does.
-        const Vec<T, D> from = ray.at(hit.t * (1 - T(0x1p-12)));
-        Vec<double, D> n = normalized(Vec<double, D>(normal(hit.element, from)));
-        if (dot(n, Vec<double, D>(ray.direction)) > 0) n = -n;
-        return {from, Vec<T, D>(normalized(n + random.direction<D>() * 0.999))};
-    }
-    Vec<T, D> normal(PrimitiveId id, const Vec<T, D>& at) const {
-        if constexpr (requires { set_.normal(id); }) {
-            return set_.normal(id);
-        } else if constexpr (requires { set_.sphere(id); }) {
-            return at - set_.sphere(id).center;
-        } else {
-            const Vec<T, D> along = set_.segment(id).b - set_.segment(id).a;
-            return {-along[1], along[0]};
-        }
-    }
+    auto shape(std::size_t i) const requires requires(const ViewOf<P>& v) { v.triangle(0); }
+    { return set_.triangle(i); }
+    auto shape(std::size_t i) const requires requires(const ViewOf<P>& v) { v.sphere(0); }
+    { return set_.sphere(i); }
+    auto shape(std::size_t i) const requires requires(const ViewOf<P>& v) { v.segment(0); }
+    { return set_.segment(i); }
 
     ViewOf<P> set_;
     const AnyIndex<T, D>& index_;

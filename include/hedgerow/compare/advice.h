@@ -7,8 +7,9 @@ namespace hedgerow::compare {
 
 struct AdviceOptions {
     double few = 1000;
-    /// How much slower than the fastest a structure may answer that is to save memory.
-    double slack = 3;
+    /// How many times the fastest's time a query may take where memory counts: beyond that a structure is
+    /// absurdly slow. The engine's kernels alone are several times as fast as any other structure.
+    double slack = 10;
 };
 
 struct Ranked {
@@ -17,9 +18,10 @@ struct Ranked {
     std::string terms;  ///< what that is made of: "12.1 ms build + 1000 x 0.8 us"
 };
 struct Recommendation {
-    std::string need;  ///< "many queries"
-    std::string rule;  ///< what the figure is, and what was left out
-    std::string unit;  ///< of the figure: "s" or "bytes"
+    std::string need;    ///< "many queries"
+    std::string rule;    ///< what the figure is, and what was left out
+    std::string unit;    ///< of the figure: "s" or "bytes"
+    std::string reason;  ///< a sentence: why the first is the first, by its counts and the figures of others
     /// Best first, never empty.
     std::vector<Ranked> ranking;
 };

@@ -47,12 +47,22 @@ struct StructureCost {
     UpdateCost update;
 };
 
+/// How many rays of a set meet nothing.
+struct RaySet {
+    std::string_view kind;  ///< "coherent", "incoherent" or "random"
+    std::size_t rays = 0, missed = 0;
+};
+
 /// Structures over one scene, all asked the same.
 struct Comparison {
     std::string scene, primitive;  ///< what, and of what: "triangles"
     std::size_t size = 0;          ///< primitives
     int dimension = 3;
     std::vector<StructureCost> structures;
+    std::vector<RaySet> rays = {};  ///< none for points
+    /// The share of the primitives that the eye of the coherent rays sees from outside of the scene's box; 1
+    /// for an eye in the box. Nearly 0: an outer shell hides the rest.
+    double seen_from_outside = 1;
     bool finished = true;  ///< false: it was stopped, and holds the structures that were done
 };
 

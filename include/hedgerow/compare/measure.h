@@ -19,6 +19,7 @@ struct MeasureOptions {
     std::size_t queries = 10'000;
     /// Time for each structure and kind of query, over all rounds. At least one query is asked a round.
     double seconds = 0.1;
+    /// 0: counts alone. Everything is built once, asked everything once, and not timed.
     int rounds = 5;
     /// A structure is built `rounds` times, or as often as begins within this time.
     double build_seconds = 1;
@@ -27,7 +28,7 @@ struct MeasureOptions {
     /// Whether to change and move primitives too. Costs two builds more of what can be refitted.
     bool updates = true;
     std::uint64_t seed = 0;
-    /// Where coherent rays come from; none: as a picture is taken of what nobody knows.
+    /// Where coherent rays come from; none: from outside, as a picture is taken of what nobody knows.
     std::optional<Camera> camera;
 };
 
@@ -46,8 +47,9 @@ public:
 /// Times are the thread's own, where the system tells it: what else runs does not count. Only builds on
 /// several threads are measured by the clock on the wall.
 ///
-/// Coherent rays are a picture's; incoherent ones leave what those hit, spread as from a matte surface;
-/// random ones join two random points of the scene's box. Points are random in that box; boxes, 1/100 of its
+/// Coherent rays are a picture's. Incoherent ones leave random places on all surfaces, spread evenly by area,
+/// from the front of triangles and about the normal by the cosine. Random ones join two random points of the
+/// scene's box. Points are random in that box; boxes, 1/100 of its
 /// diagonal wide, stand around random primitives. What moves is bent by a tenth of the scene.
 ///
 /// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T>, T float or double.
