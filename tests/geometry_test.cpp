@@ -1,5 +1,4 @@
-/// The floor of geometry against exact or wider arithmetic: rounding, vectors and boxes, closest points,
-/// overlap.
+/// The floor of geometry against exact or wider arithmetic: rounding, vectors and boxes, closest points.
 #include "exact.h"
 
 #include <hedgerow/geometry/overlap.h>
@@ -228,95 +227,6 @@ void expect_closest_on_spheres_and_boxes() {
 TYPED_TEST(Geometry, ClosestPointsOfSpheresAndBoxes) {
     expect_closest_on_spheres_and_boxes<TypeParam, 2>();
     expect_closest_on_spheres_and_boxes<TypeParam, 3>();
-}
-
-// ---- Overlap
-
-/// A polygon's corner, homogeneous and in lowest terms: exact.
-struct Corner {
-    Int x[3], w;
-};
-Corner between(const Corner& p, Int weight_p, const Corner& q, Int weight_q) {
-    Corner r{{}, p.w * weight_p + q.w * weight_q};
-    const auto divisor = [](Int a, Int b) {
-        while (b != 0) a %= b, std::swap(a, b);
-        return a < 0 ? -a : a;
-    };
-    Int common = r.w;
-    for (int k = 0; k < 3; ++k) {
-        r.x[k] = p.x[k] * weight_p + q.x[k] * weight_q;
-        common = divisor(common, r.x[k]);
-    }
-    for (Int& x : r.x) x /= common;
-    r.w /= common;
-    return r;
-}
-/// What the box leaves of the polygon, one plane after the other (Sutherland and Hodgman 1974): empty or not.
-template <class T, int D>
-bool clipped_is_left(std::initializer_list<Vec<T, D>> corners, const Box<T, D>& box, int exponent) {
-    const auto whole = [&](T x) { return static_cast<Int>(std::ldexp(x, -exponent)); };
-    std::vector<Corner> polygon, rest;
-    for (const auto& c : corners)
-        polygon.push_back({{whole(c[0]), whole(c[1]), D == 3 ? whole(c[D - 1]) : 0}, 1});
-    for (int k = 0; k < D; ++k)
-        for (const bool high : {false, true}) {
-            const auto inside = [&](const Corner& c) {
-                return high ? whole(box.high[k]) * c.w - c.x[k] : c.x[k] - whole(box.low[k]) * c.w;
-            };
-            rest.clear();
-            for (std::size_t i = 0; i < polygon.size(); ++i) {
-                const Corner &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-                const Int fp = inside(p), fq = inside(q);
-                if (fp >= 0) rest.push_back(p);
-                if (fp > 0 && fq < 0) rest.push_back(between(p, -fq, q, fp));
-                if (fp < 0 && fq > 0) rest.push_back(between(p, fq, q, -fp));
-            }
-            polygon.swap(rest);
-        }
-    return !polygon.empty();
-}
-
-template <class T>
-void expect_exact_overlaps(int reach, int exponent) {
-    int yes = 0, no = 0;  // where the boxes alone do not decide
-    for (std::uint64_t i = 0; i < 50000; ++i) {
-        Random random(14, i);
-        const auto any = [&]<int D>(std::integral_constant<int, D>) {
-            return integers<T, D>(random, reach, exponent);
-        };
-        constexpr std::integral_constant<int, 3> space;
-        constexpr std::integral_constant<int, 2> plane;
-        const Box<T, 3> box = box_of(any(space), any(space));
-        Triangle<T, 3> tri{any(space), any(space), any(space)};
-        if (i % 16 == 0) tri.c = tri.a;
-        if (i % 32 == 0) tri.b = tri.a;
-        const bool left = clipped_is_left({tri.a, tri.b, tri.c}, box, exponent);
-        ASSERT_EQ(overlap(tri, box), left) << i;
-        if (overlap(tri.bounds(), box)) ++(left ? yes : no);
-
-        const Box<T, 2> square = box_of(any(plane), any(plane));
-        const Segment<T, 2> segment{any(plane), i % 16 == 0 ? square.low : any(plane)};
-        ASSERT_EQ(overlap(segment, square), clipped_is_left({segment.a, segment.b}, square, exponent)) << i;
-
-        const Sphere<T, 3> ball{any(space), std::abs(any(space)[0])};
-        const auto whole = [&](T x) { return static_cast<Int>(std::ldexp(x, -exponent)); };
-        Int d2 = 0;
-        for (int k = 0; k < 3; ++k) {
-            const Int x = whole(ball.center[k]);
-            const Int d = std::max({whole(box.low[k]) - x, x - whole(box.high[k]), Int(0)});
-            d2 += d * d;
-        }
-        ASSERT_EQ(overlap(ball, box), d2 <= whole(ball.radius) * whole(ball.radius)) << i;
-    }
-    EXPECT_GT(yes, 1000);
-    EXPECT_GT(no, 1000);
-}
-TYPED_TEST(Geometry, OverlapIsExactOnIntegersAndCountsTouching) {
-    for (const int reach : {1, 2, 4, 4000}) expect_exact_overlaps<TypeParam>(reach, 0);
-}
-TYPED_TEST(Geometry, OverlapOfTheLargestAndLeastShapes) {
-    constexpr int most = std::is_same_v<TypeParam, float> ? 57 : 477;
-    for (const int exponent : {most, -most}) expect_exact_overlaps<TypeParam>(4, exponent);
 }
 
 }  // namespace

@@ -22,19 +22,26 @@ struct ClipPolygon {
             const Vec3d &p = corner[i], &q = corner[i + 1 < size ? i + 1 : 0];
             const double a = sign * (p[axis] - position), b = sign * (q[axis] - position);
             if (a <= 0) kept.add(p);
-            if ((a < 0 && b > 0) || (a > 0 && b < 0)) {
-                Vec3d crossing = p + (q - p) * (a / (a - b));
-                crossing[axis] = position;
-                kept.add(crossing);
-            }
+            if ((a < 0 && b > 0) || (a > 0 && b < 0)) kept.add(crossing(p, a, q, b, axis, position));
         }
         return kept;
+    }
+
+private:
+    /// Where an edge between heights a and b of unlike signs crosses the plane, from the nearer end: it errs
+    /// by fewer than 8 roundings of the largest coordinate.
+    static Vec3d crossing(const Vec3d& p, double a, const Vec3d& q, double b, int axis, double position) {
+        if (std::abs(a) > std::abs(b)) return crossing(q, b, p, a, axis, position);
+        Vec3d at = p + (q - p) * (a / (a - b));
+        at[axis] = position;
+        return at;
     }
 };
 }  // namespace detail
 
-/// Bounds of a triangle's part in a box; empty if there is none. Computed in double and rounded to T: each
-/// side errs by no more than a few roundings of the largest coordinate.
+/// Bounds of a triangle's part in a box; empty if there is none. Computed in double and rounded to T. A
+/// corner of the part is a crossing of crossings, six deep at most: each side errs by fewer than 48 roundings
+/// of double of the largest coordinate, and one of T.
 template <class T>
 Box<T, 3> clipped_bounds(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
     const Box<T, 3> whole = tri.bounds();

@@ -1,8 +1,11 @@
-/// Does a shape overlap a box? Closed sets: touching counts. Every test asks the shape's own box first, so
-/// that its yes never lies outside what a structure knows.
+/// Does a shape overlap a box? Closed sets: touching counts. The answers are those of exact arithmetic on the
+/// coordinates as given: where rounding leaves a sign in doubt, ExactSum decides. So a yes never lies outside
+/// of the shape's own box, and cells that hold a common point of a shape and a box are always among those
+/// that the shape is inserted into.
 #pragma once
 
 #include <hedgerow/geometry/distance.h>
+#include <hedgerow/geometry/exact_sum.h>
 
 namespace hedgerow {
 
@@ -14,73 +17,119 @@ constexpr bool overlap(const Box<T, D>& a, const Box<T, D>& b) {
 }
 
 namespace detail {
-/// Do the projections on `axis` of points given from the box's center and of the box meet?
-template <int D, std::size_t N>
-constexpr bool meet_along(const Vec<double, D>& axis, const std::array<Vec<double, D>, N>& points,
-                          const Vec<double, D>& half) {
-    double low = dot(axis, points[0]), high = low;
-    for (std::size_t i = 1; i < N; ++i) {
-        const double x = dot(axis, points[i]);
-        low = x < low ? x : low;
-        high = x > high ? x : high;
+/// What products that underflow may add to a sum of few of them, and far below what any filter has to tell.
+inline constexpr double underflow = 0x1p-1000;
+
+/// An edge from p to q, seen in the planes across the axes.
+template <int D>
+struct Edge {
+    Vec<double, D> p, q, along;
+
+    Edge(const Vec<double, D>& from, const Vec<double, D>& to) : p(from), q(to), along(to - from) {}
+
+    /// 1 where the edge and then x turn counterclockwise in the plane of axes u and v, −1 clockwise, 0 on the
+    /// line. The filter's bound is (3 + 16u)u of the products' magnitudes (Shewchuk 1997, section 4.2).
+    int turn(const Vec<double, D>& x, int u, int v) const {
+        const double left = product(along[u], x[v] - p[v]), right = product(along[v], x[u] - p[u]);
+        const double sum = left - right;
+        const double error = product(4 * unit_roundoff<double>, std::abs(left) + std::abs(right)) + underflow;
+        if (std::abs(sum) > error) [[likely]]
+            return sum > 0 ? 1 : -1;
+        // Edges along an axis and corners on the edge itself are common, and plain zeros.
+        if ((along[u] == 0 || x[v] == p[v]) && (along[v] == 0 || x[u] == p[u])) return 0;
+        return exact_turn(p, q, x, u, v);
     }
-    const double radius = dot(abs(axis), half);
-    return low <= radius && high >= -radius;
-}
-/// Brings everything to about 1 where products of three could over- or underflow.
-template <class T, int D, std::size_t N>
-void scale(Vec<double, D>& half, std::array<Vec<double, D>, N>& points) {
-    Vec<double, D> most = half;
-    for (const auto& p : points) most = max(most, abs(p));
-    const double s = safe_scale<T>(most);
-    half = half * s;
-    for (auto& p : points) p = p * s;
-}
+    /// Does the whole box lie beyond the edge's line: clockwise of it (sign 1) or counterclockwise (−1)? The
+    /// box's corner that is farthest the other way decides (Schwarz and Seidel 2010).
+    bool beyond(const Box<double, D>& box, int u, int v, int sign) const {
+        Vec<double, D> corner = box.low;
+        if ((along[u] > 0) == (sign > 0)) corner[v] = box.high[v];
+        if ((along[v] > 0) != (sign > 0)) corner[u] = box.high[u];
+        return turn(corner, u, v) * sign < 0;
+    }
+};
 }  // namespace detail
 
-/// A triangle, to be asked about boxes. A corner in the box, or no separating axis: the box's, the plane's,
-/// the nine products of edges (Akenine-Möller 2001), in double. Only the box's part within the triangle's own
-/// box matters; with that the error is some roundings of the triangle's coordinates, however large the box.
+/// A triangle, to be asked about boxes. They overlap unless one of these separates them: an axis, the
+/// triangle's plane, or in the plane across an axis one of the triangle's edges (Akenine-Möller 2001; as edge
+/// functions Schwarz and Seidel 2010). Only the part of the box within the triangle's own box matters. Exact
+/// for all coordinates, triangles without area included.
 template <class T>
 class TriangleOverlap {
 public:
     explicit TriangleOverlap(const Triangle<T, 3>& tri)
         : tri_(tri),
           bounds_(tri.bounds()),
-          scale_(detail::safe_scale<T>(Vec3d(bounds_.high) - Vec3d(bounds_.low))),
-          edge_{(Vec3d(tri.b) - Vec3d(tri.a)) * scale_, (Vec3d(tri.c) - Vec3d(tri.b)) * scale_,
-                (Vec3d(tri.a) - Vec3d(tri.c)) * scale_},
-          normal_(cross(edge_[0], edge_[1])) {}
+          edges_{{{Vec3d(tri.a), Vec3d(tri.b)}, {Vec3d(tri.b), Vec3d(tri.c)}, {Vec3d(tri.c), Vec3d(tri.a)}}} {
+        const Vec3d &e = edges_[0].along, &f = edges_[2].along;
+        for (int k = 0; k < 3; ++k) {
+            const int u = (k + 1) % 3, v = (k + 2) % 3;
+            const double left = product(e[v], f[u]), right = product(e[u], f[v]);
+            normal_[k] = left - right;
+            size_[k] = std::abs(left) + std::abs(right);
+            turn_[k] = edges_[0].turn(edges_[1].q, u, v);
+        }
+    }
 
     bool operator()(const Box<T, 3>& whole) const {
-        const Box<T, 3> box = intersection(whole, bounds_);
-        if (box.empty()) return false;
-        if (box.contains(tri_.a) || box.contains(tri_.b) || box.contains(tri_.c)) return true;
-        const Vec3d center = Box3d{Vec3d(box.low), Vec3d(box.high)}.center();
-        const Vec3d half = (Vec3d(box.high) - center) * scale_;
-        const std::array<Vec3d, 3> p = {(Vec3d(tri_.a) - center) * scale_, (Vec3d(tri_.b) - center) * scale_,
-                                        (Vec3d(tri_.c) - center) * scale_};
-        if (!detail::meet_along(normal_, p, half)) return false;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vec3d &from = p[i], &beside = p[(i + 2) % 3], &edge = edge_[i], wide = abs(edge);
-            for (int k = 0; k < 3; ++k) {
-                const int u = (k + 1) % 3, v = (k + 2) % 3;
-                // Along axis k × edge, on which the edge is one point.
-                const double one = product(edge[u], from[v]) - product(edge[v], from[u]);
-                const double other = product(edge[u], beside[v]) - product(edge[v], beside[u]);
-                const double radius = product(wide[v], half[u]) + product(wide[u], half[v]);
-                if ((one > radius && other > radius) || (one < -radius && other < -radius)) return false;
+        const Box<T, 3> part = intersection(whole, bounds_);
+        if (part.empty()) return false;
+        if (part.contains(tri_.a) || part.contains(tri_.b) || part.contains(tri_.c)) return true;
+        const Box3d box{Vec3d(part.low), Vec3d(part.high)};
+        if (beside_plane(box)) return false;
+        for (int k = 0; k < 3; ++k) {
+            const int u = (k + 1) % 3, v = (k + 2) % 3;
+            for (const auto& edge : edges_) {
+                // Seen edge-on, the triangle is a line and either side of it is outside.
+                if (turn_[k] >= 0 && edge.beyond(box, u, v, 1)) return false;
+                if (turn_[k] <= 0 && edge.beyond(box, u, v, -1)) return false;
             }
         }
         return true;
     }
 
 private:
+    /// Does the box lie on one side of the triangle's plane? The error of a corner's height is below 7u +
+    /// 56u² of its products' magnitudes (Shewchuk 1997, section 4.3), and the filter takes 16u of the
+    /// greatest that any corner can have, so that corners found by a normal whose sign is in doubt serve as
+    /// well.
+    bool beside_plane(const Box3d& box) const {
+        const Vec3d low = box.low - edges_[0].p, high = box.high - edges_[0].p;
+        double least = 0, most = 0, magnitude = 0, reach = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double from = product(normal_[k], low[k]), to = product(normal_[k], high[k]);
+            const double farther = std::max(std::abs(low[k]), std::abs(high[k]));
+            least += std::min(from, to), most += std::max(from, to);
+            magnitude += product(size_[k], farther);
+            reach += farther;
+        }
+        const double error = product(16 * unit_roundoff<double>, magnitude) +
+                             product(detail::underflow, reach) + detail::underflow;
+        if (least > error || most < -error) return true;
+        if (least < -error && most > error) [[likely]]
+            return false;
+        if (magnitude == 0 && lies_in_plane(low, high)) return false;
+        return exact_height(box, -1) > 0 || exact_height(box, 1) < 0;
+    }
+    /// A flat box in the plane of a triangle across an axis: all products are plain zeros.
+    bool lies_in_plane(const Vec3d& low, const Vec3d& high) const {
+        for (int k = 0; k < 3; ++k)
+            if (turn_[k] != 0 && (low[k] != 0 || high[k] != 0)) return false;
+        return true;
+    }
+    /// The side of the plane on which the box's lowest (sign −1) or highest (1) corner lies.
+    int exact_height(const Box3d& box, int sign) const {
+        Vec3d corner = box.low;
+        for (int k = 0; k < 3; ++k)
+            if (turn_[k] * sign > 0) corner[k] = box.high[k];
+        return exact_side(edges_[0].p, edges_[0].q, edges_[1].q, corner);
+    }
+
     Triangle<T, 3> tri_;
     Box<T, 3> bounds_;
-    double scale_;
-    std::array<Vec3d, 3> edge_;
-    Vec3d normal_;
+    std::array<detail::Edge<3>, 3> edges_;
+    Vec3d normal_, size_;      // the normal, and the magnitudes of the products that it is made of
+    std::array<int, 3> turn_;  // exact signs of the normal
 };
 template <class T>
 bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
@@ -89,24 +138,31 @@ bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
 
 template <class T>
 bool overlap(const Segment<T, 2>& s, const Box<T, 2>& whole) {
-    const Box<T, 2> box = intersection(whole, s.bounds());
-    if (box.empty()) return false;
-    const Vec2d center = Box2d{Vec2d(box.low), Vec2d(box.high)}.center();
-    Vec2d half = Vec2d(box.high) - center;
-    std::array<Vec2d, 2> p = {Vec2d(s.a) - center, Vec2d(s.b) - center};
-    detail::scale<T>(half, p);
-    const Vec2d along = p[1] - p[0];
-    return detail::meet_along(Vec2d(-along[1], along[0]), p, half);
+    const Box<T, 2> part = intersection(whole, s.bounds());
+    if (part.empty()) return false;
+    const Box2d box{Vec2d(part.low), Vec2d(part.high)};
+    const detail::Edge<2> edge{Vec2d(s.a), Vec2d(s.b)};
+    return !edge.beyond(box, 0, 1, 1) && !edge.beyond(box, 0, 1, -1);
 }
 
 /// The solid ball against the box.
 template <class T, int D>
 bool overlap(const Sphere<T, D>& s, const Box<T, D>& box) {
     if (!overlap(s.bounds(), box)) return false;
-    const Box<double, D> wide{Vec<double, D>(box.low), Vec<double, D>(box.high)};
-    const Vec<double, D> outside = offset_outside(Vec<double, D>(s.center), wide);
-    const double r = static_cast<double>(s.radius), unit = std::is_same_v<T, float> ? 1 : scale_to_one(r);
-    return length2(outside * unit) <= product(r * unit, r * unit);
+    const Vec<double, D> center(s.center);
+    const double radius = static_cast<double>(s.radius), radius2 = product(radius, radius);
+    const Vec<double, D> nearest =
+        clamped(center, Box<double, D>{Vec<double, D>(box.low), Vec<double, D>(box.high)});
+    const double away2 = distance2(center, nearest);
+    const double error = product(8 * unit_roundoff<double>, away2 + radius2) + detail::underflow;
+    if (std::abs(away2 - radius2) > error) [[likely]]
+        return away2 < radius2;
+    ExactSum sum;
+    for (int k = 0; k < D; ++k) {
+        const double c = center[k], x = nearest[k];
+        sum.add(x, x).subtract(2, x, c).add(c, c);
+    }
+    return sum.subtract(radius, radius).sign() <= 0;
 }
 
 }  // namespace hedgerow

@@ -63,6 +63,14 @@ T rounded_up(double x) {
     return -rounded_down<T>(-x);
 }
 
+/// The least T that is not below a + b (Knuth's error of a sum; nothing but overflow is inexact).
+template <std::floating_point T>
+T sum_rounded_up(T a, T b) {
+    const T sum = a + b, of_b = sum - a;
+    const T error = (a - (sum - of_b)) + (b - of_b);
+    return error > 0 ? std::nextafter(sum, std::numeric_limits<T>::infinity()) : sum;
+}
+
 /// An unevaluated sum high + low, with |low| <= u·|high|.
 template <std::floating_point T>
 struct TwoSum {

@@ -64,9 +64,10 @@ struct Sphere {
     Vec<T, D> center;
     T radius = T(0);
 
-    constexpr Box<T, D> bounds() const {
-        Box<T, D> box;
-        return box.expand(center - Vec<T, D>::all(radius)).expand(center + Vec<T, D>::all(radius));
+    /// Rounded outward: the whole ball lies in it.
+    Box<T, D> bounds() const {
+        return {map(center, [r = radius](T c) { return -sum_rounded_up(-c, r); }),
+                map(center, [r = radius](T c) { return sum_rounded_up(c, r); })};
     }
 };
 

@@ -12,9 +12,9 @@ namespace hedgerow {
 ///
 /// A probe visits each cell that an answer may lie in: a hit within the ray's slack, a closest point, a
 /// place in the region asked about. An answer lies on its primitive but for the roundings of the test that
-/// gave it (distances and overlaps: fewer than 16 of the largest coordinate, all done in double and rounded
-/// once for float; a hit's are in the probe's slack), and clipping adds fewer than 16 more. So a primitive
-/// that comes within the margin of a cell is entered there, and one that does not has no answer in it.
+/// gave it: of overlaps none, of distances fewer than 8 of the largest coordinate (a hit's are in the probe's
+/// slack). Clipping adds fewer than 48 (geometry/clip.h). So a primitive that comes within the margin of a
+/// cell is inserted there, and one that does not has no answer in it.
 template <std::floating_point T, int D>
 T cell_margin(const Box<T, D>& scene) {
     if (scene.empty()) return T(0);

@@ -1,0 +1,54 @@
+/// What a structure answers to one question, to be held against what brute force answers. Tests that the
+/// hunter writes include this file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shapes.h"
+
+namespace hedgerow::hunter {
+
+/// Everything that can be asked of a ray, a point or a box.
+template <class T, int D>
+struct RayAnswer {
+    Hit<T> closest;
+    bool any = false;
+    std::vector<Hit<T>> all;
+
+    friend bool operator==(const RayAnswer&, const RayAnswer&) = default;
+};
+template <class T, int D>
+RayAnswer<T, D> answer(const AnyIndex<T, D>& index, const Ray<T, D>& ray) {
+    RayAnswer<T, D> said;
+    index.closest_hits(std::span(&ray, 1), {&said.closest, 1});
+    index.any_hits(std::span(&ray, 1), {&said.any, 1});
+    index.all_hits(ray, said.all);
+    return said;
+}
+template <class T, int D>
+std::vector<Near<T, D>> answer(const AnyIndex<T, D>& index, const Vec<T, D>& point) {
+    std::vector<Near<T, D>> said, closest(1);
+    index.nearest(point, 4, said);
+    index.closest_points({&point, 1}, closest);
+    said.push_back(closest[0]);
+    return said;
+}
+template <class T, int D>
+std::vector<PrimitiveId> answer(const AnyIndex<T, D>& index, const Box<T, D>& box) {
+    std::vector<PrimitiveId> said;
+    index.overlapping(box, said);
+    return said;
+}
+inline constexpr std::size_t answers_to_a_ray = 3, answers_to_a_point = 2, answers_to_a_box = 1;
+
+/// Whether a structure over some shapes is sound, and answers a question as brute force does.
+template <class Shape, class Question>
+bool as_brute_force(const std::string& spec, const std::vector<Shape>& shapes, const Question& question) {
+    const auto set = set_of(shapes);
+    const auto index = build_any(spec, set);
+    return index->validate().empty() &&
+           answer(*index, question) == answer(*build_any("brute-force", set), question);
+}
+
+}  // namespace hedgerow::hunter

@@ -1,0 +1,233 @@
+/// One round: a scene, questions about it, and every structure's answers beside those of brute force, whose
+/// own are held against exact arithmetic.
+#pragma once
+
+#include <sstream>
+
+#include "answers.h"
+#include "oracle.h"
+#include "scenes.h"
+#include "shrink.h"
+
+namespace hedgerow::hunter {
+
+/// What a round has done, and as C++ what went wrong in it.
+struct Report {
+    std::uint64_t questions = 0, checked_exactly = 0;
+    std::vector<std::string> found;
+};
+
+/// A structure with options drawn from what the list of structures says they may be.
+inline std::string any_options(const StructureInfo& structure, Random& random) {
+    std::string spec(structure.name);
+    const auto one_of = [&](auto... values) {
+        const std::string all[] = {std::string(values)...};
+        return all[random.bits() % sizeof...(values)];
+    };
+    for (const auto& option : structure.options) {
+        if (random.bits() % 4 != 0) continue;
+        std::string value;
+        const std::string_view values = option.values;
+        if (values.find('|') != std::string_view::npos) {
+            const auto count = static_cast<std::uint64_t>(std::count(values.begin(), values.end(), '|')) + 1;
+            std::string_view rest = values;
+            for (auto skip = random.bits() % count; skip > 0; --skip) rest.remove_prefix(rest.find('|') + 1);
+            value = rest.substr(0, rest.find('|'));
+        } else if (option.name == "resolution") {
+            value = one_of("1", "2", "3", "7", "16", "33", "64");
+        } else if (option.name == "max_depth") {
+            value = one_of("1", "4", "16", "30");
+        } else if (option.name == "leaf_size" || option.name == "max_leaf_size") {
+            value = one_of("1", "2", "4", "8");
+        } else if (option.name == "intersection_cost") {
+            value = one_of("0.25", "4", "20", "100");
+        } else if (option.name == "reinsertion") {
+            value = one_of("1", "3");
+        } else if (option.name == "overlap") {
+            value = one_of("0", "0.1");
+        } else if (option.name == "duplicates") {
+            value = one_of("1", "3", "10");
+        } else {
+            continue;
+        }
+        spec += (spec.find(':') == std::string::npos ? ':' : ',') + std::string(option.name) + "=" + value;
+    }
+    return spec;
+}
+
+template <class Shape>
+class Hunt {
+public:
+    using Set = decltype(set_of(std::vector<Shape>()));
+    using T = typename Set::Scalar;
+    static constexpr int D = Set::dimension;
+
+    Hunt(std::uint64_t seed, std::uint64_t round) : seed_(seed), round_(round), random_(seed, round) {}
+
+    Report run() {
+        Places<T, D> places(random_);
+        shapes_ = scene<Shape>(places);
+        Asking<T, D> asking(places, corners_of(shapes_, Vec<T, D>()));
+        questions_ = asking.questions(256, 64);
+        set_ = set_of(shapes_);
+        const auto oracle = build_any("brute-force", set_);
+        answer_all(*oracle, truth_);
+        hold_brute_force_against_exact_arithmetic();
+        for (const auto& structure : structure_list()) {
+            if (!structure.holds(D, PointSet<ViewOf<Set>>)) continue;
+            look_at(std::string(structure.name));
+            for (int i = 0; i < 3; ++i) look_at(any_options(structure, random_));
+        }
+        return std::move(report_);
+    }
+
+private:
+    struct Answers {
+        std::vector<RayAnswer<T, D>> rays;
+        std::vector<std::vector<Near<T, D>>> points;
+        std::vector<std::vector<PrimitiveId>> boxes;
+    };
+
+    /// Rays in one batch, but one by one for what a batch does not answer.
+    void answer_all(const AnyIndex<T, D>& index, Answers& said) {
+        const std::size_t n = questions_.rays.size();
+        said.rays.assign(n, {});
+        closest_.assign(n, {});
+        const std::unique_ptr<bool[]> any(new bool[n]);
+        index.closest_hits(std::span<const Ray<T, D>>(questions_.rays), closest_);
+        index.any_hits(std::span<const Ray<T, D>>(questions_.rays), {any.get(), n});
+        for (std::size_t i = 0; i < n; ++i) {
+            said.rays[i] = {closest_[i], any[i], {}};
+            index.all_hits(questions_.rays[i], said.rays[i].all);
+        }
+        said.points.clear(), said.boxes.clear();
+        for (const auto& p : questions_.points) said.points.push_back(answer(index, p));
+        for (const auto& b : questions_.boxes) said.boxes.push_back(answer(index, b));
+        report_.questions += n * answers_to_a_ray + questions_.points.size() * answers_to_a_point +
+                             questions_.boxes.size() * answers_to_a_box;
+    }
+
+    void look_at(const std::string& spec) {
+        std::unique_ptr<AnyIndex<T, D>> index;
+        try {
+            index = build_any(spec, set_);
+        } catch (const InputError& e) {
+            // A refusal is an answer where options do not go together, or memory would be exceeded.
+            ++report_.questions;
+            return;
+        }
+        if (const auto fault = index->validate(); !fault.empty()) return invalid(spec, fault);
+        Answers said;
+        answer_all(*index, said);
+        for (std::size_t i = 0; i < said.rays.size(); ++i) {
+            if (!(said.rays[i] == truth_.rays[i])) return differs(spec, questions_.rays[i]);
+            // Kernels answer a ray alone in another way than a batch.
+            if (spec.starts_with("wide") && i % 4 == 0) {
+                report_.questions += answers_to_a_ray;
+                if (!(answer(*index, questions_.rays[i]) == truth_.rays[i]))
+                    return differs(spec, questions_.rays[i]);
+            }
+        }
+        for (std::size_t i = 0; i < said.points.size(); ++i)
+            if (said.points[i] != truth_.points[i]) return differs(spec, questions_.points[i]);
+        for (std::size_t i = 0; i < said.boxes.size(); ++i)
+            if (said.boxes[i] != truth_.boxes[i]) return differs(spec, questions_.boxes[i]);
+    }
+
+    void invalid(const std::string& spec, const std::string& fault) {
+        auto shapes = shapes_;
+        Vec<T, D> nothing;
+        shrink(shapes, nothing, [&](const std::vector<Shape>& some, const Vec<T, D>&) {
+            return guarded([&] {
+                const auto set = set_of(some);
+                return !build_any(spec, set)->validate().empty();
+            });
+        });
+        print("// validate(): " + fault, spec, shapes, nothing);
+    }
+    template <class Question>
+    void differs(const std::string& spec, Question question) {
+        auto shapes = shapes_;
+        const auto fails = [&](const std::vector<Shape>& some, const Question& asked) {
+            return guarded([&] { return !as_brute_force(spec, some, asked); });
+        };
+        std::string remark;
+        if (fails(shapes, question))
+            shrink(shapes, question, fails);
+        else
+            remark = "// In a batch only, of " + std::to_string(questions_.rays.size()) + " rays.";
+        print(remark, spec, shapes, question);
+    }
+    template <class F>
+    static bool guarded(F f) {
+        try {
+            return f();
+        } catch (const InputError&) {
+            return false;
+        }
+    }
+    /// As a test that fails.
+    template <class Question>
+    void print(const std::string& remark, const std::string& spec, const std::vector<Shape>& shapes,
+               const Question& question) {
+        std::ostringstream out;
+        out << "// Seed " << seed_ << ", round " << round_ << ".\nTEST(Found, Round" << seed_ << 'x' << round_
+            << ") {\n";
+        if (!remark.empty()) out << "    " << remark << '\n';
+        out << "    const std::vector<" << name_of(shapes[0]) << "> shapes = {\n";
+        for (const auto& shape : shapes) {
+            out << "        ";
+            write(out, shape);
+            out << ",\n";
+        }
+        out << "    };\n    const " << name_of(question) << " question = ";
+        write(out, question);
+        out << ";\n    EXPECT_TRUE(as_brute_force(\"" << spec << "\", shapes, question));\n}\n";
+        report_.found.push_back(out.str());
+    }
+
+    /// Overlaps and distances of all shapes with a few questions, and rays against triangles.
+    void hold_brute_force_against_exact_arithmetic() {
+        if constexpr (!std::is_same_v<Shape, Vec<T, D>>)
+            for (std::size_t i = 0; i < questions_.boxes.size(); i += 8)
+                check(questions_.boxes[i], truth_.boxes[i]);
+        if constexpr (std::is_same_v<Shape, Triangle<T, 3>>)
+            for (std::size_t i = 0; i < questions_.rays.size(); i += 16)
+                check(questions_.rays[i], truth_.rays[i].all);
+    }
+    void check(const Box<T, D>& box, const std::vector<PrimitiveId>& overlapping) {
+        for (std::size_t s = 0; s < shapes_.size(); ++s) {
+            ++report_.checked_exactly;
+            const bool said = std::binary_search(overlapping.begin(), overlapping.end(), s);
+            if (said != rational::overlap(shapes_[s], box))
+                print("// Exact arithmetic says otherwise of the overlap.", "brute-force", {shapes_[s]}, box);
+        }
+    }
+    void check(const Ray<T, 3>& ray, const std::vector<Hit<T>>& all) {
+        for (int k = 0; k < 3; ++k)
+            if (!(std::abs(ray.origin[k]) <= largest_coordinate<T>) ||
+                !(std::abs(ray.direction[k]) <= largest_coordinate<T>) ||
+                (ray.direction[k] != 0 && !std::isnormal(ray.direction[k])))
+                return;  // it means another ray, or none
+        if (!(ray.t_min <= ray.t_max) || !(max_component(abs(ray.direction)) > 0)) return;
+        for (std::size_t s = 0; s < shapes_.size(); ++s) {
+            ++report_.checked_exactly;
+            std::optional<T> t;
+            for (const auto& hit : all)
+                if (hit.element == s) t = hit.t;
+            if (const auto fault = wrong(shapes_[s], ray, t); !fault.empty())
+                print("// Exact arithmetic: " + fault + ".", "brute-force", {shapes_[s]}, ray);
+        }
+    }
+
+    std::uint64_t seed_, round_;
+    Random random_;
+    Set set_;
+    std::vector<Shape> shapes_;
+    Questions<T, D> questions_;
+    Answers truth_;
+    std::vector<Hit<T>> closest_;
+    Report report_;
+};
+
+}  // namespace hedgerow::hunter

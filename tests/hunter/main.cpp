@@ -1,0 +1,104 @@
+/// The hunter: makes up scenes and questions of numbers that rounding errors live on, asks every structure,
+/// builder, scalar and instruction set, holds the answers against brute force and that against exact
+/// arithmetic, shrinks what differs to a few primitives and prints it as a test.
+///
+///   hunter [--seconds 60] [--seed 1] [--round N] [--most 10]
+///
+/// One thread; several processes with other seeds look elsewhere. Exit code 1 where something was found.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include <hedgerow/structures/bvh/wide/kernels.h>
+
+#include "hunt.h"
+
+using namespace hedgerow;
+using namespace hedgerow::hunter;
+
+namespace {
+
+/// Kinds of shapes take turns, and instruction sets, which are for triangles of float alone, among these.
+Report run(std::uint64_t seed, std::uint64_t round) {
+    const auto sets = instruction_sets();
+    use_instruction_set(sets[round / 16 % sets.size()]);
+    switch (round % 16) {
+        case 0:
+            return Hunt<Sphere<float, 3>>(seed, round).run();
+        case 1:
+            return Hunt<Sphere<double, 3>>(seed, round).run();
+        case 2:
+            return Hunt<Segment<float, 2>>(seed, round).run();
+        case 3:
+            return Hunt<Segment<double, 2>>(seed, round).run();
+        case 4:
+            return Hunt<Vec<float, 3>>(seed, round).run();
+        case 5:
+            return Hunt<Vec<double, 2>>(seed, round).run();
+        default:
+            return round % 2 == 0 ? Hunt<Triangle<float, 3>>(seed, round).run()
+                                  : Hunt<Triangle<double, 3>>(seed, round).run();
+    }
+}
+
+struct Options {
+    double seconds = 60;
+    std::uint64_t seed = 1, most = 10;
+    std::optional<std::uint64_t> round;
+};
+
+std::optional<Options> parsed(int argc, char** argv) {
+    Options options;
+    for (int i = 1; i < argc; i += 2) {
+        if (i + 1 == argc) return std::nullopt;
+        char* end = nullptr;
+        const auto number = [&] { return std::strtoull(argv[i + 1], &end, 10); };
+        if (std::strcmp(argv[i], "--seconds") == 0)
+            options.seconds = std::strtod(argv[i + 1], &end);
+        else if (std::strcmp(argv[i], "--seed") == 0)
+            options.seed = number();
+        else if (std::strcmp(argv[i], "--round") == 0)
+            options.round = number();
+        else if (std::strcmp(argv[i], "--most") == 0)
+            options.most = number();
+        if (end == nullptr || end == argv[i + 1] || *end != '\0') return std::nullopt;
+    }
+    return options;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const auto options = parsed(argc, argv);
+    if (!options) {
+        std::fprintf(stderr, "usage: hunter [--seconds 60] [--seed 1] [--round N] [--most 10]\n");
+        return 2;
+    }
+    using Clock = std::chrono::steady_clock;
+    const auto began = Clock::now();
+    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
+    std::uint64_t rounds = 0, questions = 0, exact = 0, found = 0;
+    double told = 0;
+    for (std::uint64_t round = options->round.value_or(0); found < options->most; ++round) {
+        const Report report = run(options->seed, round);
+        ++rounds, questions += report.questions, exact += report.checked_exactly,
+            found += report.found.size();
+        for (const auto& test : report.found) std::printf("%s\n", test.c_str()), std::fflush(stdout);
+        if (options->round || seconds() > options->seconds) break;
+        if (seconds() - told > 10) {
+            told = seconds();
+            std::fprintf(stderr, "hunter: %.0f of %.0f s, %llu rounds, %.3g questions\n", told,
+                         options->seconds, static_cast<unsigned long long>(rounds),
+                         static_cast<double>(questions));
+        }
+    }
+    std::fprintf(
+        stderr,
+        "hunter: seed %llu, %llu rounds, %llu questions (%.3g a second), %llu answers of brute force held "
+        "against exact arithmetic, %llu found\n",
+        static_cast<unsigned long long>(options->seed), static_cast<unsigned long long>(rounds),
+        static_cast<unsigned long long>(questions), static_cast<double>(questions) / seconds(),
+        static_cast<unsigned long long>(exact), static_cast<unsigned long long>(found));
+    return found > 0 ? 1 : 0;
+}

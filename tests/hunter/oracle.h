@@ -1,0 +1,118 @@
+/// Whether brute force is right, by rational arithmetic.
+#pragma once
+
+#include "../rational.h"
+#include "shapes.h"
+
+namespace hedgerow::hunter {
+
+using rational::Number;
+using rational::Point;
+
+inline Point operator-(const Point& a, const Point& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Point moved(const Point& a, const Point& by, const Number& times) {
+    return {a[0] + by[0] * times, a[1] + by[1] * times, a[2] + by[2] * times};
+}
+inline Number dot(const Point& a, const Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Point cross(const Point& a, const Point& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+inline Number distance2(const Point& p, const Point& a, const Point& b) {
+    const Point ab = b - a, ap = p - a;
+    const Number l = dot(ab, ab);
+    Number u = l == 0 ? Number(0) : Number(dot(ap, ab) / l);
+    if (u < 0) u = 0;
+    if (u > 1) u = 1;
+    const Point away = ap - Point{ab[0] * u, ab[1] * u, ab[2] * u};
+    return dot(away, away);
+}
+/// Over the triangle where the foot lies in it, else to the nearest edge.
+inline Number distance2(const Point& p, const std::array<Point, 3>& t) {
+    const Point n = cross(t[1] - t[0], t[2] - t[0]);
+    const Number area = dot(n, n);
+    bool inside = area != 0;
+    for (std::size_t i = 0; i < 3 && inside; ++i)
+        inside = dot(cross(t[(i + 1) % 3] - t[i], p - t[i]), n) >= 0;
+    if (inside) {
+        const Number height = dot(p - t[0], n);
+        return height * height / area;
+    }
+    return std::min({distance2(p, t[0], t[1]), distance2(p, t[1], t[2]), distance2(p, t[2], t[0])});
+}
+
+template <class T>
+Number distance2(const Vec<T, 3>& p, const Triangle<T, 3>& t) {
+    return distance2(rational::point(p), {rational::point(t.a), rational::point(t.b), rational::point(t.c)});
+}
+template <class T>
+Number distance2(const Vec<T, 2>& p, const Segment<T, 2>& s) {
+    return distance2(rational::point(p), rational::point(s.a), rational::point(s.b));
+}
+template <class T, int D>
+Number distance2(const Vec<T, D>& p, const Vec<T, D>& q) {
+    const Point away = rational::point(p) - rational::point(q);
+    return dot(away, away);
+}
+
+/// The bound e of the numerics contract: how far a hit may lie from what is hit, along each axis.
+template <class T, int D>
+double hit_error(const Ray<T, D>& ray, const Box<T, D>& box) {
+    double reach = 0, from = 0;
+    for (int k = 0; k < D; ++k) {
+        const double o = static_cast<double>(ray.origin[k]);
+        from = std::max(from, std::abs(o));
+        reach = std::max({reach, std::abs(static_cast<double>(box.low[k]) - o),
+                          std::abs(static_cast<double>(box.high[k]) - o)});
+    }
+    return static_cast<double>(unit_roundoff<T>) * (16 * reach + 4 * from) +
+           64 * static_cast<double>(std::numeric_limits<T>::denorm_min());
+}
+
+/// Where the ray's line crosses a triangle: t, or nothing where it misses or runs along it.
+inline std::optional<Number> crossing(const Point& origin, const Point& direction,
+                                      const std::array<Point, 3>& t) {
+    std::array<Point, 3> corner;
+    for (std::size_t i = 0; i < 3; ++i) corner[i] = t[i] - origin;
+    int sign = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const int side = sgn(dot(direction, cross(corner[i], corner[(i + 1) % 3])));
+        if (side == 0 || (sign != 0 && side != sign)) return std::nullopt;
+        sign = side;
+    }
+    const Point n = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    return Number(dot(corner[0], n) / dot(direction, n));
+}
+
+/// What is wrong with a triangle's hit, or with none; empty if nothing is. A hit lies within e of the
+/// triangle; and a triangle that all lines within e of the ray's cross well inside the interval is hit.
+template <class T>
+std::string wrong(const Triangle<T, 3>& tri, const Ray<T, 3>& ray, const std::optional<T>& t) {
+    const double e = hit_error(ray, tri.bounds());
+    const std::array<Point, 3> corners{rational::point(tri.a), rational::point(tri.b),
+                                       rational::point(tri.c)};
+    const Point origin = rational::point(ray.origin), direction = rational::point(ray.direction);
+    if (t) {
+        const Number away2 = distance2(moved(origin, direction, static_cast<double>(*t)), corners);
+        // t is rounded: a step of that along the direction, which may be long, is no error of the hit.
+        const double step = static_cast<double>(max_component(abs(ray.direction))) *
+                            static_cast<double>(std::numeric_limits<T>::denorm_min());
+        const Number most = 2 * (e + step);
+        return away2 <= 3 * most * most ? "" : "a hit lies farther from its triangle than the bound allows";
+    }
+    for (int i = -1; i < 6; ++i) {
+        Point from = origin;
+        if (i >= 0) from[static_cast<std::size_t>(i / 2)] += Number(4 * e) * (i % 2 == 0 ? 1 : -1);
+        const auto at = crossing(from, direction, corners);
+        if (!at || *at * (1 - 0x1p-20) < static_cast<double>(ray.t_min) ||
+            (static_cast<double>(ray.t_max) < 1e300 && *at * (1 + 0x1p-20) > static_cast<double>(ray.t_max)))
+            return "";
+    }
+    return "a triangle that the ray crosses well inside is not hit";
+}
+
+}  // namespace hedgerow::hunter

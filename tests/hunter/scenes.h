@@ -1,0 +1,253 @@
+/// Scenes and questions of nasty numbers.
+#pragma once
+
+#include <algorithm>
+#include <numbers>
+
+#include "../nasty.h"
+#include "shapes.h"
+
+namespace hedgerow::hunter {
+
+/// Of a round: how places are drawn, along each axis by numbers of a kind of its own.
+template <class T, int D>
+class Places {
+public:
+    explicit Places(Random& random) : random_(random) {
+        const bool alike = random.bits() % 2 == 0;
+        auto first = nasty::Numbers<T>::any(random);
+        for (int k = 0; k < D; ++k) along_.push_back(alike ? first : nasty::Numbers<T>::any(random));
+        scale_ = random.bits() % 4 == 0 ? std::ldexp(T(1), static_cast<int>(random.bits() % 61) - 30) : T(1);
+        shift_ = random.bits() % 4 == 0 ? first() : T(0);
+    }
+    Vec<T, D> operator()() {
+        Vec<T, D> v;
+        for (int k = 0; k < D; ++k) v[k] = in_range(along_[static_cast<std::size_t>(k)]() * scale_ + shift_);
+        return v;
+    }
+    Random& random() { return random_; }
+
+private:
+    static T in_range(T x) { return std::clamp(x, -largest_coordinate<T>, largest_coordinate<T>); }
+
+    Random& random_;
+    std::vector<nasty::Numbers<T>> along_;
+    T scale_, shift_;
+};
+
+template <class T, int D>
+Vec<T, D> shape_at(Places<T, D>& places, const Vec<T, D>&) {
+    return places();
+}
+/// A third of the triangles and segments are small, and some have no area or length.
+template <class T, int D>
+Vec<T, D> beside(Places<T, D>& places, const Vec<T, D>& p) {
+    const Vec<T, D> q = places();
+    switch (places.random().bits() % 6) {
+        case 0:
+            return p + (q - p) * T(0x1p-10);
+        case 1:
+            return p + (q - p) * unit_roundoff<T> * T(8);
+        default:
+            return q;
+    }
+}
+template <class T>
+Triangle<T, 3> shape_at(Places<T, 3>& places, const Triangle<T, 3>&) {
+    Triangle<T, 3> t;
+    t.a = places(), t.b = beside(places, t.a), t.c = beside(places, t.b);
+    if (places.random().bits() % 16 == 0) t.c = t.a;
+    if (places.random().bits() % 16 == 0) t.c = (t.a + t.b) * T(0.5);
+    return t;
+}
+template <class T>
+Segment<T, 2> shape_at(Places<T, 2>& places, const Segment<T, 2>&) {
+    Segment<T, 2> s;
+    s.a = places(), s.b = beside(places, s.a);
+    return s;
+}
+template <class T>
+Sphere<T, 3> shape_at(Places<T, 3>& places, const Sphere<T, 3>&) {
+    const Vec<T, 3> center = places(), other = beside(places, center);
+    return {center, places.random().bits() % 16 == 0 ? T(0) : max_component(abs(other - center))};
+}
+
+/// Turns a scene about an axis and back, as CAD programs do: what was flat is flat but for the last digits.
+template <class T, class Shape>
+void turn_and_turn_back(std::vector<Shape>& shapes, double angle) {
+    const T c = static_cast<T>(std::cos(angle)), s = static_cast<T>(std::sin(angle));
+    for (auto& shape : shapes) {
+        T* before = nullptr;
+        for_each_number(shape, [&](T& x) {
+            if (before == nullptr) return void(before = &x);
+            for (const T sine : {s, -s}) {
+                const T turned = product(c, *before) - product(sine, x);
+                x = product(sine, *before) + product(c, x), *before = turned;
+            }
+            before = nullptr;
+        });
+    }
+}
+
+/// Of 1 to 64 shapes: drawn one by one, around a common corner, the same one again, a wall.
+template <class Shape, class T, int D>
+std::vector<Shape> scene(Places<T, D>& places) {
+    Random& random = places.random();
+    std::vector<Shape> shapes;
+    const std::size_t count = 1 + random.bits() % (std::size_t(1) << random.bits() % 7);
+    const std::uint64_t kind = random.bits() % 6;
+    const Vec<T, D> corner = places();
+    const int flat = static_cast<int>(random.bits() % D);
+    const T wall = places()[flat];
+    while (shapes.size() < count) {
+        Shape shape = shape_at(places, Shape());
+        int number = 0;
+        if (kind == 1)
+            for_each_number(shape, [&](T& x) { number < D ? void(x = corner[number]) : void(), ++number; });
+        if (kind == 2)  // a wall; a sphere's radius is no coordinate
+            for_each_number(shape, [&](T& x) {
+                if (number < 3 * D && number % D == flat &&
+                    !(D == 3 && number == 3 && sizeof(Shape) == 4 * sizeof(T)))
+                    x = nasty::nudged(wall, static_cast<int>(random.bits() % 4));
+                ++number;
+            });
+        shapes.push_back(shape);
+        if (kind == 3 && random.bits() % 2 == 0) shapes.push_back(shapes[random.bits() % shapes.size()]);
+    }
+    if constexpr (sizeof(Shape) % (D * sizeof(T)) == 0)
+        if (kind == 4) turn_and_turn_back<T>(shapes, random.uniform(0, 2 * std::numbers::pi));
+    return shapes;
+}
+
+template <class T, int D>
+struct Questions {
+    std::vector<Ray<T, D>> rays;
+    std::vector<Vec<T, D>> points;
+    std::vector<Box<T, D>> boxes;
+};
+
+/// The points that shapes are given by.
+template <class Shape, class T, int D>
+std::vector<Vec<T, D>> corners_of(std::vector<Shape> shapes, const Vec<T, D>&) {
+    std::vector<Vec<T, D>> corners;
+    for (auto& shape : shapes) {
+        Vec<T, D> v;
+        int k = 0;
+        for_each_number(shape, [&](T& x) {
+            v[k++] = x;
+            if (k == D) corners.push_back(v), k = 0;
+        });
+    }
+    return corners;
+}
+
+/// Draws rays, points and boxes at, near and away from the corners of a scene.
+template <class T, int D>
+class Asking {
+public:
+    Asking(Places<T, D>& places, const std::vector<Vec<T, D>>& corners)
+        : places_(places), random_(places.random()), corners_(corners) {}
+
+    Questions<T, D> questions(std::size_t rays, std::size_t others) {
+        Questions<T, D> all;
+        const bool picture = below(8) == 0;
+        const Vec<T, D> eye = place(), target = place(), across = place() - eye;
+        for (std::size_t i = 0; i < rays; ++i) {
+            all.rays.push_back(ray());
+            if (!picture) continue;
+            Vec<T, D> d = target - eye;
+            d[0] += across[0] * T(i % 16) / 64, d[1] += across[1] * T(i / 16) / 64;
+            all.rays.back() = {eye, d};
+        }
+        for (std::size_t i = 0; i < others; ++i) {
+            all.points.push_back(place());
+            Box<T, D> box = Box<T, D>().expand(place()).expand(place());
+            if (below(4) == 0) box.high[0] = box.low[0];
+            if (below(8) == 0) box.low = box.high;
+            all.boxes.push_back(box);
+        }
+        return all;
+    }
+
+private:
+    std::uint64_t below(std::uint64_t n) { return random_.bits() % n; }
+    Vec<T, D> corner() { return corners_[below(corners_.size())]; }
+    /// A corner, next to one, between some, or anywhere.
+    Vec<T, D> place() {
+        Vec<T, D> p = corner();
+        switch (below(6)) {
+            case 0:
+                return p;
+            case 1:
+                for (int k = 0; k < D; ++k) p[k] = nasty::nudged(p[k], static_cast<int>(below(5)) - 2);
+                return in_range(p);
+            case 2:
+                return p * T(0.5) + corner() * T(0.5);
+            case 3: {
+                const T w = static_cast<T>(random_.uniform()),
+                        u = static_cast<T>(random_.uniform()) * (1 - w);
+                return p * (1 - w - u) + corner() * w + corner() * u;
+            }
+            case 4:
+                return in_range(p + (corner() - p) * T(below(2) ? 1e3 : 0x1p-12));
+            default:
+                return places_();
+        }
+    }
+    static Vec<T, D> in_range(const Vec<T, D>& p) {
+        return map(p, [](T x) { return std::clamp(x, -largest_coordinate<T>, largest_coordinate<T>); });
+    }
+    T special() {
+        using limits = std::numeric_limits<T>;
+        constexpr T all[] = {T(0),
+                             T(-0.0),
+                             limits::denorm_min(),
+                             limits::min(),
+                             -limits::min(),
+                             limits::epsilon(),
+                             limits::infinity(),
+                             limits::quiet_NaN(),
+                             largest_coordinate<T>,
+                             T(1)};
+        return all[below(std::size(all))];
+    }
+    Ray<T, D> ray() {
+        Ray<T, D> r;
+        r.origin = place();
+        r.direction = place() - r.origin;
+        switch (below(8)) {
+            case 0: {  // along an axis
+                const auto axis = static_cast<int>(below(D));
+                for (int k = 0; k < D; ++k)
+                    if (k != axis) r.direction[k] = T(0);
+                break;
+            }
+            case 1: {  // nearly along an axis
+                const auto axis = static_cast<int>(below(D));
+                const T little = std::ldexp(T(1), -static_cast<int>(below(60)));
+                for (int k = 0; k < D; ++k)
+                    if (k != axis) r.direction[k] *= little;
+                break;
+            }
+            case 2:
+                r.direction = places_();
+                break;
+            default:
+                break;
+        }
+        if (below(8) == 0) r.direction = r.direction * std::ldexp(T(1), static_cast<int>(below(121)) - 60);
+        if (below(16) == 0) r.direction[static_cast<int>(below(D))] = special();
+        if (below(64) == 0) r.origin[static_cast<int>(below(D))] = special();
+        if (below(4) == 0) r.t_min = below(2) ? T(1) : T(0.5);
+        if (below(4) == 0) r.t_max = below(2) ? T(1) : T(2);
+        if (below(64) == 0) r.t_max = special();
+        if (below(64) == 0) r.t_min = std::abs(special());
+        return r;
+    }
+
+    Places<T, D>& places_;
+    Random& random_;
+    const std::vector<Vec<T, D>>& corners_;
+};
+
+}  // namespace hedgerow::hunter
