@@ -34,7 +34,7 @@ inline std::string any_options(const StructureInfo& structure, Random& random) {
             for (auto skip = random.bits() % count; skip > 0; --skip) rest.remove_prefix(rest.find('|') + 1);
             value = rest.substr(0, rest.find('|'));
         } else if (option.name == "resolution") {
-            value = one_of("1", "2", "3", "7", "16", "33", "64");
+            value = one_of("1", "2", "3", "7", "16", "33");
         } else if (option.name == "max_depth") {
             value = one_of("1", "4", "16", "30");
         } else if (option.name == "leaf_size" || option.name == "max_leaf_size") {

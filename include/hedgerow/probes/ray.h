@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <variant>
 
@@ -170,7 +171,7 @@ public:
     /// may stop the walk, or say that a block of cells is empty: the ray is then followed to where it leaves
     /// that block, and the cell there is computed from its place (which errs by less than the inflation of
     /// the primitives). When the error exceeds half of that inflation, the neighbours as far as it reaches
-    /// are visited too (and again from the next cell: such rays pay for their distance).
+    /// are visited too, each of them once.
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
         if (!usable_) return;
@@ -200,6 +201,7 @@ public:
             return c[i] == end[i] ? std::numeric_limits<double>::infinity() : t;
         };
         double entry = in.entry;
+        int stepped = -1;  // the axis of the last step
         while (entry - back <= static_cast<double>(limit()) && entry <= in.exit) {
             std::int32_t empty = 0;  // the bits of a cell's coordinates in which those of its block differ
             if (alone) [[likely]] {
@@ -207,8 +209,9 @@ public:
                 if (looked.flow == Flow::stop) return;
                 empty = (1 << looked.empty_bits) - 1;
             } else {
-                const auto [first, last] = block_around(lattice, cell, reach);
-                if (!for_each_cell(first, last, [&](const Cell& c) { return visit(c).flow != Flow::stop; }))
+                const auto added = neighbours_added(lattice, cell, reach, stepped, ahead);
+                if (added && !for_each_cell(added->first, added->second,
+                                            [&](const Cell& c) { return visit(c).flow != Flow::stop; }))
                     return;
             }
             Cell last;  // of the block, that way
@@ -229,6 +232,7 @@ public:
             }
             const auto i = static_cast<std::size_t>(axis);
             cell[i] = last[i] + ahead[i];
+            stepped = axis;
         }
     }
 
@@ -296,13 +300,21 @@ private:
         }
         return reach;
     }
-    static std::pair<Cell, Cell> block_around(const Lattice<D>& lattice, const Cell& cell,
-                                              const Cell& reach) {
+    /// The cells around a cell that no step before has visited: at first all, then a layer, if it is in the
+    /// lattice.
+    static std::optional<std::pair<Cell, Cell>> neighbours_added(const Lattice<D>& lattice, const Cell& cell,
+                                                                 const Cell& reach, int stepped,
+                                                                 const Cell& ahead) {
         std::pair<Cell, Cell> block;
         for (std::size_t a = 0; a < cell.size(); ++a) {
             block.first[a] = std::max(0, cell[a] - reach[a]);
             block.second[a] = std::min(lattice.resolution[a] - 1, cell[a] + reach[a]);
         }
+        if (stepped < 0) return block;
+        const auto i = static_cast<std::size_t>(stepped);
+        const std::int32_t layer = cell[i] + ahead[i] * reach[i];
+        if (layer < 0 || layer >= lattice.resolution[i]) return std::nullopt;
+        block.first[i] = block.second[i] = layer;
         return block;
     }
 
