@@ -18,7 +18,8 @@ T nudged(T x, int steps) {
     return x;
 }
 
-/// Draws numbers of one kind. Kinds are mixed by drawing from several.
+/// Draws numbers of one kind. Kinds are mixed by drawing from several. No expression draws twice, so that the
+/// numbers are the same whatever the order of evaluation.
 template <class T>
 class Numbers {
 public:
@@ -32,18 +33,26 @@ public:
 
     T operator()() {
         switch (kind_) {
-            case Kind::noise:  // few places, each with the noise of its last digits
-                return nudged(base_[below(4)], static_cast<int>(below(4)));
+            case Kind::noise: {  // few places, each with the noise of its last digits
+                const T base = base_[below(4)];
+                return nudged(base, static_cast<int>(below(4)));
+            }
             case Kind::integers:
                 return T(static_cast<int>(below(9)) - 4);
-            case Kind::powers:
-                return std::ldexp(below(2) ? T(1) : T(-1), static_cast<int>(below(41)) - 20);
-            case Kind::decimals:
-                return nudged(T(0.1) * T(static_cast<int>(below(21)) - 10), static_cast<int>(below(3)) - 1);
+            case Kind::powers: {
+                const T sign = below(2) == 0 ? T(-1) : T(1);
+                return std::ldexp(sign, static_cast<int>(below(41)) - 20);
+            }
+            case Kind::decimals: {
+                const T decimal = T(0.1) * T(static_cast<int>(below(21)) - 10);
+                return nudged(decimal, static_cast<int>(below(3)) - 1);
+            }
             case Kind::uniform:
                 return uniform();
-            case Kind::wide:
-                return std::ldexp(uniform(), static_cast<int>(below(2 * reach + 1)) - reach);
+            case Kind::wide: {
+                const T x = uniform();
+                return std::ldexp(x, static_cast<int>(below(2 * reach + 1)) - reach);
+            }
         }
         return T(0);
     }

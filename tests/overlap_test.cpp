@@ -67,7 +67,7 @@ TYPED_TEST(Overlap, IsExactOnNastyNumbers) {
     const auto numbers =
         [](Random& random) {  // of one kind along the first axis, of another along the others
             return [x = Numbers::any(random), y = Numbers::any(random)]() mutable {
-                return Vec<TypeParam, 3>(x(), y(), y());
+                return Vec<TypeParam, 3>{x(), y(), y()};
             };
         };
     int yes = 0, no = 0;

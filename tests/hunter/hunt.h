@@ -209,12 +209,15 @@ private:
                 !(std::abs(ray.direction[k]) <= largest_coordinate<T>) ||
                 (ray.direction[k] != 0 && !std::isnormal(ray.direction[k])))
                 return;  // it means another ray, or none
-        if (!(ray.t_min <= ray.t_max) || !(max_component(abs(ray.direction)) > 0)) return;
+        if (!(ray.t_min <= ray.t_max) || !std::isfinite(ray.t_min) ||
+            !(max_component(abs(ray.direction)) > 0))
+            return;
         for (std::size_t s = 0; s < shapes_.size(); ++s) {
             ++report_.checked_exactly;
             std::optional<T> t;
             for (const auto& hit : all)
                 if (hit.element == s) t = hit.t;
+            if (t && !std::isfinite(*t)) continue;  // beyond the scalar's range, as its crossing is
             if (const auto fault = wrong(shapes_[s], ray, t); !fault.empty())
                 print("// Exact arithmetic: " + fault + ".", "brute-force", {shapes_[s]}, ray);
         }

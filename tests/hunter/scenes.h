@@ -28,7 +28,7 @@ public:
     Random& random() { return random_; }
 
 private:
-    static T in_range(T x) { return std::clamp(x, -largest_coordinate<T>, largest_coordinate<T>); }
+    static T in_range(T x) { return std::clamp(x, -largest_coordinate<T> / 8, largest_coordinate<T> / 8); }
 
     Random& random_;
     std::vector<nasty::Numbers<T>> along_;
@@ -94,7 +94,8 @@ template <class Shape, class T, int D>
 std::vector<Shape> scene(Places<T, D>& places) {
     Random& random = places.random();
     std::vector<Shape> shapes;
-    const std::size_t count = 1 + random.bits() % (std::size_t(1) << random.bits() % 7);
+    const auto digits = random.bits() % 7;
+    const std::size_t count = 1 + random.bits() % (std::size_t(1) << digits);
     const std::uint64_t kind = random.bits() % 6;
     const Vec<T, D> corner = places();
     const int flat = static_cast<int>(random.bits() % D);
@@ -145,8 +146,8 @@ std::vector<Vec<T, D>> corners_of(std::vector<Shape> shapes, const Vec<T, D>&) {
 template <class T, int D>
 class Asking {
 public:
-    Asking(Places<T, D>& places, const std::vector<Vec<T, D>>& corners)
-        : places_(places), random_(places.random()), corners_(corners) {}
+    Asking(Places<T, D>& places, std::vector<Vec<T, D>> corners)
+        : places_(places), random_(places.random()), corners_(std::move(corners)) {}
 
     Questions<T, D> questions(std::size_t rays, std::size_t others) {
         Questions<T, D> all;
@@ -184,18 +185,22 @@ private:
             case 2:
                 return p * T(0.5) + corner() * T(0.5);
             case 3: {
+                const Vec<T, D> q = corner(), r = corner();
                 const T w = static_cast<T>(random_.uniform()),
                         u = static_cast<T>(random_.uniform()) * (1 - w);
-                return p * (1 - w - u) + corner() * w + corner() * u;
+                return p * (1 - w - u) + q * w + r * u;
             }
-            case 4:
-                return in_range(p + (corner() - p) * T(below(2) ? 1e3 : 0x1p-12));
+            case 4: {
+                const T times = below(2) == 0 ? T(1e3) : T(0x1p-12);
+                return in_range(p + (corner() - p) * times);
+            }
             default:
                 return places_();
         }
     }
     static Vec<T, D> in_range(const Vec<T, D>& p) {
-        return map(p, [](T x) { return std::clamp(x, -largest_coordinate<T>, largest_coordinate<T>); });
+        return map(p,
+                   [](T x) { return std::clamp(x, -largest_coordinate<T> / 8, largest_coordinate<T> / 8); });
     }
     T special() {
         using limits = std::numeric_limits<T>;
@@ -215,15 +220,14 @@ private:
         Ray<T, D> r;
         r.origin = place();
         r.direction = place() - r.origin;
+        const auto axis = static_cast<int>(below(D));
         switch (below(8)) {
             case 0: {  // along an axis
-                const auto axis = static_cast<int>(below(D));
                 for (int k = 0; k < D; ++k)
                     if (k != axis) r.direction[k] = T(0);
                 break;
             }
             case 1: {  // nearly along an axis
-                const auto axis = static_cast<int>(below(D));
                 const T little = std::ldexp(T(1), -static_cast<int>(below(60)));
                 for (int k = 0; k < D; ++k)
                     if (k != axis) r.direction[k] *= little;
@@ -236,8 +240,8 @@ private:
                 break;
         }
         if (below(8) == 0) r.direction = r.direction * std::ldexp(T(1), static_cast<int>(below(121)) - 60);
-        if (below(16) == 0) r.direction[static_cast<int>(below(D))] = special();
-        if (below(64) == 0) r.origin[static_cast<int>(below(D))] = special();
+        if (below(16) == 0) r.direction[axis] = special();
+        if (below(64) == 0) r.origin[axis] = special();
         if (below(4) == 0) r.t_min = below(2) ? T(1) : T(0.5);
         if (below(4) == 0) r.t_max = below(2) ? T(1) : T(2);
         if (below(64) == 0) r.t_max = special();
@@ -247,7 +251,7 @@ private:
 
     Places<T, D>& places_;
     Random& random_;
-    const std::vector<Vec<T, D>>& corners_;
+    std::vector<Vec<T, D>> corners_;
 };
 
 }  // namespace hedgerow::hunter
