@@ -42,11 +42,27 @@ std::vector<PrimitiveId> answer(const AnyIndex<T, D>& index, const Box<T, D>& bo
 }
 inline constexpr std::size_t answers_to_a_ray = 3, answers_to_a_point = 2, answers_to_a_box = 1;
 
+/// What happens to an index between its build and the question. Its primitives are the same after it.
+enum class Then { nothing, erased_and_inserted, refitted };
+
+/// False if the structure cannot do that.
+template <class T, int D>
+bool carry_out(Then then, AnyIndex<T, D>& index) {
+    if (then == Then::refitted && index.refittable()) return index.refit(), true;
+    if (then != Then::erased_and_inserted || !index.changes_one_by_one()) return then == Then::nothing;
+    const auto count = static_cast<PrimitiveId>(index.size());
+    for (PrimitiveId id = 0; id < count; id += 2) index.erase(id);
+    for (PrimitiveId id = 0; id < count; id += 2) index.insert(id);
+    return true;
+}
+
 /// Whether a structure over some shapes is sound, and answers a question as brute force does.
 template <class Shape, class Question>
-bool as_brute_force(const std::string& spec, const std::vector<Shape>& shapes, const Question& question) {
+bool as_brute_force(const std::string& spec, const std::vector<Shape>& shapes, const Question& question,
+                    Then then = Then::nothing) {
     const auto set = set_of(shapes);
     const auto index = build_any(spec, set);
+    carry_out(then, *index);
     return index->validate().empty() &&
            answer(*index, question) == answer(*build_any("brute-force", set), question);
 }

@@ -107,6 +107,8 @@ private:
                              questions_.boxes.size() * answers_to_a_box;
     }
 
+    /// Builds a structure and asks it, and then perhaps again after changes that leave the primitives the
+    /// same.
     void look_at(const std::string& spec) {
         std::unique_ptr<AnyIndex<T, D>> index;
         try {
@@ -116,47 +118,56 @@ private:
             ++report_.questions;
             return;
         }
-        if (const auto fault = index->validate(); !fault.empty()) return invalid(spec, fault);
+        if (!compare(spec, *index, Then::nothing) || random_.bits() % 4 != 0) return;
+        const auto then = random_.bits() % 2 == 0 ? Then::erased_and_inserted : Then::refitted;
+        if (carry_out(then, *index)) compare(spec, *index, then);
+    }
+    /// False if something was found.
+    bool compare(const std::string& spec, const AnyIndex<T, D>& index, Then then) {
+        if (const auto fault = index.validate(); !fault.empty()) return invalid(spec, fault, then), false;
         Answers said;
-        answer_all(*index, said);
+        answer_all(index, said);
         for (std::size_t i = 0; i < said.rays.size(); ++i) {
-            if (!(said.rays[i] == truth_.rays[i])) return differs(spec, questions_.rays[i]);
+            if (!(said.rays[i] == truth_.rays[i])) return differs(spec, questions_.rays[i], then), false;
             // Kernels answer a ray alone in another way than a batch.
             if (spec.starts_with("wide") && i % 4 == 0) {
                 report_.questions += answers_to_a_ray;
-                if (!(answer(*index, questions_.rays[i]) == truth_.rays[i]))
-                    return differs(spec, questions_.rays[i]);
+                if (!(answer(index, questions_.rays[i]) == truth_.rays[i]))
+                    return differs(spec, questions_.rays[i], then), false;
             }
         }
         for (std::size_t i = 0; i < said.points.size(); ++i)
-            if (said.points[i] != truth_.points[i]) return differs(spec, questions_.points[i]);
+            if (said.points[i] != truth_.points[i]) return differs(spec, questions_.points[i], then), false;
         for (std::size_t i = 0; i < said.boxes.size(); ++i)
-            if (said.boxes[i] != truth_.boxes[i]) return differs(spec, questions_.boxes[i]);
+            if (said.boxes[i] != truth_.boxes[i]) return differs(spec, questions_.boxes[i], then), false;
+        return true;
     }
 
-    void invalid(const std::string& spec, const std::string& fault) {
+    void invalid(const std::string& spec, const std::string& fault, Then then) {
         auto shapes = shapes_;
         Vec<T, D> nothing;
         shrink(shapes, nothing, [&](const std::vector<Shape>& some, const Vec<T, D>&) {
             return guarded([&] {
                 const auto set = set_of(some);
-                return !build_any(spec, set)->validate().empty();
+                const auto index = build_any(spec, set);
+                carry_out(then, *index);
+                return !index->validate().empty();
             });
         });
-        print("// validate(): " + fault, spec, shapes, nothing);
+        print("// validate(): " + fault, spec, shapes, nothing, then);
     }
     template <class Question>
-    void differs(const std::string& spec, Question question) {
+    void differs(const std::string& spec, Question question, Then then) {
         auto shapes = shapes_;
         const auto fails = [&](const std::vector<Shape>& some, const Question& asked) {
-            return guarded([&] { return !as_brute_force(spec, some, asked); });
+            return guarded([&] { return !as_brute_force(spec, some, asked, then); });
         };
         std::string remark;
         if (fails(shapes, question))
             shrink(shapes, question, fails);
         else
             remark = "// In a batch only, of " + std::to_string(questions_.rays.size()) + " rays.";
-        print(remark, spec, shapes, question);
+        print(remark, spec, shapes, question, then);
     }
     template <class F>
     static bool guarded(F f) {
@@ -169,7 +180,7 @@ private:
     /// As a test that fails.
     template <class Question>
     void print(const std::string& remark, const std::string& spec, const std::vector<Shape>& shapes,
-               const Question& question) {
+               const Question& question, Then then = Then::nothing) {
         std::ostringstream out;
         out << "// Seed " << seed_ << ", round " << round_ << ".\nTEST(Found, Round" << seed_ << 'x' << round_
             << ") {\n";
@@ -182,7 +193,9 @@ private:
         }
         out << "    };\n    const " << name_of(question) << " question = ";
         write(out, question);
-        out << ";\n    EXPECT_TRUE(as_brute_force(\"" << spec << "\", shapes, question));\n}\n";
+        constexpr const char* changes[] = {"", ", Then::erased_and_inserted", ", Then::refitted"};
+        out << ";\n    EXPECT_TRUE(as_brute_force(\"" << spec << "\", shapes, question"
+            << changes[static_cast<std::size_t>(then)] << "));\n}\n";
         report_.found.push_back(out.str());
     }
 

@@ -2,9 +2,10 @@
 /// builder, scalar and instruction set, holds the answers against brute force and that against exact
 /// arithmetic, shrinks what differs to a few primitives and prints it as a test.
 ///
-///   hunter [--seconds 60] [--seed 1] [--round N] [--most 10]
+///   hunter [--seconds 60 | --rounds N | --round N] [--seed 1] [--most 10]
 ///
-/// One thread; several processes with other seeds look elsewhere. Exit code 1 where something was found.
+/// It hunts for some time, for some rounds, or one round again that has found something. One thread; several
+/// processes with other seeds look elsewhere. Exit code 1 where something was found.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -33,9 +34,11 @@ Report run(std::uint64_t seed, std::uint64_t round) {
         case 3:
             return Hunt<Segment<double, 2>>(seed, round).run();
         case 4:
-            return Hunt<Vec<float, 3>>(seed, round).run();
+            return round % 32 == 4 ? Hunt<Vec<float, 3>>(seed, round).run()
+                                   : Hunt<Vec<double, 3>>(seed, round).run();
         case 5:
-            return Hunt<Vec<double, 2>>(seed, round).run();
+            return round % 32 == 5 ? Hunt<Vec<float, 2>>(seed, round).run()
+                                   : Hunt<Vec<double, 2>>(seed, round).run();
         default:
             return round % 2 == 0 ? Hunt<Triangle<float, 3>>(seed, round).run()
                                   : Hunt<Triangle<double, 3>>(seed, round).run();
@@ -45,7 +48,7 @@ Report run(std::uint64_t seed, std::uint64_t round) {
 struct Options {
     double seconds = 60;
     std::uint64_t seed = 1, most = 10;
-    std::optional<std::uint64_t> round;
+    std::optional<std::uint64_t> rounds, round;
 };
 
 std::optional<Options> parsed(int argc, char** argv) {
@@ -58,6 +61,8 @@ std::optional<Options> parsed(int argc, char** argv) {
             options.seconds = std::strtod(argv[i + 1], &end);
         else if (std::strcmp(argv[i], "--seed") == 0)
             options.seed = number();
+        else if (std::strcmp(argv[i], "--rounds") == 0)
+            options.rounds = number();
         else if (std::strcmp(argv[i], "--round") == 0)
             options.round = number();
         else if (std::strcmp(argv[i], "--most") == 0)
@@ -72,7 +77,8 @@ std::optional<Options> parsed(int argc, char** argv) {
 int main(int argc, char** argv) {
     const auto options = parsed(argc, argv);
     if (!options) {
-        std::fprintf(stderr, "usage: hunter [--seconds 60] [--seed 1] [--round N] [--most 10]\n");
+        std::fprintf(stderr,
+                     "usage: hunter [--seconds 60 | --rounds N | --round N] [--seed 1] [--most 10]\n");
         return 2;
     }
     using Clock = std::chrono::steady_clock;
@@ -85,7 +91,8 @@ int main(int argc, char** argv) {
         ++rounds, questions += report.questions, exact += report.checked_exactly,
             found += report.found.size();
         for (const auto& test : report.found) std::printf("%s\n", test.c_str()), std::fflush(stdout);
-        if (options->round || seconds() > options->seconds) break;
+        if (options->round || (options->rounds ? rounds >= *options->rounds : seconds() > options->seconds))
+            break;
         if (seconds() - told > 10) {
             told = seconds();
             std::fprintf(stderr, "hunter: %.0f of %.0f s, %llu rounds, %.3g questions\n", told,
