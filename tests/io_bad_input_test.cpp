@@ -44,7 +44,7 @@ TEST_F(BadInput, EmptyFile) {
 }
 
 TEST_F(BadInput, UnknownExtension) {
-    expect_bad("a.what", "x", {"'.what' is not known", ".ply .stl .obj .off", ".gltf"});
+    expect_bad("a.what", "x", {"'.what' is not known", ".ply .stl .obj .off .gltf .glb"});
     expect_bad("noextension", "x", {"no extension", ".ply"});
     expect_bad("a.gz", "x", {"'.gz'", ".ply"});
 }
@@ -99,12 +99,13 @@ TEST_F(BadInput, AbsurdCounts) {
     }
     expect_bad("a.ply", ply("3", "-1", corners), {"line 7", "'-1'"});
     std::string stl(80, ' ');
-    append(stl, std::uint32_t(0xFFFFFFFF));
-    expect_bad("a.stl", stl + std::string(100, '\0'), {"triangle 2 of the 4294967295", "cut off"});
+    append(stl, std::uint32_t(0xFFFFFFFE));
+    expect_bad("a.stl", stl + std::string(100, '\0'),
+               {"promises 4294967294 triangles", "at most 100 bytes follow", "cut off"});
     std::string more(80, ' ');
     append(more, std::uint32_t(1));
     expect_bad("b.stl", more + std::string(100, '\0'), {"promises 1 triangles, but there are more"});
-    expect_bad("a.off", "OFF\n4000000000 1 0\n" + corners, {"vertex 3 of 4000000000"});
+    expect_bad("a.off", "OFF\n4000000000 1 0\n" + corners, {"promises 4000000000 vertices", "cut off"});
     expect_bad("b.off", "OFF\n3 1 0\n" + corners + "4000000000 1 2 3\n", {"line 6", "face 0"});
 }
 
@@ -163,7 +164,7 @@ TEST_F(BadInput, Words) {
     expect_bad("a.off", "hello\n", {"'OFF'"});
     expect_bad("a.off", "OFF\n3 1 0\n0 0 0\n0 0\n", {"line 4"});
     expect_bad("a.obj", "v 0 0 zero\n", {"line 1", "'zero'"});
-    expect_bad("a.gltf", "{nonsense", {"cannot be read"});
+    expect_bad("a.gltf", "{nonsense", {"JSON cannot be read"});
 }
 
 TEST_F(BadInput, DamagedGzip) {

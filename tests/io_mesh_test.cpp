@@ -125,13 +125,13 @@ TEST(Stl, BinaryThatBeginsWithSolid) {
     EXPECT_EQ(load_mesh(folder.file("b.stl", bytes)).triangles, mesh.triangles);
 }
 
-TEST(Polygons, BecomeFansThatKnowTheirFace) {
+TEST(Polygons, ConvexOnesBecomeFansThatKnowTheirFace) {
     TempFolder folder;
-    const std::string vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 2 0\n";
-    const std::string faces = "3 0 1 2\n4 0 1 2 3\n2 0 1\n0\n5 0 1 2 4 3\n3 2 1 0\n";
+    const std::string vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n-1 0.5 0\n";
+    const std::string faces = "3 0 1 2\n4 0 1 2 3\n2 0 1\n0\n5 0 1 2 3 4\n3 2 1 0\n";
     std::string obj;
-    for (const std::string v : {"0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 2 0"}) obj += "v " + v + "\n";
-    obj += "f 1 2 3\nf 1/1 2/2/2 3//3 -2\nf 1 2\nf\nf 1 2 \\\n3 5 4 # end\nf 3 2 1\n";
+    for (const std::string v : {"0 0 0", "1 0 0", "1 1 0", "0 1 0", "-1 0.5 0"}) obj += "v " + v + "\n";
+    obj += "f 1 2 3\nf 1/1 2/2/2 3//3 -2\nf 1 2\nf\nf 1 2 \\\n3 4 5 # end\nf 3 2 1\n";
     const std::filesystem::path paths[] = {
         folder.file("a.ply",
                     "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty "
@@ -143,7 +143,7 @@ TEST(Polygons, BecomeFansThatKnowTheirFace) {
         const auto mesh = load_mesh(path);
         EXPECT_EQ(mesh.triangles,
                   (std::vector<TriangleIndices>{
-                      {0, 1, 2}, {0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {2, 1, 0}}))
+                      {0, 1, 2}, {0, 1, 2}, {0, 2, 3}, {0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {2, 1, 0}}))
             << path;
         EXPECT_EQ(mesh.faces, (std::vector<std::uint32_t>{0, 1, 1, 4, 4, 4, 5})) << path;
     }
@@ -180,7 +180,7 @@ TEST(Obj, AgreesWithTinyobjloader) {
         std::istringstream in(text);
         ASSERT_TRUE(
             tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in, nullptr, false));
-        std::vector<TriangleIndices> expected;
+        std::vector<std::vector<std::uint32_t>> expected;  // the face of each triangle
         std::vector<std::uint32_t> ids;
         std::uint32_t face = 0;
         for (const auto& shape : shapes) {
@@ -189,13 +189,22 @@ TEST(Obj, AgreesWithTinyobjloader) {
                 const auto v = [&](std::size_t k) {
                     return std::uint32_t(shape.mesh.indices[at + k].vertex_index);
                 };
-                for (std::size_t k = 2; k < n; ++k)
-                    expected.push_back({v(0), v(k - 1), v(k)}), ids.push_back(face);
+                std::vector<std::uint32_t> corners;
+                for (std::size_t k = 0; k < n; ++k) corners.push_back(v(k));
+                for (std::size_t k = 2; k < n; ++k) expected.push_back(corners), ids.push_back(face);
                 at += n, ++face;
             }
         }
         const auto mesh = load_mesh<double>(folder.file("a.obj", text));
-        ASSERT_EQ(mesh.triangles, expected);
+        ASSERT_EQ(mesh.size(), expected.size());
+        for (std::size_t i = 0; i < mesh.size(); ++i) {
+            const auto& [a, b, c] = mesh.triangles[i];
+            if (expected[i].size() == 3) {
+                ASSERT_EQ(expected[i], (std::vector<std::uint32_t>{a, b, c}));
+            }
+            for (const auto v : {a, b, c})
+                ASSERT_NE(std::find(expected[i].begin(), expected[i].end(), v), expected[i].end());
+        }
         ASSERT_EQ(mesh.vertices.size() * 3, attributes.vertices.size());
         for (std::size_t i = 0; i < attributes.vertices.size(); ++i)
             ASSERT_EQ(mesh.vertices[i / 3][int(i % 3)], attributes.vertices[i]);
@@ -214,7 +223,7 @@ std::string gltf() {
 {"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}]})";
 }
 
-TEST(Assimp, AppliesTransformsAndInstances) {
+TEST(Gltf, AppliesTransformsAndInstances) {
     TempFolder folder;
     const auto mesh = load_mesh<double>(folder.file("a.gltf", gltf()));
     ASSERT_EQ(mesh.size(), 2u);

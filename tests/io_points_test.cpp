@@ -73,7 +73,7 @@ TEST(PointFile, BadInput) {
     expect_bad("b.csv", "1;2;3\n1,5;2;3\n", {"line 2", "'1,5'"});
     expect_bad("a.csv", "1,2,3\n1,nan,3\n", {"point 1 is (", "drop_bad"});
     expect_bad("a.csv", "1,2,3\n1,-inf,3\n", {"point 1 is ("});
-    expect_bad("a.xyz", "1 2 3\n", {"'.xyz'", ".ply .npy .csv"});
+    expect_bad("a.pts", "1 2 3\n", {"'.pts'", ".ply .npy .csv .xyz"});
     expect_bad("a.ply",
                "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nend_header\n",
                {"'z'"});

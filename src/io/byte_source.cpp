@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <limits>
 #include <system_error>
 
 #include <hedgerow/error.h>
@@ -15,6 +16,8 @@ namespace hedgerow::detail {
 namespace {
 constexpr std::size_t buffer_size = std::size_t(1) << 18;
 constexpr std::size_t longest_line = std::size_t(1) << 26;
+/// What unpacks to so much, at such a ratio, repeats itself without an end. Scenes reach about 50 to 1.
+constexpr std::uint64_t bomb_size = std::uint64_t(1) << 28, bomb_ratio = 500;
 }  // namespace
 
 void check_readable(const std::filesystem::path& path) {
@@ -49,9 +52,19 @@ ByteSource::~ByteSource() {
     gzclose(file_);
 }
 
+std::uint64_t ByteSource::most_left() const {
+    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max(), ratio = 1032;
+    if (gzdirect(file_) != 0) return total_ - std::min(total_, offset());
+    return total_ > most / ratio ? most : total_ * ratio - std::min(total_ * ratio, offset());
+}
+
+void ByteSource::expect_not_cancelled() const {
+    if (progress_.cancelled()) throw Cancelled(name_ + ": reading was cancelled");
+}
+
 bool ByteSource::refill() {
     if (ended_) return false;
-    if (progress_.cancelled()) throw Cancelled(name_ + ": reading was cancelled");
+    expect_not_cancelled();
     before_ += filled_;
     at_ = filled_ = 0;
     const int got = gzread(file_, buffer_.data(), static_cast<unsigned>(buffer_.size()));
@@ -64,6 +77,10 @@ bool ByteSource::refill() {
     filled_ = static_cast<std::size_t>(got);
     ended_ = got == 0;
     const auto done = gzoffset(file_);
+    if (gzdirect(file_) == 0 && before_ > bomb_size &&
+        before_ / bomb_ratio > static_cast<std::uint64_t>(done))
+        fail_here("unpacks to more than " + std::to_string(bomb_ratio) +
+                  " times its size, as no scene does. If it is one, unpack it first and read that");
     if (ended_)
         progress_(total_, total_);
     else

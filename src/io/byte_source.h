@@ -30,6 +30,11 @@ public:
     const std::string& name() const { return name_; }
     /// Bytes read so far, after decompression.
     std::uint64_t offset() const { return before_ + at_; }
+    /// Bytes that can follow at most: of a plain file exact, of a compressed one a bound (deflate packs at
+    /// most 1032 to 1).
+    std::uint64_t most_left() const;
+    /// Throws Cancelled if reading was cancelled: for work on what is already read.
+    void expect_not_cancelled() const;
     bool at_end() { return at_ == filled_ && !refill(); }
     /// The next byte, or −1.
     int peek() { return at_end() ? -1 : buffer_[at_]; }

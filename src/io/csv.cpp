@@ -13,7 +13,8 @@ namespace {
 template <class T, int D>
 class CsvReader {
 public:
-    explicit CsvReader(ByteSource& file) : file_(file) {}
+    /// `more`: lines may go on behind the coordinates.
+    explicit CsvReader(ByteSource& file, bool more = false) : file_(file), more_(more) {}
 
     PointCloud<T, D> read() {
         std::string text;
@@ -69,7 +70,7 @@ private:
     }
     void read_point() {
         check_room(file_, cloud_.points.size(), "points");
-        if (fields_.size() != columns_)
+        if (fields_.size() < columns_ || (fields_.size() > columns_ && !more_))
             fail("has " + std::to_string(fields_.size()) + " columns, not " + std::to_string(columns_) +
                  (named_ ? ". Write as many as the first line names"
                          : ". Leave out the others, or name the columns x, y, ... in the first line"));
@@ -80,7 +81,7 @@ private:
             if (!x) fail(shown(field) + " where a number should stand. Repair the file");
             p[static_cast<int>(a)] = *x;
         }
-        cloud_.points.push_back(p);
+        append(file_, cloud_.points, p);
     }
     [[noreturn]] void fail(const std::string& what) const {
         file_.fail("line " + std::to_string(line_) + ": " + what);
@@ -94,7 +95,7 @@ private:
 
     ByteSource& file_;
     std::uint64_t line_ = 0;
-    bool first_ = true, named_ = false;
+    bool more_, first_ = true, named_ = false;
     std::size_t columns_ = D;
     std::array<std::size_t, D> column_ = in_order();
     std::vector<std::string_view> fields_;
@@ -108,9 +109,18 @@ PointCloud<T, D> read_csv_points(ByteSource& file) {
     return CsvReader<T, D>(file).read();
 }
 
+template <class T, int D>
+PointCloud<T, D> read_xyz_points(ByteSource& file) {
+    return CsvReader<T, D>(file, true).read();
+}
+
 template PointCloud<float, 2> read_csv_points(ByteSource&);
 template PointCloud<float, 3> read_csv_points(ByteSource&);
 template PointCloud<double, 2> read_csv_points(ByteSource&);
 template PointCloud<double, 3> read_csv_points(ByteSource&);
+template PointCloud<float, 2> read_xyz_points(ByteSource&);
+template PointCloud<float, 3> read_xyz_points(ByteSource&);
+template PointCloud<double, 2> read_xyz_points(ByteSource&);
+template PointCloud<double, 3> read_xyz_points(ByteSource&);
 
 }  // namespace hedgerow::detail

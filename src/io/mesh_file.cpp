@@ -4,6 +4,7 @@
 #include <hedgerow/error.h>
 #include <hedgerow/io/validate.h>
 
+#include "memory.h"
 #include "mesh_writers.h"
 #include "readers.h"
 #include "text.h"
@@ -30,22 +31,18 @@ namespace {
 template <class T>
 TriangleMesh<T> read_any(const std::filesystem::path& path, const Progress& progress) {
     const std::string format = format_of(path);
-    using Reader = TriangleMesh<T> (*)(ByteSource&);
-    Reader reader = nullptr;
-    if (format == ".ply") reader = read_ply_mesh<T>;
-    if (format == ".stl") reader = read_stl<T>;
-    if (format == ".obj") reader = read_obj<T>;
-    if (format == ".off") reader = read_off<T>;
-    if (reader != nullptr) {
-        ByteSource file(path, progress);
-        return reader(file);
-    }
-    const std::string extension = lower_case(path.extension().string());
-    if (extension.size() < 2 || !assimp_reads(extension)) {
-        check_readable(path);
-        fail_unknown(path, ".ply .stl .obj .off, each also with .gz, and " + assimp_extensions());
-    }
-    return read_assimp<T>(path, progress);
+    TriangleMesh<T> (*read)(ByteSource&, const std::filesystem::path&) = nullptr;
+    if (format == ".ply") read = [](ByteSource& file, const auto&) { return read_ply_mesh<T>(file); };
+    if (format == ".stl") read = [](ByteSource& file, const auto&) { return read_stl<T>(file); };
+    if (format == ".obj") read = [](ByteSource& file, const auto&) { return read_obj<T>(file); };
+    if (format == ".off") read = [](ByteSource& file, const auto&) { return read_off<T>(file); };
+    if (format == ".gltf" || format == ".glb") read = read_gltf<T>;
+    check_readable(path);
+    if (read == nullptr)
+        fail_unknown(path,
+                     ".ply .stl .obj .off .gltf .glb, each also with .gz: convert the file to one of these");
+    ByteSource file(path, progress);
+    return read(file, path);
 }
 
 /// The writers only need to know that no index is out of range.
@@ -65,7 +62,8 @@ void check_indices(const TriangleMesh<T>& mesh) {
 template <class T>
 TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& options,
                           const Progress& progress) {
-    return validated(detail::read_any<T>(path, progress), path.string(), options);
+    return detail::within_memory(
+        path, [&] { return validated(detail::read_any<T>(path, progress), path.string(), options); });
 }
 
 template <class T>

@@ -12,38 +12,10 @@
 #include <hedgerow/primitives/triangle_mesh.h>
 
 #include "byte_source.h"
+#include "memory.h"
+#include "triangulate.h"
 
 namespace hedgerow::detail {
-
-/// Polygons become fans. Ordinals are kept from the first face on that is no triangle.
-class FaceList {
-public:
-    std::uint64_t face_count() const { return next_; }
-
-    void add(std::span<const std::uint32_t> corners) {
-        if (corners.size() != 3 && !numbered_) {
-            faces_.resize(triangles_.size());
-            std::iota(faces_.begin(), faces_.end(), 0u);
-            numbered_ = true;
-        }
-        for (std::size_t i = 2; i < corners.size(); ++i) {
-            triangles_.push_back({corners[0], corners[i - 1], corners[i]});
-            if (numbered_) faces_.push_back(static_cast<std::uint32_t>(next_));
-        }
-        ++next_;
-    }
-    template <class T>
-    void move_to(TriangleMesh<T>& mesh) {
-        mesh.triangles = std::move(triangles_);
-        mesh.faces = std::move(faces_);
-    }
-
-private:
-    std::vector<TriangleIndices> triangles_;
-    std::vector<std::uint32_t> faces_;
-    std::uint64_t next_ = 0;
-    bool numbered_ = false;
-};
 
 /// Vertices and faces that are 2^32 − 1 or more cannot be named by an index.
 inline constexpr std::uint64_t most_ordinals = 0xFFFFFFFFu;
@@ -53,17 +25,89 @@ inline void check_room(const ByteSource& file, std::uint64_t count, const char* 
         file.fail(std::string("has more than 4294967295 ") + what + ". Split it into several files");
 }
 
+/// Throws InputError if a file cannot hold the `count` things that it declares, each of at least `file_bytes`
+/// bytes in the file, or if they cannot be held in memory, each in `memory_bytes`. Where they take little
+/// memory they are read as far as they go, since the message then names the place where they end.
+inline void check_declared(const ByteSource& file, std::uint64_t count, std::uint64_t file_bytes,
+                           std::uint64_t memory_bytes, const char* what) {
+    check_room(file, count, what);
+    if (count * memory_bytes <= (std::uint64_t(1) << 20)) return;
+    const std::uint64_t left = file.most_left() + 1;  // 1: the last line may have no end
+    if (file_bytes > 0 && count > left / file_bytes)
+        file.fail("promises " + std::to_string(count) + " " + what + ", which take at least " +
+                  std::to_string(file_bytes) + " bytes each, but at most " + std::to_string(left - 1) +
+                  " bytes follow. It was cut off, or the count is wrong: fetch it again");
+    expect_memory(file.name(), "its " + std::to_string(count) + " " + what, count * memory_bytes);
+}
+
+/// Appends to an array that grows as a file is read. Throws InputError before the array outgrows the memory
+/// that is left: a system that overcommits would kill the process later, without a word.
+template <class U>
+void append(const ByteSource& file, std::vector<U>& array, const U& value) {
+    constexpr std::size_t unasked = (std::size_t(1) << 26) / sizeof(U);  // 64 MiB are taken without asking
+    if (array.size() == array.capacity() && array.size() >= unasked) {
+        const std::size_t grown = array.size() + array.size() / 2;
+        expect_memory(file.name(), "more than the " + std::to_string(array.size()) + " entries read so far",
+                      grown * sizeof(U));
+        array.reserve(grown);
+    }
+    array.push_back(value);
+}
+
+/// Polygons become triangles (triangulate.h), once all vertices are known; until then they are kept as fans.
+/// Ordinals are kept from the first face on that is no triangle.
+class FaceList {
+public:
+    explicit FaceList(const ByteSource& file) : file_(file) {}
+
+    std::uint64_t face_count() const { return next_; }
+
+    void add(std::span<const std::uint32_t> corners) {
+        if (corners.size() != 3 && !numbered_) {
+            faces_.resize(triangles_.size());
+            std::iota(faces_.begin(), faces_.end(), 0u);
+            numbered_ = true;
+        }
+        for (std::size_t i = 2; i < corners.size(); ++i) {
+            append(file_, triangles_, TriangleIndices{corners[0], corners[i - 1], corners[i]});
+            if (numbered_) append(file_, faces_, static_cast<std::uint32_t>(next_));
+        }
+        ++next_;
+    }
+    /// Into a mesh that has its vertices.
+    template <class T>
+    void move_to(TriangleMesh<T>& mesh) {
+        for (std::size_t begin = 0, end; begin < faces_.size(); begin = end) {
+            for (end = begin + 1; end < faces_.size() && faces_[end] == faces_[begin];) ++end;
+            if (end - begin < 2) continue;
+            file_.expect_not_cancelled();
+            fill_polygon<T>(std::span(triangles_).subspan(begin, end - begin), mesh.vertices);
+        }
+        mesh.triangles = std::move(triangles_);
+        mesh.faces = std::move(faces_);
+    }
+
+private:
+    const ByteSource& file_;
+    std::vector<TriangleIndices> triangles_;
+    std::vector<std::uint32_t> faces_;
+    std::uint64_t next_ = 0;
+    bool numbered_ = false;
+};
+
 /// One vertex for all corners with the same bits, −0 being 0. An open-addressing hash table, at most half
 /// full.
 template <class T>
 class Welder {
 public:
+    explicit Welder(const ByteSource& file) : file_(file) {}
+
     std::uint32_t vertex(const Vec<T, 3>& corner) {
         if (2 * (vertices_.size() + 1) > slots_.size()) grow();
         const Key key = key_of(corner);
         for (std::size_t s = hash(key) & (slots_.size() - 1);; s = (s + 1) & (slots_.size() - 1)) {
             if (slots_[s] == 0) {
-                vertices_.push_back(corner);
+                append(file_, vertices_, corner);
                 slots_[s] = static_cast<std::uint32_t>(vertices_.size());
                 return slots_[s] - 1;
             }
@@ -92,7 +136,12 @@ private:
         return static_cast<std::size_t>(h);
     }
     void grow() {
-        slots_.assign(slots_.empty() ? 1024 : 2 * slots_.size(), 0);
+        const std::size_t grown = slots_.empty() ? 1024 : 2 * slots_.size();
+        if (grown > (std::size_t(1) << 24))
+            expect_memory(file_.name(), "its more than " + std::to_string(vertices_.size()) + " vertices",
+                          grown * sizeof(slots_[0]));
+        slots_ = std::vector<std::uint32_t>();  // what it held is found again from the vertices
+        slots_.resize(grown);
         for (std::size_t i = 0; i < vertices_.size(); ++i) {
             std::size_t s = hash(key_of(vertices_[i])) & (slots_.size() - 1);
             while (slots_[s] != 0) s = (s + 1) & (slots_.size() - 1);
@@ -100,6 +149,7 @@ private:
         }
     }
 
+    const ByteSource& file_;
     std::vector<Vec<T, 3>> vertices_;
     std::vector<std::uint32_t> slots_;  // 1 + the vertex; 0: free
 };

@@ -9,6 +9,7 @@
 
 #include <hedgerow/error.h>
 
+#include "memory.h"
 #include "npy_format.h"
 #include "text.h"
 
@@ -91,8 +92,10 @@ std::string detail::npy_header(const std::string& dtype, const std::vector<std::
 }
 
 NpyArray load_npy(const std::filesystem::path& path, const Progress& progress) {
-    detail::ByteSource file(path, progress);
-    return detail::read_npy(file);
+    return detail::within_memory(path, [&] {
+        detail::ByteSource file(path, progress);
+        return detail::read_npy(file);
+    });
 }
 
 template <class T>

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "memory.h"
 #include "npy_format.h"
 #include "text.h"
 
@@ -185,7 +186,13 @@ NpyArray read_npy(ByteSource& file) {
     NpyArray array;
     array.dtype = header.dtype;
     array.shape = header.shape;
-    array.bytes = read_elements(file, size_in_bytes(file, header));
+    const std::size_t size = size_in_bytes(file, header);
+    if (size > file.most_left())
+        file.fail_here("the array should have " + std::to_string(size) +
+                       " bytes of elements, but the file ends after at most " +
+                       std::to_string(file.most_left()) + ". It was cut off: fetch it again");
+    expect_memory(file.name(), "its elements", header.fortran && header.shape.size() > 1 ? 2 * size : size);
+    array.bytes = read_elements(file, size);
     if (header.order != std::endian::native && header.item > 1)
         for (std::size_t i = 0; i < array.bytes.size(); i += header.item)
             std::reverse(&array.bytes[i], &array.bytes[i] + header.item);

@@ -53,7 +53,7 @@ private:
             if (!x) fail(shown(number) + " where a coordinate should stand. Repair the file");
             p[i] = *x;
         }
-        mesh_.vertices.push_back(p);
+        append(file_, mesh_.vertices, p);
     }
     void read_face(std::string_view rest) {
         check_room(file_, faces_.face_count(), "faces");
@@ -68,7 +68,7 @@ private:
             if (v < 0 || v >= static_cast<std::int64_t>(most_ordinals))
                 fail("the face names vertex " + std::to_string(*index) + ", but there are only " +
                      std::to_string(count) + " so far. Repair the file");
-            corners_.push_back(static_cast<std::uint32_t>(v));
+            append(file_, corners_, static_cast<std::uint32_t>(v));
         }
         faces_.add(corners_);
     }
@@ -80,7 +80,7 @@ private:
     std::uint64_t line_ = 0, joined_ = 0;
     std::string more_;
     TriangleMesh<T> mesh_;
-    FaceList faces_;
+    FaceList faces_{file_};
     std::vector<std::uint32_t> corners_;
 };
 

@@ -16,16 +16,17 @@ public:
         need_line("header line", 1, 2);
         std::string_view first = rest_;
         const std::string_view keyword = take_word(first);
-        if (keyword.ends_with("OFF")) {
+        if (lower_case(keyword).ends_with("off")) {
             if (keyword.find_first_of("4n") != keyword.npos)
                 fail(shown(keyword) + ": only points in three dimensions are read. Write the file as OFF");
             rest_ = first;
-            if (trimmed(rest_).empty()) need_line("header line", 2, 2);
             if (trimmed(rest_) == "BINARY") fail("binary OFF is not read. Write the file as text");
         } else if (!parse_integer<std::uint64_t>(keyword)) {
             fail("does not begin with 'OFF'. Check the extension");
         }
         const std::uint64_t vertices = count("vertices"), faces = count("faces");
+        check_declared(file_, vertices, 6, sizeof(Vec<T, 3>), "vertices");  // "0 0 0" and the line's end
+        check_declared(file_, faces, 2, sizeof(TriangleIndices), "faces");
         for (std::uint64_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
         for (std::uint64_t i = 0; i < faces; ++i) read_face(i, faces);
         faces_.move_to(mesh_);
@@ -44,10 +45,10 @@ private:
         } while (rest_.empty());
     }
     std::uint64_t count(const char* what) {
+        if (trimmed(rest_).empty()) need_line("header line", 2, 2);
         const std::string_view word = take_word(rest_);
         const auto n = parse_integer<std::uint64_t>(word);
         if (!n) fail(shown(word) + " where the number of " + what + " should stand. Repair the file");
-        check_room(file_, *n, what);
         return *n;
     }
     void read_vertex(std::uint64_t i, std::uint64_t all) {
@@ -59,7 +60,7 @@ private:
             if (!x) fail(shown(word) + " where a coordinate should stand. Repair the file");
             p[k] = *x;
         }
-        mesh_.vertices.push_back(p);
+        append(file_, mesh_.vertices, p);
     }
     void read_face(std::uint64_t i, std::uint64_t all) {
         need_line("face", i, all);
@@ -73,7 +74,7 @@ private:
             if (!v)
                 fail(shown(word) + " where a vertex of face " + std::to_string(i) +
                      " should stand. Repair it");
-            corners_.push_back(*v);
+            append(file_, corners_, *v);
         }
         faces_.add(corners_);
     }
@@ -86,7 +87,7 @@ private:
     std::string_view rest_;
     std::uint64_t line_ = 0;
     TriangleMesh<T> mesh_;
-    FaceList faces_;
+    FaceList faces_{file_};
     std::vector<std::uint32_t> corners_;
 };
 

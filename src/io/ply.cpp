@@ -21,6 +21,16 @@ public:
     void enter(const PlyElement& element) { element_ = &element; }
     void enter(std::uint64_t ordinal) { ordinal_ = ordinal; }
 
+    ByteSource& file() const { return file_; }
+    /// Bytes that an entry of the element takes in the file at least: lists may be empty, words have a
+    /// letter.
+    std::uint64_t least_bytes(const PlyElement& element) const {
+        std::uint64_t bytes = 0;
+        for (const PlyProperty& p : element.properties)
+            bytes += encoding_ == PlyEncoding::ascii ? 2 : size_of(p.count.value_or(p.type));
+        return bytes;
+    }
+
     T real(PlyType type) {
         if (encoding_ == PlyEncoding::ascii) {
             const std::string_view w = word();
@@ -49,10 +59,9 @@ public:
         });
     }
     void skip(PlyType type, std::uint64_t count) {
-        constexpr unsigned sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
         if (encoding_ == PlyEncoding::ascii)
             for (; count > 0; --count) word();
-        else if (!file_.skip(count * sizes[static_cast<int>(type)]))
+        else if (!file_.skip(count * size_of(type)))
             fail_truncated();
     }
     std::uint64_t list_size(PlyType type) {
@@ -67,6 +76,10 @@ public:
     }
 
 private:
+    static std::uint64_t size_of(PlyType type) {
+        constexpr std::uint64_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+        return sizes[static_cast<int>(type)];
+    }
     std::string_view word() {
         const std::string_view w = words_.next();
         if (w.empty()) fail_truncated();
@@ -130,11 +143,16 @@ struct Wanted {
     }
 };
 
-/// Calls take(point, corners) for each of the element's entries, in their order.
+/// Calls take(point, corners) for each of the element's entries, in their order. What is wanted of an entry
+/// takes `memory_bytes`; 0: nothing is.
 template <class T, class F>
-void read_element(PlyValues<T>& values, const PlyElement& element, const Wanted& wanted, F take) {
+void read_element(PlyValues<T>& values, const PlyElement& element, const Wanted& wanted,
+                  std::size_t memory_bytes, F take) {
     values.enter(element);
     if (element.properties.empty()) return;
+    if (memory_bytes > 0)
+        check_declared(values.file(), element.count, values.least_bytes(element), memory_bytes,
+                       element.name == "face" ? "faces" : "vertices");
     std::vector<std::uint32_t> corners;
     for (std::uint64_t i = 0; i < element.count; ++i) {
         values.enter(i);
@@ -148,7 +166,7 @@ void read_element(PlyValues<T>& values, const PlyElement& element, const Wanted&
                     const std::int64_t v = values.integer(p.type);
                     if (v < 0 || v >= static_cast<std::int64_t>(most_ordinals))
                         values.fail("names vertex " + std::to_string(v) + ", which cannot be");
-                    corners.push_back(static_cast<std::uint32_t>(v));
+                    append(values.file(), corners, static_cast<std::uint32_t>(v));
                 }
             } else if (const int axis = wanted.axis_of(k); axis < 3) {
                 point[axis] = values.real(p.type);
@@ -201,20 +219,18 @@ TriangleMesh<T> read_ply_mesh(ByteSource& file) {
     const PlyHeader header = read_ply_header(file);
     PlyValues<T> values(file, header);
     TriangleMesh<T> mesh;
-    FaceList faces;
+    FaceList faces(file);
     for (const PlyElement& element : header.elements) {
         if (element.name == "vertex") {
             const Wanted wanted = coordinates_of(file, element);
             if (element.count > 0) need_axes(file, wanted, 3);
-            check_room(file, element.count, "vertices");
-            read_element(values, element, wanted,
-                         [&](const Vec<T, 3>& p, const auto&) { mesh.vertices.push_back(p); });
+            read_element(values, element, wanted, sizeof(Vec<T, 3>),
+                         [&](const Vec<T, 3>& p, const auto&) { append(file, mesh.vertices, p); });
         } else if (element.name == "face") {
-            check_room(file, element.count, "faces");
-            read_element(values, element, corners_of(file, element),
+            read_element(values, element, corners_of(file, element), sizeof(TriangleIndices),
                          [&](const Vec<T, 3>&, const auto& corners) { faces.add(corners); });
         } else {
-            read_element(values, element, Wanted{}, [](const Vec<T, 3>&, const auto&) {});
+            read_element(values, element, Wanted{}, 0, [](const Vec<T, 3>&, const auto&) {});
         }
     }
     faces.move_to(mesh);
@@ -228,18 +244,17 @@ PointCloud<T, D> read_ply_points(ByteSource& file) {
     PointCloud<T, D> cloud;
     for (const PlyElement& element : header.elements) {
         if (element.name != "vertex") {
-            read_element(values, element, Wanted{}, [](const Vec<T, 3>&, const auto&) {});
+            read_element(values, element, Wanted{}, 0, [](const Vec<T, 3>&, const auto&) {});
             continue;
         }
         const Wanted wanted = coordinates_of(file, element);
         if (element.count > 0) need_axes(file, wanted, D);
-        check_room(file, element.count, "points");
-        read_element(values, element, wanted, [&](const Vec<T, 3>& p, const auto&) {
+        read_element(values, element, wanted, sizeof(Vec<T, D>), [&](const Vec<T, 3>& p, const auto&) {
             if constexpr (D == 3) {
-                cloud.points.push_back(p);
+                append(file, cloud.points, p);
             } else {
                 if (p[2] != 0) values.fail("z is not 0, but the points are read in 2D. Read them in 3D");
-                cloud.points.push_back({p[0], p[1]});
+                append(file, cloud.points, Vec<T, D>(p[0], p[1]));
             }
         });
         break;

@@ -47,8 +47,12 @@ public:
     }
 
 private:
+    static constexpr std::uint64_t most_lines = 65536;
+
     bool next(std::string& line) {
-        ++header_.lines;
+        if (++header_.lines > most_lines)
+            file_.fail("the header has more than " + std::to_string(most_lines) +
+                       " lines. Is this a PLY file?");
         return file_.line(line);
     }
     [[noreturn]] void fail(const std::string& what) const {

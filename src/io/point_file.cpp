@@ -4,6 +4,7 @@
 #include <hedgerow/error.h>
 #include <hedgerow/io/validate.h>
 
+#include "memory.h"
 #include "npy_format.h"
 #include "output_file.h"
 #include "readers.h"
@@ -22,6 +23,8 @@ PointCloud<T, D> read_npy_points(ByteSource& file) {
         file.fail("the array has shape (" + shape + "), but points in " + std::to_string(D) + "D are (N, " +
                   std::to_string(D) + "). Reshape it, or load it with another dimension");
     }
+    expect_memory(file.name(), "its " + std::to_string(array.size()) + " numbers",
+                  2 * array.size() * sizeof(T));
     const std::vector<T> values = array.as<T>();
     PointCloud<T, D> cloud;
     cloud.points.resize(array.shape[0]);
@@ -55,17 +58,27 @@ void write_npy_points(OutputFile& file, const PointCloud<T, D>& cloud) {
 }
 
 template <class T, int D>
-void write_csv_points(OutputFile& file, const PointCloud<T, D>& cloud) {
-    file.write(D == 2 ? "x,y\n" : "x,y,z\n");
+void write_lines(OutputFile& file, const PointCloud<T, D>& cloud, char separator) {
     std::string line;
     for (const Vec<T, D>& p : cloud.points) {
         line.clear();
         for (int i = 0; i < D; ++i) {
-            if (i > 0) line += ',';
+            if (i > 0) line += separator;
             append_number(line, p[i]);
         }
         file.write(line += '\n');
     }
+}
+
+template <class T, int D>
+void write_csv_points(OutputFile& file, const PointCloud<T, D>& cloud) {
+    file.write(D == 2 ? "x,y\n" : "x,y,z\n");
+    write_lines(file, cloud, ',');
+}
+
+template <class T, int D>
+void write_xyz_points(OutputFile& file, const PointCloud<T, D>& cloud) {
+    write_lines(file, cloud, ' ');
 }
 
 }  // namespace
@@ -79,12 +92,15 @@ PointCloud<T, D> load_points(const std::filesystem::path& path, const LoadOption
     if (format == ".ply") read = detail::read_ply_points<T, D>;
     if (format == ".npy") read = detail::read_npy_points<T, D>;
     if (format == ".csv") read = detail::read_csv_points<T, D>;
+    if (format == ".xyz") read = detail::read_xyz_points<T, D>;
     if (read == nullptr) {
         detail::check_readable(path);
-        detail::fail_unknown_points(path, ".ply .npy .csv, each also with .gz");
+        detail::fail_unknown_points(path, ".ply .npy .csv .xyz, each also with .gz");
     }
-    detail::ByteSource file(path, progress);
-    return validated(read(file), path.string(), options);
+    return detail::within_memory(path, [&] {
+        detail::ByteSource file(path, progress);
+        return validated(read(file), path.string(), options);
+    });
 }
 
 template <class T, int D>
@@ -94,7 +110,8 @@ void save_points(const std::filesystem::path& path, const PointCloud<T, D>& clou
     if (extension == ".ply") write = detail::write_ply_points;
     if (extension == ".npy") write = detail::write_npy_points;
     if (extension == ".csv") write = detail::write_csv_points;
-    if (write == nullptr) detail::fail_unknown_points(path, ".ply .npy .csv");
+    if (extension == ".xyz") write = detail::write_xyz_points;
+    if (write == nullptr) detail::fail_unknown_points(path, ".ply .npy .csv .xyz");
     detail::OutputFile file(path);
     write(file, cloud);
     file.commit();

@@ -19,13 +19,9 @@ template <class T>
 TriangleMesh<T> read_obj(ByteSource& file);
 template <class T>
 TriangleMesh<T> read_off(ByteSource& file);
-/// Through Assimp, whose numbers are floats.
+/// Buffers in files of their own are looked for beside `path`.
 template <class T>
-TriangleMesh<T> read_assimp(const std::filesystem::path& path, const Progress& progress);
-/// The extensions that Assimp reads, as ".3ds .dae ...".
-std::string assimp_extensions();
-/// Whether Assimp reads files with this extension (".3ds").
-bool assimp_reads(const std::string& extension);
+TriangleMesh<T> read_gltf(ByteSource& file, const std::filesystem::path& path);
 
 template <class T, int D>
 PointCloud<T, D> read_ply_points(ByteSource& file);
@@ -33,6 +29,9 @@ template <class T, int D>
 PointCloud<T, D> read_npy_points(ByteSource& file);
 template <class T, int D>
 PointCloud<T, D> read_csv_points(ByteSource& file);
+/// `.xyz`: lines that begin with the coordinates; what follows them is skipped.
+template <class T, int D>
+PointCloud<T, D> read_xyz_points(ByteSource& file);
 
 /// Lower-case extension that says the format, without `.gz`.
 std::string format_of(const std::filesystem::path& path);

@@ -5,6 +5,7 @@
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/io/point_file.h>
 
+#include "memory.h"
 #include "npy_format.h"
 #include "ply_header.h"
 #include "readers.h"
@@ -17,7 +18,7 @@ enum class Holds { mesh, points, points2d, index };
 
 Holds look_into(const std::filesystem::path& path) {
     const std::string format = detail::format_of(path);
-    if (format == ".csv") return Holds::points;
+    if (format == ".csv" || format == ".xyz") return Holds::points;
     if (names_index_file(path)) return Holds::index;
     if (format == ".ply") {
         detail::ByteSource file(path);
@@ -58,7 +59,7 @@ Scene<T> load_scene(const std::filesystem::path& path, const LoadOptions& option
         case Holds::points2d:
             return load_points<T, 2>(path, options, progress);
         case Holds::index:
-            return mesh_of(load_index<T>(path).primitives());
+            return detail::within_memory(path, [&] { return mesh_of(load_index<T>(path).primitives()); });
         case Holds::mesh:
             break;
     }

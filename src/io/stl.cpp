@@ -41,15 +41,25 @@ public:
     }
 
 private:
+    /// So many triangles of zeros in a row are no mesh, but a hole in the file: a download that was cut off.
+    static constexpr std::uint32_t most_zeros = 65536;
+
     void read_binary() {
         std::uint32_t count = 0;
         if (!file_.skip(80) || !file_.value(count, std::endian::little))
             file_.fail("is too short for an STL file, which has a header of 84 bytes. Fetch it again");
+        check_declared(file_, count, 50, sizeof(TriangleIndices), "triangles");
+        std::uint32_t zeros = 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             float numbers[12];  // the normal, then three corners
             for (float& x : numbers)
                 if (!file_.value(x, std::endian::little)) fail_truncated(i, count);
             if (!file_.skip(2)) fail_truncated(i, count);
+            zeros = std::all_of(numbers, numbers + 12, [](float x) { return x == 0; }) ? zeros + 1 : 0;
+            if (zeros == most_zeros)
+                file_.fail_here("the " + std::to_string(zeros) +
+                                " triangles before are all zeros: that part " +
+                                "of the file was never written. Fetch it again");
             for (int c = 3; c < 12; c += 3)
                 add_corner(Vec<T, 3>(Vec3f(numbers[c], numbers[c + 1], numbers[c + 2])));
             close_face();
@@ -111,7 +121,7 @@ private:
 
     void add_corner(const Vec<T, 3>& p) {
         check_room(file_, welder_.size(), "vertices");
-        corners_.push_back(welder_.vertex(p));
+        append(file_, corners_, welder_.vertex(p));
     }
     void close_face() {
         check_room(file_, faces_.face_count(), "faces");
@@ -120,8 +130,8 @@ private:
     }
 
     ByteSource& file_;
-    Welder<T> welder_;
-    FaceList faces_;
+    Welder<T> welder_{file_};
+    FaceList faces_{file_};
     std::vector<std::uint32_t> corners_;
 };
 

@@ -11,23 +11,28 @@ namespace hedgerow {
 
 /// Reads a mesh. The extension, in upper or lower case, says how:
 ///
-/// - `.ply`, `.stl`, `.obj`, `.off`, each also with `.gz` behind it, in every variant (PLY ascii, little and
-/// big
-///   endian; STL ascii and binary). Numbers are rounded once, from what the file holds to T, so doubles are
-///   kept. Memory beyond the mesh itself is constant, and no count in a file's header is believed.
-/// - everything else that Assimp knows (glTF, GLB, 3DS, DAE, FBX, ...), the nodes' transforms applied and
-/// every
-///   instance written out. **Assimp rounds all coordinates to float**, whatever T is. It reads whole files
-///   into memory.
+/// - `.ply`, `.stl`, `.obj`, `.off` in every variant (PLY ascii, little and big endian; STL ascii and
+///   binary). Numbers are rounded once, from what the file holds to T, so doubles are kept. Memory beyond the
+///   mesh itself is constant.
+/// - `.gltf`, `.glb`: glTF 2.0, every instance of every mesh written out in the scene's coordinates.
+///   Transforms are in double, rounded once to T. Triangles alone are read; skins, morph targets and
+///   animations are not applied. Buffers lie in the file itself or in its folder. The file is held whole.
 ///
-/// Faces with more than three corners become fans from their first corner. `faces` then holds each triangle's
-/// ordinal of the face in the file (from 0); it is empty if every face is a triangle. A face with fewer than
-/// three corners makes no triangle but is counted. STL has no shared vertices, and Assimp's formats split
-/// them for normals and textures: of both, corners at equal positions (−0 being 0) are joined, so closed
-/// surfaces are closed meshes. Normals, colours, textures and other properties are not read.
+/// Each may have `.gz` behind it. No count in a file is believed: what it declares is held against its size
+/// and the memory that is left.
 ///
-/// `progress` is told of the bytes of the file, about every 256 KiB (for Assimp: at the end). T is float or
-/// double. O(size of the file) time.
+/// Faces with more than three corners become as many triangles as they have corners, less two: fans from
+/// their first corner if they are convex, else what ear clipping makes of them, so that a concave polygon is
+/// filled and nothing beside it. `faces` then holds each triangle's ordinal of the face in the file (from 0);
+/// it is empty if every face is a triangle. A polygon that crosses itself becomes some triangles between its
+/// corners. A face with fewer than three corners makes no triangle but is counted. STL has no shared
+/// vertices, and glTF splits them for normals and textures: of both, corners at equal positions (−0 being 0)
+/// are joined, so closed surfaces are closed meshes. Normals, colours, textures and other properties are not
+/// read.
+///
+/// `progress` is told of the bytes of the file, about every 256 KiB. T is float or double. O(size of the
+/// file) time, but for a concave polygon of n corners O(n log n) if it is drawn as outlines are, O(n²) at
+/// worst.
 ///
 /// Throws InputError, naming the file, the place, what is wrong and what to do, for whatever is wrong with
 /// the file: see also validate.h for what every mesh is held against. Throws Cancelled if `progress` is

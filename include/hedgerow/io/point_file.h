@@ -17,6 +17,7 @@ namespace hedgerow {
 /// empty or
 ///   begin with `#` are skipped. If the first other line does not begin with a number it names the columns,
 ///   and those named x, y (and z) are read; otherwise there must be D columns.
+/// - `.xyz`: the same, but that numbers behind the D coordinates are skipped (normals, colours).
 ///
 /// Numbers are rounded once, from what the file holds to T. T is float or double, D is 2 or 3.
 /// `progress` is told of the bytes of the file, about every 256 KiB. O(size of the file) time.
@@ -27,9 +28,9 @@ template <class T = float, int D = 3>
 PointCloud<T, D> load_points(const std::filesystem::path& path, const LoadOptions& options = {},
                              const Progress& progress = {});
 
-/// Writes points as `.ply` (binary, little endian; z is 0 in 2D), `.npy` or `.csv` (a line of names, then the
-/// shortest decimals that read back to the same T), by way of a file beside `path` that is then renamed.
-/// Throws InputError if the extension is none of these or the path cannot be written.
+/// Writes points as `.ply` (binary, little endian; z is 0 in 2D), `.npy`, `.csv` (a line of names, then the
+/// shortest decimals that read back to the same T) or `.xyz` (those alone), by way of a file beside `path`
+/// that is then renamed. Throws InputError if the extension is none of these or the path cannot be written.
 template <class T, int D>
 void save_points(const std::filesystem::path& path, const PointCloud<T, D>& cloud);
 

@@ -1,0 +1,254 @@
+/// glTF 2.0 scenes (`.gltf`, `.glb`): every instance of every mesh, in the scene's coordinates. Read here and
+/// not by Assimp, which damaged files can kill (docs/design/013-gltf.md).
+#include <algorithm>
+
+#include <hedgerow/error.h>
+#include <hedgerow/geometry/transform.h>
+#include <hedgerow/io/load_options.h>
+
+#include "gltf_accessor.h"
+#include "gltf_file.h"
+#include "memory.h"
+#include "mesh_parts.h"
+#include "readers.h"
+#include "text.h"
+
+namespace hedgerow::detail {
+
+namespace {
+
+using Json = GltfFile::Json;
+
+/// First b, then a. Matrices that are singular are none of a Transform, and allowed here.
+Affine<3> after(const Affine<3>& a, const Affine<3>& b) {
+    Affine<3> both;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            both.linear[i] = both.linear[i] + b.linear[j] * a.linear[i][static_cast<int>(j)];
+    both.shift = a.point(b.shift);
+    return both;
+}
+
+bool mirrors(const Affine<3>& m) {
+    return dot(cross(m.linear[0], m.linear[1]), m.linear[2]) < 0;
+}
+
+/// The rows of translation · rotation · scale; a rotation is a unit quaternion (x, y, z, w).
+Affine<3> from_parts(const std::vector<double>& shift, const std::vector<double>& q,
+                     const std::vector<double>& scale) {
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    const auto twice = [](double a, double b) { return 2 * product(a, b); };
+    Affine<3> m;
+    m.linear[0] = {1 - (twice(y, y) + twice(z, z)), twice(x, y) - twice(z, w), twice(x, z) + twice(y, w)};
+    m.linear[1] = {twice(x, y) + twice(z, w), 1 - (twice(x, x) + twice(z, z)), twice(y, z) - twice(x, w)};
+    m.linear[2] = {twice(x, z) - twice(y, w), twice(y, z) + twice(x, w), 1 - (twice(x, x) + twice(y, y))};
+    for (auto& row : m.linear)
+        for (int k = 0; k < 3; ++k) row[k] *= scale[static_cast<std::size_t>(k)];
+    m.shift = {shift[0], shift[1], shift[2]};
+    return m;
+}
+
+Affine<3> transform_of(const GltfFile& file, const Json& node) {
+    if (const auto m = file.numbers(node, "matrix", 16)) {  // column by column
+        Affine<3> map;
+        for (std::size_t row = 0; row < 3; ++row) map.linear[row] = {(*m)[row], (*m)[row + 4], (*m)[row + 8]};
+        map.shift = {(*m)[12], (*m)[13], (*m)[14]};
+        return map;
+    }
+    using Numbers = std::vector<double>;
+    return from_parts(file.numbers(node, "translation", 3).value_or(Numbers{0, 0, 0}),
+                      file.numbers(node, "rotation", 4).value_or(Numbers{0, 0, 0, 1}),
+                      file.numbers(node, "scale", 3).value_or(Numbers{1, 1, 1}));
+}
+
+/// A mesh, placed by a node.
+struct Placed {
+    std::uint64_t mesh;
+    Affine<3> to_scene;
+};
+
+/// The nodes of a scene that have a mesh, in the order of a walk that takes children in their order. A node
+/// that is reached twice is an error: glTF's nodes are strict trees, so nothing is walked in circles.
+class NodeWalk {
+public:
+    explicit NodeWalk(const GltfFile& file) : file_(file), seen_(file.count("nodes")) {}
+
+    std::vector<Placed> placed() {
+        const Affine<3> identity = from_parts({0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1});
+        push(roots(), identity);
+        std::vector<Placed> meshes;
+        while (!open_.empty()) {
+            const auto [number, to_scene] = open_.back();
+            open_.pop_back();
+            const Json& node = file_.object("nodes", number);
+            if (seen_[static_cast<std::size_t>(number)])
+                file_.fail("node " + std::to_string(number) + " is reached twice, but nodes are trees");
+            seen_[static_cast<std::size_t>(number)] = true;
+            const Affine<3> m = after(to_scene, transform_of(file_, node));
+            if (const auto mesh = file_.number(node, "mesh")) meshes.push_back({*mesh, m});
+            push(ordinals(node, "children"), m);
+        }
+        return meshes;
+    }
+
+private:
+    struct Open {
+        std::uint64_t node;
+        Affine<3> to_scene;
+    };
+
+    void push(const std::vector<std::uint64_t>& nodes, const Affine<3>& to_scene) {
+        if (open_.size() + nodes.size() > seen_.size()) file_.fail("more nodes are named than there are");
+        for (auto n = nodes.rbegin(); n != nodes.rend(); ++n) open_.push_back({*n, to_scene});
+    }
+    std::vector<std::uint64_t> ordinals(const Json& object, const char* key) const {
+        std::vector<std::uint64_t> all;
+        const auto found = object.find(key);
+        if (found == object.end()) return all;
+        if (!found->is_array()) file_.fail(std::string("'") + key + "' is no array");
+        for (const Json& n : *found) {
+            if (!n.is_number_unsigned()) file_.fail(std::string("'") + key + "' holds what is no index");
+            all.push_back(n.get<std::uint64_t>());
+        }
+        return all;
+    }
+    /// The nodes of the default scene; of the first if none is; without scenes the nodes that have no parent.
+    std::vector<std::uint64_t> roots() const {
+        if (file_.count("scenes") > 0)
+            return ordinals(file_.object("scenes", file_.scene().value_or(0)), "nodes");
+        std::vector<bool> child(seen_.size());
+        for (std::size_t i = 0; i < seen_.size(); ++i)
+            for (const std::uint64_t n : ordinals(file_.object("nodes", i), "children"))
+                if (n < child.size()) child[static_cast<std::size_t>(n)] = true;
+        std::vector<std::uint64_t> all;
+        for (std::size_t i = 0; i < child.size(); ++i)
+            if (!child[i]) all.push_back(i);
+        return all;
+    }
+
+    const GltfFile& file_;
+    std::vector<bool> seen_;
+    std::vector<Open> open_;
+};
+
+/// Triangles of a primitive by their corners' ordinals among its indices.
+enum class Mode : std::uint64_t { triangles = 4, strip = 5, fan = 6 };
+
+std::uint64_t triangle_count(Mode mode, std::uint64_t corners) {
+    return mode == Mode::triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
+}
+
+std::array<std::uint64_t, 3> corners_of(Mode mode, std::uint64_t i) {
+    if (mode == Mode::triangles) return {3 * i, 3 * i + 1, 3 * i + 2};
+    if (mode == Mode::fan) return {0, i + 1, i + 2};
+    return i % 2 == 0 ? std::array{i, i + 1, i + 2} : std::array{i + 1, i, i + 2};
+}
+
+template <class T>
+class GltfReader {
+public:
+    GltfReader(ByteSource& source, const std::filesystem::path& path)
+        : source_(source), file_(source, path) {}
+
+    TriangleMesh<T> read() {
+        const std::vector<Placed> meshes = NodeWalk(file_).placed();
+        expect_room(meshes);
+        for (const Placed& p : meshes)
+            for_each_part(p.mesh, [&](const Json& part, Mode mode) { add_part(part, mode, p); });
+        TriangleMesh<T> mesh;
+        mesh.vertices = welder_.take();
+        faces_.move_to(mesh);
+        return mesh;
+    }
+
+private:
+    /// Calls f for each primitive of triangles that has positions.
+    template <class F>
+    void for_each_part(std::uint64_t mesh, F f) {
+        const Json& object = file_.object("meshes", mesh);
+        const auto parts = object.find("primitives");
+        if (parts == object.end() || !parts->is_array())
+            file_.fail("mesh " + std::to_string(mesh) + " has no 'primitives'");
+        for (const Json& part : *parts) {
+            if (!part.is_object())
+                file_.fail("a primitive of mesh " + std::to_string(mesh) + " is no object");
+            const std::uint64_t mode = file_.number_or(part, "mode", 4);
+            if (mode > 6)
+                file_.fail("a primitive has mode " + std::to_string(mode) + ", but modes are 0 to 6");
+            const auto attributes = part.find("attributes");
+            if (attributes == part.end() || !attributes->is_object())
+                file_.fail("a primitive of mesh " + std::to_string(mesh) + " has no 'attributes'");
+            if (mode >= 4 && attributes->contains("POSITION")) f(part, static_cast<Mode>(mode));
+        }
+    }
+    std::uint64_t corner_count(const Json& part) const {
+        const auto indices = file_.number(part, "indices");
+        const std::uint64_t accessor =
+            indices ? *indices : file_.needed_number(part.at("attributes"), "POSITION");
+        return file_.needed_number(file_.object("accessors", accessor), "count");
+    }
+    /// A few bytes can name a mesh many times: what comes of it is counted before any of it is read.
+    void expect_room(const std::vector<Placed>& meshes) {
+        std::uint64_t triangles = 0;
+        for (const Placed& p : meshes)
+            for_each_part(p.mesh, [&](const Json& part, Mode mode) {
+                triangles += std::min(triangle_count(mode, corner_count(part)), most_ordinals);
+                check_room(source_, triangles, "triangles, all instances written out");
+            });
+        expect_memory(file_.name(),
+                      "its " + std::to_string(triangles) + " triangles, all instances written out,",
+                      triangles * sizeof(TriangleIndices));
+    }
+    void add_part(const Json& part, Mode mode, const Placed& placed) {
+        const GltfAccessor positions(file_, file_.needed_number(part.at("attributes"), "POSITION"), 3);
+        std::optional<GltfAccessor> indices;
+        if (const auto number = file_.number(part, "indices")) {
+            indices.emplace(file_, *number, 1);
+            if (indices->is_float() || indices->is_signed())
+                file_.fail("the indices of a primitive are of a type that indices cannot have");
+        }
+        const std::uint64_t corners = indices ? indices->size() : positions.size();
+        if (mode == Mode::triangles && corners % 3 != 0)
+            file_.fail("a primitive of triangles has " + std::to_string(corners) +
+                       " corners, which is no multiple of 3");
+        const bool mirrored = mirrors(placed.to_scene);  // turn what the mirror turned, so fronts stay fronts
+        for (std::uint64_t i = 0; i < triangle_count(mode, corners); ++i) {
+            if (i % 65536 == 0) source_.expect_not_cancelled();
+            std::array<std::uint32_t, 3> triangle{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint64_t corner = corners_of(mode, i)[k];
+                triangle[k] = vertex(positions, indices ? index(*indices, corner) : corner, placed.to_scene);
+            }
+            if (mirrored) std::swap(triangle[0], triangle[2]);
+            faces_.add(triangle);
+        }
+    }
+    static std::uint64_t index(const GltfAccessor& indices, std::uint64_t corner) {
+        return static_cast<std::uint64_t>(indices.value(corner, 0));
+    }
+    std::uint32_t vertex(const GltfAccessor& positions, std::uint64_t i, const Affine<3>& to_scene) {
+        if (i >= positions.size())
+            file_.fail("face " + std::to_string(faces_.face_count()) + " names vertex " + std::to_string(i) +
+                       ", but its mesh has only " + std::to_string(positions.size()));
+        check_room(source_, welder_.size(), "vertices");
+        const Vec3d p = to_scene.point(positions.point(i));
+        return welder_.vertex({rounded<T>(p[0]), rounded<T>(p[1]), rounded<T>(p[2])});
+    }
+
+    ByteSource& source_;
+    GltfFile file_;
+    Welder<T> welder_{source_};
+    FaceList faces_{source_};
+};
+
+}  // namespace
+
+template <class T>
+TriangleMesh<T> read_gltf(ByteSource& file, const std::filesystem::path& path) {
+    return GltfReader<T>(file, path).read();
+}
+
+template TriangleMesh<float> read_gltf(ByteSource&, const std::filesystem::path&);
+template TriangleMesh<double> read_gltf(ByteSource&, const std::filesystem::path&);
+
+}  // namespace hedgerow::detail

@@ -1,0 +1,215 @@
+/// The container, the JSON and the buffers of glTF 2.0 (Khronos Group 2021, ISO/IEC 12113).
+#include "gltf_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <hedgerow/error.h>
+
+#include "gltf_uri.h"
+#include "json_text.h"
+#include "memory.h"
+#include "text.h"
+
+namespace hedgerow::detail {
+
+namespace {
+
+std::uint32_t little32(std::string_view bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+    return value;
+}
+
+/// All that is left of a file.
+std::string read_all(ByteSource& file) {
+    std::string bytes;
+    while (!file.at_end()) {
+        const std::string_view ahead = file.ahead();
+        if (bytes.size() + ahead.size() > bytes.capacity() && bytes.size() >= (std::size_t(1) << 26))
+            expect_memory(file.name(), "more than " + std::to_string(bytes.size()) + " bytes",
+                          2 * bytes.capacity());
+        bytes.append(ahead);
+        file.skip(ahead.size());
+    }
+    return bytes;
+}
+
+/// The first `most` bytes of a file that is never compressed, or all of it.
+std::string first_bytes(const std::filesystem::path& path, std::uint64_t most) {
+    check_readable(path);
+    const std::uint64_t size = std::min<std::uint64_t>(std::filesystem::file_size(path), most);
+    expect_memory(path.string(), "its bytes", size);
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(bytes.data(), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    return bytes;
+}
+
+/// Extensions that say how a scene looks or moves, and nothing about where its triangles are.
+bool leaves_geometry_alone(const std::string& extension) {
+    constexpr std::string_view beginnings[] = {"KHR_materials_",      "KHR_texture_", "EXT_texture_",
+                                               "MSFT_texture_",       "KHR_lights_",  "EXT_lights_",
+                                               "KHR_animation_",      "KHR_xmp",      "KHR_techniques_",
+                                               "KHR_node_visibility", "MSFT_packing_"};
+    return extension == "KHR_mesh_quantization" ||  // which the accessors read
+           std::any_of(std::begin(beginnings), std::end(beginnings),
+                       [&](std::string_view b) { return extension.starts_with(b); });
+}
+
+const nlohmann::json empty_array = nlohmann::json::array();
+
+}  // namespace
+
+GltfFile::GltfFile(ByteSource& file, std::filesystem::path path)
+    : path_(std::move(path)), name_(path_.string()) {
+    container_ = read_all(file);
+    const bool is_container = container_.starts_with("glTF");
+    std::string_view text = is_container ? json_of_container() : std::string_view(container_);
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    root_ = parse_json(text, name_);
+    if (!is_container) container_ = std::string();
+    expect_known();
+    buffers_.resize(count("buffers"));
+}
+
+std::string_view GltfFile::json_of_container() {
+    const std::string_view bytes = container_;
+    if (bytes.size() < 20) fail("ends in its header of 20 bytes");
+    if (const auto version = little32(bytes, 4); version != 2)
+        fail("is a container of version " + std::to_string(version) + ", but only 2 is read");
+    if (little32(bytes, 8) > bytes.size())
+        fail("should be " + std::to_string(little32(bytes, 8)) + " bytes long, but has " +
+             std::to_string(bytes.size()) + ": it was cut off");
+    std::optional<std::string_view> json;
+    for (std::size_t at = 12; at + 8 <= little32(bytes, 8);) {
+        const std::size_t size = little32(bytes, at);
+        if (size > bytes.size() - at - 8)
+            fail("has a chunk of " + std::to_string(size) + " bytes at byte " + std::to_string(at) +
+                 ", which is longer than the file");
+        const std::string_view type = bytes.substr(at + 4, 4), body = bytes.substr(at + 8, size);
+        if (type == "JSON" && !json) json = body;
+        if (type == std::string_view("BIN\0", 4) && !binary_) binary_ = body;
+        at += 8 + size;
+    }
+    if (!json) fail("has no chunk of JSON");
+    return *json;
+}
+
+void GltfFile::expect_known() {
+    if (!root_.is_object()) fail("is JSON, but no glTF: there is no object at its root");
+    const auto asset = root_.find("asset");
+    if (asset == root_.end() || !asset->is_object() || !asset->contains("version") ||
+        !(*asset)["version"].is_string())
+        fail("has no asset.version, so it is no glTF 2.0");
+    const std::string version = (*asset)["version"];
+    if (!version.starts_with("2.")) fail("is glTF " + shown(version) + ", but only 2.0 is read");
+    for (const Json& extension : array("extensionsRequired"))
+        if (!extension.is_string() || !leaves_geometry_alone(extension))
+            fail("requires the extension " + shown(extension.is_string() ? std::string(extension) : "?") +
+                 ", which is not read. Export it without (uncompressed, instances as nodes)");
+}
+
+const GltfFile::Json& GltfFile::array(const char* key) const {
+    const auto found = root_.find(key);
+    if (found == root_.end()) return empty_array;
+    if (!found->is_array()) fail(std::string("'") + key + "' is no array");
+    return *found;
+}
+
+const GltfFile::Json& GltfFile::object(const char* key, std::uint64_t i) const {
+    const Json& all = array(key);
+    if (i >= all.size())
+        fail(std::string("something names number ") + std::to_string(i) + " of its " + key +
+             ", but there are only " + std::to_string(all.size()));
+    const Json& found = all[static_cast<std::size_t>(i)];
+    if (!found.is_object())
+        fail(std::string("number ") + std::to_string(i) + " of its " + key + " is no object");
+    return found;
+}
+
+std::optional<std::uint64_t> GltfFile::number(const Json& object, const char* key) const {
+    const auto found = object.find(key);
+    if (found == object.end()) return std::nullopt;
+    if (found->is_number_unsigned()) return found->get<std::uint64_t>();
+    const double x = found->is_number_float() ? found->get<double>() : -1;  // 3.0, as some exporters write
+    if (!(x >= 0) || x > 0x1p53 || x != std::floor(x))
+        fail(std::string("'") + key + "' is no whole number where one should stand");
+    return static_cast<std::uint64_t>(x);
+}
+
+std::uint64_t GltfFile::needed_number(const Json& object, const char* key) const {
+    const auto found = number(object, key);
+    if (!found) fail(std::string("'") + key + "' is missing");
+    return *found;
+}
+
+std::optional<std::vector<double>> GltfFile::numbers(const Json& object, const char* key,
+                                                     std::size_t count) const {
+    const auto found = object.find(key);
+    if (found == object.end()) return std::nullopt;
+    if (!found->is_array() || found->size() != count)
+        fail(std::string("'") + key + "' is no array of " + std::to_string(count) + " numbers");
+    std::vector<double> values;
+    for (const Json& x : *found) {
+        if (!x.is_number() || !std::isfinite(x.get<double>()))
+            fail(std::string("'") + key + "' holds what is no number");
+        values.push_back(x.get<double>());
+    }
+    return values;
+}
+
+std::string_view GltfFile::bytes(std::uint64_t view, std::uint64_t offset, std::uint64_t size) {
+    const Json& v = object("bufferViews", view);
+    const std::string_view whole = buffer(needed_number(v, "buffer"));
+    const std::uint64_t begin = number_or(v, "byteOffset", 0), length = needed_number(v, "byteLength");
+    const std::string place = "buffer view " + std::to_string(view);
+    if (begin > whole.size() || length > whole.size() - begin)
+        fail(place + " is of " + std::to_string(length) + " bytes from byte " + std::to_string(begin) +
+             " on, but its buffer has " + std::to_string(whole.size()));
+    if (offset > length || size > length - offset)
+        fail("an accessor needs " + std::to_string(size) + " bytes from byte " + std::to_string(offset) +
+             " of " + place + " on, which has " + std::to_string(length));
+    return whole.substr(static_cast<std::size_t>(begin + offset), static_cast<std::size_t>(size));
+}
+
+std::uint64_t GltfFile::stride(std::uint64_t view) const {
+    return number_or(object("bufferViews", view), "byteStride", 0);
+}
+
+std::string_view GltfFile::buffer(std::uint64_t i) {
+    const Json& description = object("buffers", i);
+    Buffer& held = buffers_[static_cast<std::size_t>(i)];
+    if (held.read) return held.bytes;
+    const std::uint64_t size = needed_number(description, "byteLength");
+    const std::string_view all = find_bytes(i, description, held.own);
+    if (all.size() < size)
+        fail("buffer " + std::to_string(i) + " should have " + std::to_string(size) + " bytes, but has " +
+             std::to_string(all.size()) + ": it was cut off");
+    held.bytes = all.substr(0, static_cast<std::size_t>(size));  // without padding
+    held.read = true;
+    return held.bytes;
+}
+
+std::string_view GltfFile::find_bytes(std::uint64_t i, const Json& description, std::string& own) const {
+    const auto uri = description.find("uri");
+    if (uri == description.end()) {
+        if (i != 0 || !binary_)
+            fail("buffer " + std::to_string(i) + " has no 'uri' and no chunk of a container");
+        return *binary_;
+    }
+    if (!uri->is_string()) fail("the 'uri' of buffer " + std::to_string(i) + " is no text");
+    const auto& text = uri->get_ref<const std::string&>();
+    own = is_data_uri(text) ? bytes_of_data_uri(text, name_)
+                            : first_bytes(file_of_uri(text, path_.parent_path(), name_),
+                                          needed_number(description, "byteLength"));
+    return own;
+}
+
+void GltfFile::fail(const std::string& what) const {
+    throw InputError(name_ + ": " + what + ". Repair the file, or export it again");
+}
+
+}  // namespace hedgerow::detail

@@ -1,0 +1,23 @@
+/// What a glTF file's URIs may name.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace hedgerow::detail {
+
+inline bool is_data_uri(std::string_view uri) {
+    return uri.starts_with("data:");
+}
+
+/// The bytes of `data:...;base64,...`. Throws InputError, naming `name`, for what is not base64.
+std::string bytes_of_data_uri(std::string_view uri, const std::string& name);
+
+/// The file in `folder` (or in a folder of it) that a relative URI names. Throws InputError, naming `name`,
+/// for schemes, absolute paths, `..`, and links that lead out of the folder.
+std::filesystem::path file_of_uri(std::string_view uri, const std::filesystem::path& folder,
+                                  const std::string& name);
+
+}  // namespace hedgerow::detail

@@ -1,0 +1,342 @@
+/// Ear clipping with exact signs.
+#include "triangulate.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include <hedgerow/geometry/box.h>
+
+#include "orientation.h"
+
+namespace hedgerow::detail {
+
+namespace {
+
+using Point = Vec<double, 2>;
+using Corner = std::uint32_t;
+
+bool before(const Point& p, const Point& q) {
+    return p[0] < q[0] || (p[0] == q[0] && p[1] < q[1]);
+}
+
+/// Boxes over the corners that do not turn inwards: a balanced kd-tree of all corners, whose shape stays as
+/// corners are taken out.
+class BoxTree {
+public:
+    explicit BoxTree(const std::vector<Point>& points)
+        : points_(points),
+          in_(points.size()),
+          order_(points.size()),
+          place_(points.size()),
+          first_leaf_(std::bit_ceil((points.size() + leaf_size - 1) / leaf_size)),
+          boxes_(2 * first_leaf_) {
+        std::iota(order_.begin(), order_.end(), 0u);
+        divide(0, first_leaf_ * leaf_size);
+        for (std::size_t k = 0; k < order_.size(); ++k) place_[order_[k]] = static_cast<Corner>(k);
+    }
+
+    void set(Corner i, bool in) {
+        if (in_[i] == in) return;
+        in_[i] = in;
+        std::size_t node = first_leaf_ + place_[i] / leaf_size;
+        boxes_[node] = box_of_leaf(node);
+        while (node >>= 1) {
+            boxes_[node] = boxes_[2 * node];
+            boxes_[node].expand(boxes_[2 * node + 1]);
+        }
+    }
+    /// Whether `test` is true of any corner in a box that `enters` is true of.
+    template <class Enters, class Test>
+    bool any(Enters enters, Test test) const {
+        std::size_t stack[64], size = 0;  // a path holds two nodes a level at most
+        stack[size++] = 1;
+        while (size > 0) {
+            const std::size_t node = stack[--size];
+            if (boxes_[node].empty() || !enters(boxes_[node])) continue;
+            if (node < first_leaf_) {
+                stack[size++] = 2 * node + 1;
+                stack[size++] = 2 * node;
+                continue;
+            }
+            for (const Corner i : corners_of(node))
+                if (in_[i] && test(i)) return true;
+        }
+        return false;
+    }
+
+private:
+    static constexpr std::size_t leaf_size = 8;
+
+    /// Sorts places begin to end, of which those beyond the last corner are empty, so that each half lies on
+    /// one side of a line.
+    void divide(std::size_t begin, std::size_t end) {
+        const std::size_t middle = (begin + end) / 2, last = std::min(end, order_.size());
+        if (end - begin <= leaf_size || begin >= last) return;
+        const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+        Box<double, 2> box;
+        for (std::size_t k = begin; k < last; ++k) box.expand(points_[order_[k]]);
+        const int axis = box.extent()[1] > box.extent()[0] ? 1 : 0;
+        if (middle < last)
+            std::nth_element(at(begin), at(middle), at(last),
+                             [&](Corner a, Corner b) { return points_[a][axis] < points_[b][axis]; });
+        divide(begin, middle);
+        divide(middle, end);
+    }
+    std::span<const Corner> corners_of(std::size_t leaf) const {
+        const std::size_t begin = std::min((leaf - first_leaf_) * leaf_size, order_.size());
+        return std::span(order_).subspan(begin, std::min(leaf_size, order_.size() - begin));
+    }
+    Box<double, 2> box_of_leaf(std::size_t leaf) const {
+        Box<double, 2> box;
+        for (const Corner i : corners_of(leaf))
+            if (in_[i]) box.expand(points_[i]);
+        return box;
+    }
+
+    const std::vector<Point>& points_;
+    std::vector<bool> in_;
+    std::vector<Corner> order_, place_;
+    std::size_t first_leaf_;
+    std::vector<Box<double, 2>> boxes_;
+};
+
+/// A first-in-first-out list of corners.
+class Queue {
+public:
+    void push(Corner i) { corners_.push_back(i); }
+    bool empty() const { return first_ == corners_.size(); }
+    Corner pop() { return corners_[first_++]; }
+
+private:
+    std::vector<Corner> corners_;
+    std::size_t first_ = 0;
+};
+
+/// Cuts the ears of a polygon that lies counterclockwise.
+class EarClipper {
+public:
+    explicit EarClipper(const std::vector<Point>& points)
+        : points_(points),
+          size_(points.size()),
+          next_(size_),
+          previous_(size_),
+          kind_(size_, Kind::outward),
+          tree_(points) {
+        for (std::size_t i = 0; i < size_; ++i) {
+            next_[i] = static_cast<Corner>((i + 1) % size_);
+            previous_[i] = static_cast<Corner>((i + size_ - 1) % size_);
+        }
+    }
+
+    /// Calls triangle(a, b, c) points.size() − 2 times.
+    template <class F>
+    void run(F triangle) {
+        for (Corner i = 0; i < size_; ++i) tree_.set(i, turn_at(i) <= 0);
+        for (Corner i = 0; i < size_; ++i) sort(i);
+        std::size_t left = size_;
+        Corner last = 0;
+        for (; left > 3; --left) {
+            const auto i = choose();
+            if (!i) break;
+            triangle(previous_[*i], *i, next_[*i]);
+            last = next_[*i];
+            cut(*i);
+        }
+        // Three corners are a triangle; what is left where nothing turns inwards becomes a fan.
+        for (Corner i = next_[last]; next_[i] != last; i = next_[i]) triangle(last, i, next_[i]);
+    }
+
+private:
+    /// A corner on the line between its neighbours is flat; one where the boundary turns back, or does not
+    /// move, is a spike.
+    enum class Kind : std::uint8_t { inward, blocked, flat, spike, outward, gone };
+    /// A corner that turns inwards, with its neighbours then: what it leaves is an edge between them. The
+    /// shortest goes first, and whether it is an ear is only asked then: slivers that reach across the
+    /// polygon are held against much of its boundary.
+    struct Candidate {
+        double length2;
+        Corner corner, previous, next;
+        bool operator<(const Candidate& other) const {  // as a heap wants it: the first to go is the largest
+            return std::tie(other.length2, other.corner) < std::tie(length2, corner);
+        }
+    };
+
+    int turn_at(Corner i) const { return turn(points_[previous_[i]], points_[i], points_[next_[i]]); }
+
+    /// Puts a corner where it will be looked for.
+    void sort(Corner i) {
+        const int t = turn_at(i);
+        const Corner p = previous_[i], n = next_[i];
+        kind_[i] = t > 0 ? Kind::inward : t < 0 ? Kind::outward : is_between(i) ? Kind::flat : Kind::spike;
+        if (t > 0) candidates_.push({length2(points_[n] - points_[p]), i, p, n});
+        if (kind_[i] == Kind::flat) flat_.push(i);
+        if (kind_[i] == Kind::spike) spikes_.push(i);
+    }
+    void cut(Corner i) {
+        const Corner p = previous_[i], n = next_[i];
+        next_[p] = n, previous_[n] = p;
+        kind_[i] = Kind::gone;
+        tree_.set(i, false);
+        for (const Corner k : {p, n}) tree_.set(k, turn_at(k) <= 0);
+        for (const Corner k : {p, n}) sort(k);
+    }
+
+    /// Of three corners on one line.
+    bool is_between(Corner i) const {
+        const Point &a = points_[previous_[i]], &b = points_[i], &c = points_[next_[i]];
+        return (before(a, b) && before(b, c)) || (before(c, b) && before(b, a));
+    }
+
+    /// Spikes have no area and go first, flat corners last: an ear beside one has an area.
+    std::optional<Corner> choose() {
+        if (const auto spike = front(spikes_, Kind::spike)) return spike;
+        while (!candidates_.empty()) {
+            const Candidate c = candidates_.top();
+            candidates_.pop();
+            if (kind_[c.corner] != Kind::inward || previous_[c.corner] != c.previous ||
+                next_[c.corner] != c.next)
+                continue;  // it was sorted again since
+            if (!is_blocked(c.corner)) return c.corner;
+            kind_[c.corner] = Kind::blocked;
+            blocked_.push(c.corner);
+        }
+        if (const auto flat = front(flat_, Kind::flat)) return flat;
+        return freed();
+    }
+    /// The first corner of a list that is still of its kind.
+    std::optional<Corner> front(Queue& queue, Kind kind) const {
+        while (!queue.empty())
+            if (const Corner i = queue.pop(); kind_[i] == kind) return i;
+        return std::nullopt;
+    }
+    /// A blocked corner that has become an ear since, or else any. Only boundaries that touch or cross
+    /// themselves come here, so only so many corners are looked at again.
+    std::optional<Corner> freed() {
+        std::vector<Corner> still;
+        std::optional<Corner> found;
+        while (!found && looked_again_ < 8 * size_) {
+            const auto i = front(blocked_, Kind::blocked);
+            if (!i) break;
+            ++looked_again_;
+            if (is_blocked(*i))
+                still.push_back(*i);
+            else
+                found = i;
+        }
+        for (const Corner i : still) blocked_.push(i);
+        return found ? found : front(blocked_, Kind::blocked);
+    }
+
+    bool is_blocked(Corner b) const {
+        const Corner a = previous_[b], c = next_[b];
+        const Point &pa = points_[a], &pb = points_[b], &pc = points_[c];
+        Box<double, 2> around;
+        around.expand(pa).expand(pb).expand(pc);
+        const auto enters = [&](const Box<double, 2>& box) {
+            for (int k = 0; k < 2; ++k)
+                if (box.low[k] > around.high[k] || box.high[k] < around.low[k]) return false;
+            return reaches(box, pa, pb) && reaches(box, pb, pc) && reaches(box, pc, pa);
+        };
+        return tree_.any(enters,
+                         [&](Corner q) { return q != a && q != b && q != c && blocks(q, pa, pb, pc); });
+    }
+    /// Whether a part of a box is not to the right of the line from a to b.
+    static bool reaches(const Box<double, 2>& box, const Point& a, const Point& b) {
+        const Point farthest(b[1] > a[1] ? box.low[0] : box.high[0], b[0] > a[0] ? box.high[1] : box.low[1]);
+        return turn(a, b, farthest) >= 0;
+    }
+    /// Whether the boundary comes into the triangle at q. On the triangle's own edges it may pass by; the
+    /// third side, which is to become an edge, must be free.
+    bool blocks(Corner q, const Point& a, const Point& b, const Point& c) const {
+        const Point& p = points_[q];
+        const int ab = turn(a, b, p), bc = turn(b, c, p), ca = turn(c, a, p);
+        if (ab < 0 || bc < 0 || ca < 0) return false;
+        if (ab > 0 && bc > 0) return true;
+        const auto comes_in = [&](const Point& neighbour) {
+            return (ab > 0 || turn(a, b, neighbour) > 0) && (bc > 0 || turn(b, c, neighbour) > 0) &&
+                   (ca > 0 || turn(c, a, neighbour) > 0);
+        };
+        return comes_in(points_[previous_[q]]) || comes_in(points_[next_[q]]);
+    }
+
+    const std::vector<Point>& points_;
+    std::size_t size_, looked_again_ = 0;
+    std::vector<Corner> next_, previous_;
+    std::vector<Kind> kind_;
+    BoxTree tree_;
+    std::priority_queue<Candidate> candidates_;
+    Queue spikes_, flat_, blocked_;
+};
+
+/// Whether every corner turns to the left, and the boundary goes around once: it goes up and down in x (in y
+/// where x is the same) once each.
+bool is_convex(const std::vector<Point>& points) {
+    const std::size_t n = points.size();
+    const auto rises = [&](std::size_t i) { return before(points[i % n], points[(i + 1) % n]); };
+    int changes = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (turn(points[i], points[(i + 1) % n], points[(i + 2) % n]) <= 0) return false;
+        changes += rises(i) != rises(i + 1);
+    }
+    return changes == 2;
+}
+
+/// Newell's normal: twice the areas of the polygon's projections along the axes (Sutherland et al. 1974).
+Vec3d newell_normal(const std::vector<Vec3d>& corners) {
+    Vec3d normal;
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        normal = normal + cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    return normal;
+}
+
+/// The polygon without the axis in which its normal is longest, counterclockwise; nothing where it has none.
+std::optional<std::vector<Point>> projected(std::vector<Vec3d>& corners) {
+    double largest = 0;
+    for (const Vec3d& p : corners)
+        for (int k = 0; k < 3; ++k) {
+            if (!(std::abs(p[k]) <= largest_coordinate<double>)) return std::nullopt;
+            largest = std::max(largest, std::abs(p[k]));
+        }
+    const double scale = scale_to_one(largest);
+    for (Vec3d& p : corners) p = p * scale;
+    const Vec3d normal = newell_normal(corners);
+    int axis = 0;
+    for (int k = 1; k < 3; ++k)
+        if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+    if (normal[axis] == 0) return std::nullopt;
+    const int x = (axis + (normal[axis] > 0 ? 1 : 2)) % 3, y = 3 - axis - x;
+    std::vector<Point> points;
+    points.reserve(corners.size());
+    for (const Vec3d& p : corners) points.push_back({p[x], p[y]});
+    return points;
+}
+
+}  // namespace
+
+template <class T>
+void fill_polygon(std::span<TriangleIndices> fan, std::span<const Vec<T, 3>> vertices) {
+    std::vector<std::uint32_t> names{fan[0][0], fan[0][1]};
+    for (const TriangleIndices& t : fan) names.push_back(t[2]);
+    std::vector<Vec3d> corners;
+    corners.reserve(names.size());
+    for (const std::uint32_t v : names) {
+        if (v >= vertices.size()) return;
+        corners.push_back(Vec3d(vertices[v]));
+    }
+    const auto points = projected(corners);
+    if (!points || is_convex(*points)) return;
+    auto next = fan.begin();
+    EarClipper(*points).run([&](Corner a, Corner b, Corner c) { *next++ = {names[a], names[b], names[c]}; });
+}
+
+template void fill_polygon(std::span<TriangleIndices>, std::span<const Vec3f>);
+template void fill_polygon(std::span<TriangleIndices>, std::span<const Vec3d>);
+
+}  // namespace hedgerow::detail
