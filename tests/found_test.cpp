@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "hunter/answers.h"
+#include "hunter/oracle.h"
 
 using namespace hedgerow;
 using namespace hedgerow::hunter;
@@ -26,6 +27,47 @@ TEST(Found, RaysFromFarAwayVisitACellOfAGridOnce) {
         EXPECT_GE(visits.nodes, 8u) << spec;
     }
     EXPECT_TRUE(as_brute_force("grid:resolution=20", shapes, ray));
+}
+
+// ---- Overlaps with boxes, before they were exact (docs/design/013-exact-overlaps.md)
+
+TEST(Found, Round1x7) {
+    const std::vector<Triangle<double, 3>> shapes = {
+        {{0, 0, -0x1.6e1f9b5e323a9p-22},
+         {0, 0x1p-19, -0x1.6e1f9b5e323a8p-22},
+         {-0x1.666666p-22, 0, -0x1.6e1f9b5e323a8p-22}},
+    };
+    const Ray<double, 3> question = {{0, 0x1.54ae24p-20, -0x1.6e1f9b5e323a6p-22}, {0, 0, -0x1.8p-73}, 0, 1};
+    EXPECT_TRUE(as_brute_force("grid:resolution=33,skip_empty=on", shapes, question));
+}
+TEST(Found, Round1x7InATwoLevelGrid) {
+    const std::vector<Triangle<double, 3>> shapes = {
+        {{0x1.333334p-22, 0, -0x1.6e1f9b5e323a9p-22},
+         {0x1p-21, 0x1p-19, -0x1.6e1f9b5e323a8p-22},
+         {-0x1.666666p-22, 0x1.8p-20, -0x1.6e1f9b5e323a8p-22}},
+        {{0, 0, 0}, {0, 0x1p-20, -0x1.6e1f9cp-22}, {0, 0, 0}},
+    };
+    const Ray<double, 3> question = {
+        {0x1.7dfdfp-22, 0x1.54ae24p-20, -0x1.6e1f9b5e323a6p-22}, {0, 0, -0x1.8p-73}, 0, 1};
+    EXPECT_TRUE(as_brute_force("two-level-grid", shapes, question));
+}
+TEST(Found, Round1x7ByExactArithmetic) {
+    const std::vector<Triangle<double, 3>> shapes = {
+        {{0x1.3333333333335p-22, -0x1p-21, -0x1.6e1f9b5e323a9p-22},
+         {0x1.0000000000001p-21, 0x1p-19, -0x1.6e1f9b5e323a8p-22},
+         {-0x1.6666666666666p-22, 0x1.8p-20, -0x1.6e1f9b5e323a8p-22}},
+    };
+    const Box<double, 3> question = {{0x1.33598p-23, 0x1p-20, -0x1.6e1f9b5e323a9p-22},
+                                     {0x1.ccccccccccccep-22, 0x1.0007f4p-20, -0x1.6e1f9b5e323a6p-22}};
+    EXPECT_TRUE(is_exact(shapes[0], question));
+}
+TEST(Found, Round1x1) {
+    const std::vector<Sphere<double, 3>> shapes = {
+        {{0, -0x1.999999999999bp-2, -0x1.a7769b69feb6p+152}, 0x1.a7769b69feb6p+152},
+    };
+    const Box<double, 3> question = {{-0x1.2c1999999999bp+8, 0x1.cccccccccccccp-1, -0x1.47ea5ea76cc84p-360},
+                                     {0x1.999999999999bp-4, 0x1.5e26666666664p+9, 0x1.cfd5efc46b1dp+335}};
+    EXPECT_TRUE(is_exact(shapes[0], question));
 }
 
 }  // namespace

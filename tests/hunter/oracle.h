@@ -115,4 +115,15 @@ std::string wrong(const Triangle<T, 3>& tri, const Ray<T, 3>& ray, const std::op
     return "a triangle that the ray crosses well inside is not hit";
 }
 
+/// Whether a shape's overlap with a box, or a triangle's meeting with a ray, is right.
+template <class Shape, class T, int D>
+bool is_exact(const Shape& shape, const Box<T, D>& box) {
+    return overlap(shape, box) == rational::overlap(shape, box);
+}
+template <class T>
+bool is_exact(const Triangle<T, 3>& tri, const Ray<T, 3>& ray) {
+    const auto meeting = meet_watertight(ray, tri);
+    return wrong(tri, ray, meeting ? std::optional(meeting->t) : std::nullopt).empty();
+}
+
 }  // namespace hedgerow::hunter

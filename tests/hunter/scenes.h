@@ -89,12 +89,13 @@ void turn_and_turn_back(std::vector<Shape>& shapes, double angle) {
     }
 }
 
-/// Of 1 to 64 shapes: drawn one by one, around a common corner, the same one again, a wall.
+/// Of 1 to 64 shapes, now and then 1024: drawn one by one, around a common corner, the same one again, a
+/// wall.
 template <class Shape, class T, int D>
 std::vector<Shape> scene(Places<T, D>& places) {
     Random& random = places.random();
     std::vector<Shape> shapes;
-    const auto digits = random.bits() % 7;
+    const auto digits = random.bits() % 7 + (random.bits() % 32 == 0 ? 4 : 0);
     const std::size_t count = 1 + random.bits() % (std::size_t(1) << digits);
     const std::uint64_t kind = random.bits() % 6;
     const Vec<T, D> corner = places();
