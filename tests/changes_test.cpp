@@ -266,6 +266,30 @@ TYPED_TEST(OfEveryStructure, WhatCannotBePartedMakesNoDepthBomb) {
     expect_bounded<TypeParam::template Structure>("segments through one point", star);
 }
 
+/// Neighbours that follow each other make a chain, if each is only put beside the last.
+TEST(BvhChanges, InsertionsInTheOrderOfPlacesMakeNoChains) {
+    const auto mesh = turned_stadium<float>(5000);
+    auto index = build<Bvh>(mesh);
+    const auto nodes = [&] {
+        Visits visits;
+        for (const auto& ray : Questions(index, 1000).rays) closest_hit(index, ray, KeepAll{}, visits);
+        return double(visits.nodes);
+    };
+    const double before = nodes();
+    const auto n = static_cast<PrimitiveId>(mesh.size());
+    for (PrimitiveId first = 0; first < n; first += n / 20) {
+        const PrimitiveId last = std::min(n, first + n / 20);
+        for (PrimitiveId id = first; id < last; ++id) ASSERT_TRUE(index.erase(mesh, id));
+        for (PrimitiveId id = first; id < last; ++id) ASSERT_TRUE(index.insert(mesh, id));
+        if (first == 0) {
+            EXPECT_LT(nodes(), 1.4 * before);
+        }
+    }
+    EXPECT_EQ(index.validate(), "");
+    EXPECT_LT(nodes(), 2 * before);
+    EXPECT_LT(index.structure().depth(), 48);
+}
+
 TYPED_TEST(OfEveryStructure, GrowsOverWhatLiesBeyondItsBounds) {
     using T = typename TypeParam::Scalar;
     Both<TypeParam::template Structure, PointCloud<T, 3>> both(points<T>(500));

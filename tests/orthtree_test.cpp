@@ -84,6 +84,25 @@ TEST(Orthtree, IsTheSameForAnyNumberOfThreads) {
     expect_same(points2d<double>(50000));
 }
 
+/// Arrays that doubled when they were full, and groups that were never given back, made it half more and all.
+TYPED_TEST(OfEveryScalar, MemoryFollowsWhatIsHeld) {
+    const auto mesh = soup<TypeParam>(20000);
+    auto tree = Orthtree<TypeParam, 3>::build(mesh.view(), {}, serial_executor());
+    const std::size_t bytes = tree.bytes(), items = tree.item_count();
+    for (PrimitiveId round = 0; round < 3; ++round) {
+        for (PrimitiveId i = 0; i < 2000; ++i) ASSERT_TRUE(tree.erase(mesh.view(), 10 * i + round));
+        for (PrimitiveId i = 0; i < 2000; ++i) ASSERT_TRUE(tree.insert(mesh.view(), 10 * i + round));
+        EXPECT_LT(double(tree.bytes()), 1.3 * double(bytes)) << round;
+        EXPECT_LT(double(tree.item_count()), 1.1 * double(items)) << round;
+    }
+    for (PrimitiveId id = 10; id < mesh.size(); ++id) ASSERT_TRUE(tree.erase(mesh.view(), id));
+    EXPECT_EQ(tree.validate(mesh.view()), "");
+    EXPECT_LT(tree.bytes(), 32768u);
+    for (PrimitiveId id = 10; id < mesh.size(); ++id) ASSERT_TRUE(tree.insert(mesh.view(), id));
+    EXPECT_EQ(tree.validate(mesh.view()), "");
+    EXPECT_LT(double(tree.bytes()), 1.3 * double(bytes));
+}
+
 // ---- What a change costs
 
 /// Nodes opened and items looked at, a change, over inserting and then erasing points in a tree of n.

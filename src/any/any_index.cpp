@@ -11,11 +11,14 @@ const std::vector<StructureInfo>& structure_list() {
                                       "where a primitive is entered: cells that it meets, or its box"};
     static const OptionInfo budget = {"budget", "BYTES", "8e9",
                                       "a build that would take more memory is refused"};
+    static const char* const fewer_cells = "beyond so many items a primitive there are fewer cells";
+    static const char* const longer_leaves = "beyond so many items a primitive cells are not divided";
     static const OptionInfo empty_bonus = {"empty_bonus", "0..0.99", "0.2",
                                            "how much less a plane costs that cuts off empty space"};
     static const std::vector<OptionInfo> of_orthtrees = {
         {"leaf_size", "COUNT", "8", "cells of no more primitives are leaves"},
         {"max_depth", "0..32", "20", "how often the first cell may be halved"},
+        {"items_per_primitive", "NUMBER", "32", longer_leaves},
         mailbox};
     static const std::vector<StructureInfo> list = {
         {"brute-force",
@@ -27,6 +30,7 @@ const std::vector<StructureInfo>& structure_list() {
           {"heuristic", "density|roots", "density", "roots: 3 cube roots of n along each axis"},
           {"resolution", "0..1024 (2D: 32768)", "0", "cells on the longest axis; 0: by the heuristic"},
           insert,
+          {"items_per_primitive", "NUMBER", "32", fewer_cells},
           budget,
           mailbox,
           {"skip_empty", "on|off", "on", "rays pass over a block of empty cells in one step"}}},
@@ -39,6 +43,7 @@ const std::vector<StructureInfo>& structure_list() {
           {"resolution", "0..1024 (2D: 32768)", "0",
            "of the first level, on the longest axis; 0: by the heuristic"},
           insert,
+          {"items_per_primitive", "NUMBER", "64", fewer_cells},
           budget,
           mailbox}},
         {"kdtree",
@@ -48,6 +53,8 @@ const std::vector<StructureInfo>& structure_list() {
            "cells of no more primitives are leaves; 0: 1 where costs decide, else 4"},
           {"max_depth", "0..64", "0", "0: 8 + 1.3 log2(n)"},
           {"bins", "2..256", "32", "of the binned builder"},
+          {"items_per_primitive", "NUMBER", "0",
+           "beyond so many cells are not divided; 0: 16 where costs decide, else 64"},
           {"traversal_cost", "NUMBER", "4", "of an inner node, for the SAH"},
           {"intersection_cost", "NUMBER", "1", "of a primitive, for the SAH"},
           empty_bonus,
@@ -64,6 +71,7 @@ const std::vector<StructureInfo>& structure_list() {
          {{"leaf_size", "COUNT", "1", "cells of no more primitives are leaves"},
           {"max_depth", "0..64", "0", "0: 8 + 1.3 log2(n)"},
           {"samples", "COUNT", "32", "in larger cells, so many primitives suggest planes"},
+          {"items_per_primitive", "NUMBER", "16", longer_leaves},
           {"traversal_cost", "NUMBER", "4", "of an inner node across an axis, for the SAH"},
           {"plane_cost", "NUMBER", "6", "of one with any other plane"},
           {"intersection_cost", "NUMBER", "1", "of a primitive"},

@@ -96,6 +96,8 @@ private:
     std::vector<std::string_view> known_;
 };
 
+inline constexpr double most_items_per_primitive = 1e9;
+
 template <class T, int D>
 void read_options(OptionReader& in, typename BruteForce<T, D>::Options& o,
                   std::type_identity<BruteForce<T, D>>) {
@@ -111,6 +113,7 @@ void read_options(OptionReader& in, typename KdTree<T, D>::Options& o, std::type
     in.number<std::uint32_t>("leaf_size", o.leaf_size, 0, 1u << 20);
     in.number("max_depth", o.max_depth, 0, KdTree<T, D>::max_depth);
     in.number("bins", o.bins, 2, KdBinnedPlanes<T, D>::most_bins);
+    in.number("items_per_primitive", o.items_per_primitive, 0.0, most_items_per_primitive);
     in.number("traversal_cost", o.costs.traversal_cost, 0.0, 1e6);
     in.number("intersection_cost", o.costs.intersection_cost, 1e-6, 1e6);
     in.number("empty_bonus", o.costs.empty_bonus, 0.0, 0.99);
@@ -128,6 +131,7 @@ inline void read_resolution(OptionReader& in, GridResolution& o, int least, int 
 template <class Options>
 void read_entering(OptionReader& in, Options& o) {
     in.choice<GridInsert>("insert", o.insert, {{"exact", GridInsert::exact}, {"box", GridInsert::box}});
+    in.number("items_per_primitive", o.items_per_primitive, 1.0, most_items_per_primitive);
     in.number("budget", o.budget, 1e3, 1e15);
     in.flag("mailbox", o.mailbox);
 }
@@ -148,6 +152,7 @@ template <class T, int D>
 void read_options(OptionReader& in, typename Orthtree<T, D>::Options& o, std::type_identity<Orthtree<T, D>>) {
     in.number<std::uint32_t>("leaf_size", o.leaf_size, 1, 1u << 20);
     in.number("max_depth", o.max_depth, 0, Orthtree<T, D>::deepest_option);
+    in.number("items_per_primitive", o.items_per_primitive, 1.0, most_items_per_primitive);
     in.flag("mailbox", o.mailbox);
 }
 template <class T, int D>
@@ -155,6 +160,7 @@ void read_options(OptionReader& in, typename BspTree<T, D>::Options& o, std::typ
     in.number<std::uint32_t>("leaf_size", o.leaf_size, 0, 1u << 20);
     in.number("max_depth", o.max_depth, 0, BspTree<T, D>::max_depth);
     in.number<std::uint32_t>("samples", o.samples, 1, 1u << 20);
+    in.number("items_per_primitive", o.items_per_primitive, 1.0, most_items_per_primitive);
     in.number("traversal_cost", o.costs.traversal_cost, 0.0, 1e6);
     in.number("plane_cost", o.costs.plane_cost, 0.0, 1e6);
     in.number("intersection_cost", o.costs.intersection_cost, 1e-6, 1e6);

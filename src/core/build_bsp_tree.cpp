@@ -1,5 +1,6 @@
 /// The BSP builder, compiled once for all sets.
 #include <hedgerow/structures/bsp/cutter.h>
+#include <hedgerow/structures/item_limit.h>
 
 namespace hedgerow {
 
@@ -9,8 +10,10 @@ CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>& references, Cor
     const int deepest =
         std::min(bsp_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(references.size()));
     const BspCutter<T, D> cutter(corners, options, margin);
-    return CutTreeGrowth<BspNode<T, D>, BspCutter<T, D>>(cutter, deepest, executor)
-        .grow(cutter.root(references));
+    const std::uint64_t most = most_items(options.items_per_primitive, references.size());
+    return CutTreeGrowth<BspNode<T, D>, BspCutter<T, D>>(cutter, deepest, most, executor).grow([&] {
+        return cutter.root(references);
+    });
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T and D are arguments of templates

@@ -1,4 +1,5 @@
 /// The list of kd-tree builders, compiled once for all sets.
+#include <hedgerow/structures/item_limit.h>
 #include <hedgerow/structures/kdtree/builders/binned.h>
 #include <hedgerow/structures/kdtree/builders/build.h>
 #include <hedgerow/structures/kdtree/builders/plain.h>
@@ -13,10 +14,14 @@ CutTree<KdNode<T>> build_kd_tree(KdCell<T, D> root, PartIn<T, D> part_in, const 
         std::min(kd_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(root.inside.size()));
     const bool by_cost = options.builder == KdBuilder::sah || options.builder == KdBuilder::binned;
     const std::uint32_t leaf_size = options.leaf_size > 0 ? options.leaf_size : (by_cost ? 1 : 4);
+    const double items_per_primitive =
+        options.items_per_primitive != 0 ? options.items_per_primitive : (by_cost ? 16 : 64);
+    const std::uint64_t most = most_items(items_per_primitive, root.inside.size());
     const auto grow = [&]<class Planes>(const Planes& planes) {
         const KdCutter<T, D, Planes> cutter(part_in, planes, cell_margin(root.box));
-        return CutTreeGrowth<KdNode<T>, KdCutter<T, D, Planes>>(cutter, deepest, executor)
-            .grow(cutter.root(std::move(root), executor));
+        return CutTreeGrowth<KdNode<T>, KdCutter<T, D, Planes>>(cutter, deepest, most, executor).grow([&] {
+            return cutter.root(root, executor);
+        });
     };
     switch (options.builder) {
         case KdBuilder::binned:

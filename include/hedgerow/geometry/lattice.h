@@ -41,6 +41,14 @@ struct Lattice {
         return lattice;
     }
 
+    /// Half as many cells over the same box, along each axis.
+    template <std::floating_point T>
+    Lattice halved(const Box<T, D>& box) const {
+        Cell fewer = resolution;
+        for (auto& r : fewer) r = (r + 1) / 2;
+        return over(box, fewer);
+    }
+
     /// Cells are numbered by bricks of 4³ (in the plane 8²), and bricks by blocks of as many bricks: the 64
     /// cells of a brick, and bricks of a block, fit the bits of a word.
     static constexpr int brick_bits = D == 3 ? 2 : 3;

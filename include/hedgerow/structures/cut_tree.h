@@ -1,6 +1,7 @@
 /// What kd-trees and BSP trees share: how their nodes lie, and the recursion that grows them.
 #pragma once
 
+#include <atomic>
 #include <optional>
 
 #include <hedgerow/queries/concepts.h>
@@ -85,54 +86,78 @@ struct GrowingCutTree {
 };
 
 /// Grows a tree top down. `Cutter` has a `Cell` with `size()` and `for_each_id(f)`, `choose(cell, depth) ->
-/// std::optional<plane>` (none: a leaf) and `cut(cell, plane) -> std::pair<Cell, Cell>`, which may use the
-/// cell up. The tree is the same however many threads build it.
+/// std::optional<plane>` (none: a leaf) and `cut(cell, plane) -> std::pair<Cell, Cell>`. The tree is the same
+/// however many threads build it.
+///
+/// A tree that would have more items than the limit is abandoned and grown again by rations: the cells that a
+/// plane makes share the items that their parent may have, in proportion to their primitives, and a cell
+/// whose two sides would together have more becomes a leaf. So a tree within the limit is what it would be
+/// without one, and any other takes at most about twice the time that its items explain.
 template <class Node, class Cutter>
 class CutTreeGrowth {
 public:
     using Cell = typename Cutter::Cell;
     using Tree = GrowingCutTree<Node>;
 
-    CutTreeGrowth(const Cutter& cutter, int deepest, Executor& executor)
-        : cutter_(cutter), deepest_(deepest), executor_(executor) {}
+    /// The limit must be at least the primitives.
+    CutTreeGrowth(const Cutter& cutter, int deepest, std::uint64_t most_items, Executor& executor)
+        : cutter_(cutter), deepest_(deepest), most_items_(most_items), executor_(executor) {}
 
-    CutTree<Node> grow(Cell root) {
+    /// `root()` gives the first cell. It is called again where the limit is passed.
+    template <class Root>
+    CutTree<Node> grow(Root root) {
         Tree tree;
-        grow(std::move(root), 1, tree);
+        grow(root(), most_items_, 1, tree);
+        if (items_ > most_items_) {
+            tree = {};
+            rationed_ = true;
+            grow(root(), most_items_, 1, tree);
+        }
         return std::move(tree).packed();
     }
 
 private:
-    void grow(Cell cell, int depth, Tree& tree) {
+    void grow(Cell cell, std::uint64_t ration, int depth, Tree& tree) {
+        if (!rationed_ && items_ > most_items_) return;
         tree.depth = std::max(tree.depth, depth);
         const auto plane = depth < deepest_ ? cutter_.choose(cell, depth) : std::nullopt;
         if (!plane) return add_leaf(cell, tree);
+        auto [low, high] = cutter_.cut(cell, *plane);
+        const std::uint64_t items = std::uint64_t(low.size()) + high.size();
+        if (rationed_ && items > ration) return add_leaf(cell, tree);
+        const double each =
+            static_cast<double>(ration) / static_cast<double>(std::max<std::uint64_t>(items, 1));
+        const auto low_ration = static_cast<std::uint64_t>(each * low.size());
+        const std::uint64_t high_ration = ration - low_ration;
 
         const auto at = tree.nodes.size();
         tree.nodes.push_back(Node::inner(*plane));
         const bool large = cell.size() > 4096;
-        auto [low, high] = cutter_.cut(cell, *plane);
         cell = {};
         if (large) {
             Tree high_tree;
-            executor_.both([&, &side = low] { grow(std::move(side), depth + 1, tree); },
-                           [&, &side = high] { grow(std::move(side), depth + 1, high_tree); });
+            executor_.both([&, &side = low] { grow(std::move(side), low_ration, depth + 1, tree); },
+                           [&, &side = high] { grow(std::move(side), high_ration, depth + 1, high_tree); });
             tree.nodes[at].set_link(static_cast<std::uint32_t>(tree.nodes.size()));
             tree.append(high_tree);
         } else {
-            grow(std::move(low), depth + 1, tree);
+            grow(std::move(low), low_ration, depth + 1, tree);
             tree.nodes[at].set_link(static_cast<std::uint32_t>(tree.nodes.size()));
-            grow(std::move(high), depth + 1, tree);
+            grow(std::move(high), high_ration, depth + 1, tree);
         }
     }
     void add_leaf(const Cell& cell, Tree& tree) {
         tree.nodes.push_back(Node::leaf(static_cast<std::uint32_t>(tree.items.size()), cell.size()));
         cell.for_each_id([&](PrimitiveId id) { tree.items.push_back(id); });
+        items_ += cell.size();
     }
 
     const Cutter& cutter_;
     int deepest_;
+    std::uint64_t most_items_;
     Executor& executor_;
+    std::atomic<std::uint64_t> items_{0};  // of all leaves so far
+    bool rationed_ = false;
 };
 
 /// What is asked of kd-trees and BSP trees alike, as structures over a set.

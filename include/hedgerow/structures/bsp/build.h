@@ -22,6 +22,10 @@ struct BspOptions {
     std::uint32_t leaf_size = 1;
     /// 0: by the number of primitives (usual_depth).
     int max_depth = 0;
+    /// The tree has at most so many items for each primitive. Where planes only repeat primitives, as in a
+    /// fan of slivers, cells are then left whole: the build and its memory have a bound, and such leaves are
+    /// long. Meshes need 2.6.
+    double items_per_primitive = 16;
     /// In cells of more primitives than this, so many suggest planes.
     std::uint32_t samples = 32;
     /// Off only to show what it brings.

@@ -4,6 +4,7 @@
 #include <hedgerow/geometry/polytope.h>
 #include <hedgerow/structures/bsp/build.h>
 #include <hedgerow/structures/cells.h>
+#include <hedgerow/structures/kdtree/builders/sweep.h>
 
 namespace hedgerow {
 
@@ -23,6 +24,12 @@ struct BspPart {
         }
         return {low, high};
     }
+    /// From where to where it reaches along an axis.
+    std::pair<double, double> reach(int axis) const {
+        double low = corners[0][axis], high = low;
+        for (const auto& c : corners) low = std::min(low, c[axis]), high = std::max(high, c[axis]);
+        return {low, high};
+    }
     /// What lies on one side (sign 1: low, −1: high) or within the plane's margin of it. A box stays whole.
     BspPart side(const CutPlane<D>& plane, double sign) const {
         if (!exact) return *this;
@@ -37,10 +44,11 @@ struct BspPart {
     }
 };
 
-/// Candidates are planes across the axes (at equal steps, and in small cells at the bounds of every part) and
-/// planes that the geometry itself suggests: of a triangle, and through its edges upright on it (Ize, Wald,
-/// Parker, RT 2008). Their cost is the SAH with the surfaces of the two convex parts of the cell. In large
-/// cells only `samples` of the primitives suggest.
+/// Candidates are planes across the axes at the bounds of every part, and planes that the geometry itself
+/// suggests: of a triangle, and through its edges upright on it (Ize, Wald, Parker, RT 2008). Their cost is
+/// the SAH with the surfaces of the two convex parts of the cell. In cells of more than `samples` primitives
+/// only so many suggest planes; there the sweep of the kd-tree finds the best plane across each axis over all
+/// bounds, as if the cell were a box.
 ///
 /// What comes within a fourth of a plane's margin counts as on it; a primitive wholly on it stands on the low
 /// side only, since a probe takes a plane to be as thick as its margin. A plane across an axis has no
@@ -86,7 +94,7 @@ public:
         if (!(whole > 0)) return std::nullopt;
         const auto offer = [&](const Plane& plane) { weigh(cell, whole, plane, best); };
         const bool small = cell.size() <= samples_;
-        if (!small) offer_steps(cell, offer);
+        if (!small) offer_sweep(cell, offer);
         const std::uint32_t stride = small ? 1 : cell.size() / samples_;
         for (std::uint32_t i = 0; i < cell.size(); i += stride) offer_around(cell, cell.inside[i], offer);
         return best.plane;
@@ -156,32 +164,48 @@ private:
         const auto [low, high] = cell.shape.cut(plane);
         const double low_share = low.surface() / whole, high_share = high.surface() / whole;
         if (!(low_share > 0 && high_share > 0)) return;  // it passes by the cell
+        // A plane along a face that parts no primitives changes nothing. The next cell would choose it again.
+        constexpr double all = 1 - 1e-9;
+        if ((on_low == 0 && high_share >= all) || (on_high == 0 && low_share >= all)) return;
         const double cost =
             node + product(costs_.intersection_cost * bonus, low_share * on_low + high_share * on_high);
         if (cost < best.cost) best = {candidate, cost};
     }
 
+    /// Places across an axis just outside of a part, so that it is on one side of a plane there.
+    std::pair<T, T> beside(const BspPart<D>& part, int axis) const {
+        const auto [low, high] = part.reach(axis);
+        return {static_cast<T>(low - 1.5 * margin_), static_cast<T>(high + 1.5 * margin_)};
+    }
+    /// Of each axis the plane that the kd-tree would choose. O(n log n).
     template <class Offer>
-    static void offer_steps(const Cell& cell, Offer offer) {
-        constexpr int steps = 16;
-        for (int axis = 0; axis < D; ++axis)
-            for (int i = 1; i < steps; ++i) {
-                const double f = double(i) / steps;
-                offer(Plane::across(axis,
-                                    static_cast<T>(cell.box.low[axis] * (1 - f) + cell.box.high[axis] * f)));
+    void offer_sweep(const Cell& cell, Offer offer) const {
+        const KdCosts costs{costs_.traversal_cost, costs_.intersection_cost, costs_.empty_bonus};
+        const Box<double, D> bounds = intersection(cell.shape.bounds(), cell.box);
+        const Box<T, D> box{Vec<T, D>(bounds.low), Vec<T, D>(bounds.high)};
+        std::vector<KdEvent<T>> events;
+        events.reserve(2 * cell.inside.size());
+        for (int axis = 0; axis < D; ++axis) {
+            events.clear();
+            for (std::uint32_t i = 0; i < cell.size(); ++i) {
+                const auto [low, high] = beside(cell.inside[i], axis);
+                events.emplace_back(low, i, true);
+                events.emplace_back(high, i, false);
             }
+            std::sort(events.begin(), events.end());
+            KdBest<T> best;
+            sweep_events(events, cell.size(), KdAxisCosts<T, D>(costs, box, axis), best);
+            if (best.cost < std::numeric_limits<double>::infinity())
+                offer(Plane::across(axis, best.plane.position));
+        }
     }
     /// The planes that a part suggests.
     template <class Offer>
     void offer_around(const Cell& cell, const BspPart<D>& part, Offer offer) const {
         for (int axis = 0; axis < D; ++axis) {
-            double low = part.corners[0][axis], high = low;
-            for (const auto& c : part.corners) low = std::min(low, c[axis]), high = std::max(high, c[axis]);
-            // A little outside, so that the part is on one side.
-            const double beside = 1.5 * margin_;
-            if (low - beside > cell.box.low[axis]) offer(Plane::across(axis, static_cast<T>(low - beside)));
-            if (high + beside < cell.box.high[axis])
-                offer(Plane::across(axis, static_cast<T>(high + beside)));
+            const auto [low, high] = beside(part, axis);
+            if (static_cast<double>(low) > cell.box.low[axis]) offer(Plane::across(axis, low));
+            if (static_cast<double>(high) < cell.box.high[axis]) offer(Plane::across(axis, high));
         }
         if (const auto corners = corners_(part.id)) for_each_plane_through(*corners, offer);
     }

@@ -43,9 +43,12 @@ struct BvhEdits {
 
 /// An insertion goes down to where a new leaf costs the least by the SAH: at each node, over all of it or in
 /// the child whose boxes grow the least (Goldsmith and Salmon 1987, greedily as Catto, Dynamic bounding
-/// volume hierarchies, GDC 2019). An erasure looks into each child whose box meets the primitive's, and joins
-/// what is left. Where a tree would grow too deep, the lowest subtree is built anew that is more than twice
-/// as high as a balanced one (as in scapegoat trees, Galperin and Rivest 1993): O(log n) amortized.
+/// volume hierarchies, GDC 2019). On the way back each node exchanges a child with a grandchild where that
+/// makes the other child's box smaller (tree rotations: Kensler 2008), so that primitives that are inserted
+/// in the order of their places make no chain. An erasure looks into each child whose box meets the
+/// primitive's, and joins what is left. Where a tree would grow too deep, the lowest subtree is built anew
+/// that is more than twice as high as a balanced one (as in scapegoat trees, Galperin and Rivest 1993): O(log
+/// n) amortized.
 template <std::floating_point T, int D>
 class BvhEditor {
 public:
@@ -74,8 +77,9 @@ public:
             Node& n = tree_.nodes[path[i].node];
             n.boxes.set(path[i].child, merged(n.boxes[path[i].child], box));
             set_height(path[i].node);
+            rotate(path[i].node);
         }
-        if (height_of(tree_.root) >= bvh_max_depth) balance(path);
+        while (height_of(tree_.root) >= bvh_max_depth) balance(highest_path());
     }
     /// From a tree that holds each primitive once, or from one that may hold its parts.
     template <PrimitiveSet P, class Count>
@@ -202,6 +206,30 @@ private:
         return {{node, 0}, merged(a.box, b.box)};
     }
 
+    /// Exchanges one child with a child of the other where that lessens the other's area the most.
+    void rotate(std::uint32_t node) {
+        Node& n = tree_.nodes[node];
+        double best = 0;
+        int from = -1, with = 0;  // the child whose own child is exchanged, and which of them
+        for (int i = 0; i < 2; ++i) {
+            if (n.child[i].leaf()) continue;
+            const Node& below = tree_.nodes[n.child[i].first];
+            for (int k = 0; k < 2; ++k) {
+                const double less = area(n.boxes[i]) - area(merged(n.boxes[1 - i], below.boxes[1 - k]));
+                if (less > best) best = less, from = i, with = k;
+            }
+        }
+        if (from < 0) return;
+        Node& below = tree_.nodes[n.child[from].first];
+        const Box<T, D> down = n.boxes[1 - from], up = below.boxes[with];
+        std::swap(n.child[1 - from], below.child[with]);
+        n.boxes.set(1 - from, up);
+        below.boxes.set(with, down);
+        n.boxes.set(from, merged(down, below.boxes[1 - with]));
+        set_height(n.child[from].first);
+        set_height(node);
+    }
+
     /// The box of what is left.
     template <PrimitiveSet P>
     Box<T, D> erase_from_leaf(const P& set, NodeRef& ref, const Box<T, D>& whole, PrimitiveId id,
@@ -224,6 +252,16 @@ private:
         return left;
     }
 
+    /// Places from the root down to the lowest leaf.
+    std::vector<Place> highest_path() const {
+        std::vector<Place> path = {{nobody, 0}};
+        for (NodeRef ref = tree_.root; !ref.leaf();) {
+            const auto& child = tree_.nodes[ref.first].child;
+            path.push_back({ref.first, height_of(child[1]) > height_of(child[0])});
+            ref = child[path.back().child];
+        }
+        return path;
+    }
     /// Builds the lowest subtree on the path anew that is too high for its leaves.
     void balance(const std::vector<Place>& path) {
         std::vector<Part> leaves;

@@ -1,8 +1,14 @@
 /// Which cells of a lattice primitives are entered in.
 #pragma once
 
+#include <limits>
+#include <optional>
+#include <utility>
+
 #include <hedgerow/structures/cells.h>
 #include <hedgerow/structures/grid/cell_rows.h>
+#include <hedgerow/structures/grid/resolution.h>
+#include <hedgerow/structures/item_limit.h>
 
 namespace hedgerow {
 
@@ -24,23 +30,21 @@ public:
     /// The same for another lattice.
     CellEntering within(const Lattice<D>& inner) const { return {set_, inner, insert_, margin_}; }
 
-    /// Calls f(cell) for each cell of the lattice, whose outermost stand for what lies beyond. A row of cells
-    /// that a box reaches is reached by what spans the box: only where it spans several along two axes does
-    /// the primitive itself have to be asked.
+    /// Calls f(cell) for each cell of the lattice, whose outermost stand for what lies beyond, until f
+    /// returns false. A row of cells that a box reaches is reached by what spans the box: only where it spans
+    /// several along two axes does the primitive itself have to be asked.
     template <class F>
     void for_each(PrimitiveId id, const Box<T, D>& box, F f) const {
         const auto [first, last] = reached(box);
-        if (first == last) return f(first);
+        if (first == last) return void(f(first));
         int spanned = 0;
         for (std::size_t a = 0; a < D; ++a) spanned += first[a] != last[a];
         if (spanned == 1 || insert_ == GridInsert::box) {
-            for_each_cell(first, last, [&](const Cell& cell) { return f(cell), true; });
+            for_each_cell(first, last, f);
         } else {
             const auto stands = stands_in(set_, id);
-            for_each_cell(first, last, [&](const Cell& cell) {
-                if (stands(enlarged_cell(cell))) f(cell);
-                return true;
-            });
+            for_each_cell(first, last,
+                          [&](const Cell& cell) { return !stands(enlarged_cell(cell)) || f(cell); });
         }
     }
     /// The bounds of what stands in a cell of a primitive that is entered there.
@@ -79,42 +83,87 @@ private:
     T margin_;
 };
 
+/// How many entries may be made from, listed, sorted and kept, in so many bytes.
+inline std::uint64_t entries_within(double budget) {
+    return static_cast<std::uint64_t>(std::min(4294967295.0, std::max(0.0, budget / 24)));
+}
 /// Throws InputError when so many entries would take more than `budget` bytes to build from.
 inline void refuse_beyond(double budget, std::uint64_t entries) {
-    const double bytes = 24.0 * static_cast<double>(entries);  // listed, sorted, and kept
-    if (bytes > budget || entries > 0xFFFFFFFFu)
-        throw InputError("the grid would take more than " + std::to_string(bytes * 1e-6) +
+    if (entries > entries_within(budget))
+        throw InputError("the grid would take more than " +
+                         std::to_string(24e-6 * static_cast<double>(entries)) +
                          " MB to build, and its budget is " + std::to_string(budget * 1e-6) +
                          ": lower its density or resolution, or raise the budget");
 }
 
-/// Where all primitives are entered, in pieces that follow each other by id. Throws InputError when building
-/// from them would take more than `budget` bytes.
+/// Where primitives are entered, in pieces that follow each other by id.
+using EntryPieces = std::vector<std::vector<CellEntry>>;
+
+/// Where all primitives are entered; nothing if that would be more than `most` entries. Throws InputError
+/// when building from them would take more than `budget` bytes.
 template <PrimitiveSet P>
-std::vector<std::vector<CellEntry>> entries_of(const P& set, const CellEntering<P>& entering,
-                                               const Lattice<P::dimension>& lattice, double budget,
-                                               Executor& executor) {
+std::optional<EntryPieces> entries_of(const P& set, const CellEntering<P>& entering,
+                                      const Lattice<P::dimension>& lattice, std::uint64_t most, double budget,
+                                      Executor& executor) {
     constexpr std::size_t grain = 4096;
-    std::vector<std::vector<CellEntry>> pieces((set.size() + grain - 1) / grain);
+    const std::uint64_t stop = std::min(most, entries_within(budget));
+    EntryPieces pieces((set.size() + grain - 1) / grain);
     std::atomic<std::uint64_t> entered{0};
     executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             auto& piece = pieces[p];
             piece.reserve(2 * grain);
+            std::size_t counted = 0;
+            const auto few_enough = [&] {
+                entered += piece.size() - std::exchange(counted, piece.size());
+                return entered <= stop;
+            };
             const std::size_t last = std::min(set.size(), (p + 1) * grain);
-            for (std::size_t i = p * grain; i < last; ++i) {
-                const std::size_t before = piece.size();
+            for (std::size_t i = p * grain; i < last && entered <= stop; ++i) {
                 const auto id = static_cast<PrimitiveId>(i);
                 entering.for_each(id, set.bounds(i), [&](const auto& cell) {
                     piece.push_back({lattice.number(cell), id});
-                    if (((piece.size() - before) & 0xFFFFu) == 0)
-                        refuse_beyond(budget, entered + piece.size());
+                    return piece.size() - counted < grain || few_enough();
                 });
             }
-            refuse_beyond(budget, entered += piece.size());
+            few_enough();
         }
     });
-    return pieces;
+    if (entered <= stop) return pieces;
+    if (stop < most) refuse_beyond(budget, entered);
+    return std::nullopt;
+}
+
+/// How many cells the boxes of all primitives reach.
+template <PrimitiveSet P>
+std::uint64_t cells_reached_by_all(const P& set, const CellEntering<P>& entering, Executor& executor) {
+    std::atomic<std::uint64_t> all{0};
+    executor.for_each_piece(set.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        std::uint64_t sum = 0;
+        for (std::size_t i = begin; i < end; ++i) sum += entering.cells_reached(set.bounds(i));
+        all += sum;
+    });
+    return all;
+}
+
+/// What stands in the cells of a lattice over a scene. A resolution by hand is kept. One by a heuristic is
+/// halved until there are no more than `most` entries, which must be at least the primitives, and until the
+/// boxes reach no more than twice as many cells, each of which asks a primitive whether it stands there. (The
+/// few that small scenes reach are always asked.)
+template <PrimitiveSet P>
+CellRows<P::dimension> enter_all(const P& set, const Box<typename P::Scalar, P::dimension>& bounds,
+                                 const GridResolution& wanted, GridInsert insert, std::uint64_t most,
+                                 double budget, Executor& executor) {
+    constexpr std::uint64_t all = std::numeric_limits<std::uint64_t>::max(), few = 1 << 20;
+    if (wanted.resolution > 0) most = all;
+    const std::uint64_t most_asked = most < all / 2 ? std::max(2 * most, few) : all;
+    auto lattice = wanted.lattice_over(bounds, set.size());
+    for (;; lattice = lattice.halved(bounds)) {
+        const CellEntering entering(set, lattice, insert, cell_margin(bounds));
+        if (most_asked < all && cells_reached_by_all(set, entering, executor) > most_asked) continue;
+        if (const auto pieces = entries_of(set, entering, lattice, most, budget, executor))
+            return CellRows<P::dimension>(lattice, *pieces);
+    }
 }
 
 }  // namespace hedgerow

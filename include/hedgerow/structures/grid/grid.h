@@ -23,6 +23,10 @@ public:
         bool mailbox = true;
         /// Rays pass over an empty brick, or block of bricks, in one step. Off only to show what it brings.
         bool skip_empty = true;
+        /// The grid has at most so many items for each primitive. Where primitives are as large as the scene,
+        /// or many are in one place, it gets fewer cells than its heuristic asks for, each with more items:
+        /// the build and its memory have a bound. A resolution by hand is kept. Meshes need 25.
+        double items_per_primitive = 32;
         /// Bytes that a build may take; beyond them it is refused.
         double budget = 8e9;
     };
@@ -36,9 +40,9 @@ public:
         grid.count_ = set.size();
         grid.bounds_ = bounds_of(set, executor);
         if (grid.empty()) return grid;
-        const auto lattice = options.cells.lattice_over(grid.bounds_, grid.count_);
-        const CellEntering entering(set, lattice, options.insert, cell_margin(grid.bounds_));
-        grid.rows_ = CellRows<D>(lattice, entries_of(set, entering, lattice, options.budget, executor));
+        const std::uint64_t most = most_items(options.items_per_primitive, grid.count_);
+        grid.rows_ =
+            enter_all(set, grid.bounds_, options.cells, options.insert, most, options.budget, executor);
         return grid;
     }
 
@@ -88,6 +92,7 @@ public:
                 const Leaf l = row == CellRows<D>::none ? Leaf{nullptr, 0, 0} : rows_.leaf(row);
                 if (!std::binary_search(l.ids + l.first, l.ids + l.first + l.count, p))
                     fault = "primitive " + std::to_string(p) + " is missing from a cell that it meets";
+                return true;
             });
         if (fault.empty() && entries != items().size()) fault = "a primitive in a cell that it does not meet";
         return fault;

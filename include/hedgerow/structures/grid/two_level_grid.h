@@ -25,6 +25,11 @@ public:
         GridInsert insert = GridInsert::exact;
         /// Off only to show what it brings.
         bool mailbox = true;
+        /// The grid has at most so many items for each primitive: the first level an eighth of that, and each
+        /// grid in its cells 8 times what it is over. Where primitives are as large as the scene, or many are
+        /// in one place, there are fewer cells than asked for, each with more items: the build and its memory
+        /// have a bound. A resolution of the first level by hand is kept. Meshes need 13.
+        double items_per_primitive = 64;
         /// Bytes that a build may take; beyond them it is refused.
         double budget = 8e9;
     };
@@ -39,9 +44,10 @@ public:
         grid.bounds_ = bounds_of(set, executor);
         if (grid.empty()) return grid;
         grid.margin_ = cell_margin(grid.bounds_);
-        const auto lattice = options.cells.lattice_over(grid.bounds_, grid.count_);
-        const CellEntering entering(set, lattice, options.insert, grid.margin_);
-        grid.rows_ = CellRows<D>(lattice, entries_of(set, entering, lattice, options.budget, executor));
+        const std::uint64_t most = most_items(options.items_per_primitive, grid.count_);
+        const std::uint64_t of_first = std::max<std::uint64_t>(most / most_cells_a_part, grid.count_);
+        grid.rows_ =
+            enter_all(set, grid.bounds_, options.cells, options.insert, of_first, options.budget, executor);
         grid.divide(set, executor);
         return grid;
     }
@@ -120,15 +126,18 @@ public:
                     const auto lattice = inner.lattice(margin_);
                     held = true;
                     entering.within(lattice).for_each(
-                        p, part, [&](const auto& c) { held = held && holds(inner.start_of(c), p); });
+                        p, part, [&](const auto& c) { return held = held && holds(inner.start_of(c), p); });
                 }
                 if (!held) fault = "primitive " + std::to_string(p) + " is missing from a cell that it meets";
+                return held;
             });
         return fault;
     }
 
 private:
     using Cell = typename Lattice<D>::Cell;
+    /// Of a grid of the second level, on average.
+    static constexpr std::uint64_t most_cells_a_part = 8;
 
     /// A grid in a cell of the first level: where its cells' starts begin, and how many there are along each
     /// axis.
@@ -260,6 +269,7 @@ private:
         for (const Part& part : parts)
             entering.within(lattice).for_each(part.id, part.box, [&](const Cell& c) {
                 entries.push_back({inner.number(c), part.id});
+                return true;
             });
         std::ranges::sort(entries, {}, [](const CellEntry& e) { return std::pair(e.cell, e.id); });
         auto entry = entries.begin();
@@ -268,19 +278,21 @@ private:
             for (; entry != entries.end() && entry->cell == c; ++entry) piece.items.push_back(entry->id);
         }
     }
-    /// As many cells as the density asks for, but no more than what leaves a primitive in 8 of them: where
-    /// many are as large as their bounds, dividing parts none.
+    /// As many cells as the density asks for, but no more than what leaves a part in 8 of them, or in as many
+    /// as the limit allows: where many are as large as their bounds, dividing parts none.
     template <PrimitiveSet P>
     void set_resolution(Inner& inner, std::span<const Part> parts, const CellEntering<P>& entering) const {
         const GridResolution wanted{.density = options_.inner_density};
         const auto along = wanted.lattice_over(inner.parts, parts.size()).resolution;
         for (std::size_t a = 0; a < D; ++a)
             inner.resolution[a] = static_cast<std::uint8_t>(std::min(along[a], Inner::most_cells));
+        const auto most =
+            static_cast<std::uint64_t>(std::min<double>(most_cells_a_part, options_.items_per_primitive));
         while (inner.cell_count() > 1) {
             const auto lattice = inner.lattice(margin_);
             std::uint64_t entries = 0;
             for (const Part& part : parts) entries += entering.within(lattice).cells_reached(part.box);
-            if (entries <= 8 * parts.size()) return;
+            if (entries <= most * parts.size()) return;
             for (auto& r : inner.resolution) r = static_cast<std::uint8_t>((r + 1) / 2);
         }
     }

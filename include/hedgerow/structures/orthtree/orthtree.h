@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include <hedgerow/structures/item_limit.h>
 #include <hedgerow/structures/mailbox.h>
 #include <hedgerow/structures/orthtree/root.h>
 #include <hedgerow/structures/orthtree/validate.h>
@@ -23,12 +24,11 @@ namespace hedgerow {
 /// O(its items).
 ///
 /// Memory: 8 bytes a node (a group of 2^D children is 64 bytes, 32 in the plane), 4 an item, 1 bit a
-/// primitive. Groups and items stay within 128 bytes a primitive (32 words of room in growth.h) in every
-/// build: the worst case. On meshes it is about 40, on points 7. Insertions keep to it when they divide a
-/// leaf, but what is large beside the cells may go beyond it, since it must stand in each. Arrays that grow
-/// have up to twice the room that they use, and up to half of the items' list may wait to be used again, so
-/// after changes it is up to four times as much a primitive, of the most that were ever held at once: room
-/// for nodes is kept.
+/// primitive. Groups and items stay within 128 bytes a primitive (`items_per_primitive` words, see growth.h)
+/// in every build: the worst case. On meshes it is about 40, on points 7. Insertions keep to it when they
+/// divide a leaf, but what is large beside the cells may go beyond it, since it must stand in each. Arrays
+/// that grow have an eighth more room than they need, and up to half of the items' list and of the groups may
+/// wait to be used again, so after changes it is up to 2.25 times as much a primitive that is held.
 template <std::floating_point T, int D>
 class Orthtree {
 public:
@@ -37,6 +37,10 @@ public:
         std::uint32_t leaf_size = 8;
         /// How often the first cell may be halved.
         int max_depth = 20;
+        /// A build divides cells while groups and items together stay within so many words of 4 bytes for
+        /// each primitive, so it has fewer items than that. Where primitives are as large as the scene, or
+        /// many are in one place, leaves are longer. Meshes need 10.
+        double items_per_primitive = 32;
         /// Test a primitive once a query, in however many cells it stands.
         bool mailbox = true;
     };
@@ -55,6 +59,7 @@ public:
         if (options.max_depth < 0 || options.max_depth > deepest_option)
             throw InputError("octree, quadtree: max_depth=" + std::to_string(options.max_depth) +
                              " is not from 0 to " + std::to_string(deepest_option));
+        most_items(options.items_per_primitive, set.size());  // refuses what is no limit
         if (set.size() >= OrthantNode::inner_bit)
             throw InputError("an octree or quadtree holds fewer than 2^31 primitives, and was given " +
                              std::to_string(set.size()));
@@ -168,7 +173,8 @@ public:
     }
 
 private:
-    static constexpr std::uint64_t words_per_primitive = 32;
+    /// In words, for what is held.
+    std::uint64_t room() const { return most_items(options_.items_per_primitive, count_); }
     /// Where a node stands: which child of which group. The root: of none.
     struct Place {
         std::uint32_t group = 0xFFFFFFFFu;
@@ -191,8 +197,7 @@ private:
         if (ids.empty()) return;
         cell_ = root_cube(bounds_);
         limits_ = {options_.leaf_size, std::ldexp(cell_.half, -options_.max_depth)};
-        root_ =
-            OrthantGrowth<P>(set, limits_, executor).grow(ids, cell_, words_per_primitive * count_, store_);
+        root_ = OrthantGrowth<P>(set, limits_, executor).grow(ids, cell_, room(), store_);
         store_.shrink_to_fit();
     }
 
@@ -247,10 +252,9 @@ private:
         count.leaf(leaf.count);
         std::vector<PrimitiveId> ids;
         gather(leaf, ids);
-        const std::uint64_t room = store_.capacity_for(leaf.count), all = words_per_primitive * count_,
-                            used = store_.words_in_use();
+        const std::uint64_t own = store_.capacity_for(leaf.count), all = room(), used = store_.words_in_use();
         const OrthantNode grown = OrthantGrowth<P>(set, limits_, serial_executor())
-                                      .grow(ids, cell, room + (all > used ? all - used : 0), store_);
+                                      .grow(ids, cell, own + (all > used ? all - used : 0), store_);
         store_.free_leaf(leaf);
         at(place) = grown;
     }

@@ -14,8 +14,9 @@ namespace hedgerow {
 
 /// Groups are of one size; a freed one is used again. A leaf's items are a block of one list. How long a
 /// block is follows from how many items it holds (`capacity_for`), so that nothing has to remember it: just
-/// as many, up to 16; beyond, a fourth more at most. Freed blocks wait for items of the same length; when
-/// they make up half of the list, it is written anew, so that all of it costs O(1) an item, amortized.
+/// as many, up to 16; beyond, a fourth more at most. Freed blocks wait for items of the same length. When
+/// freed blocks make up half of the list, or freed groups half of all groups, what is in use is copied to
+/// arrays of its size, so that all of it costs O(1) an item, amortized.
 template <int D>
 class OrthantStore {
 public:
@@ -34,7 +35,7 @@ public:
 
     const Group& group(std::uint32_t g) const { return groups_[g]; }
     Group& group(std::uint32_t g) { return groups_[g]; }
-    /// All that were ever in use; those that wait are empty leaves.
+    /// With those that wait for their next use, which are empty leaves.
     std::size_t group_count() const { return groups_.size(); }
     std::size_t groups_in_use() const { return groups_.size() - free_group_count_; }
     /// The list of all blocks: what is not in use is `none`.
@@ -54,6 +55,7 @@ public:
         if (free_group_ == none) {
             if (groups_.size() >= most_groups)
                 throw InputError("an octree or quadtree has at most 2^32 nodes: give it larger leaves");
+            make_room(groups_, 1);
             groups_.emplace_back();
             return static_cast<std::uint32_t>(groups_.size() - 1);
         }
@@ -111,20 +113,15 @@ public:
         list_.shrink_to_fit();
     }
 
-    /// Writes the list anew if too much of it waits. The root stands in no group.
+    /// Copies what is in use where more than half of the list, or of the groups, waits.
     void tidy(OrthantNode& root) {
-        if (free_words_ < 1024 || free_words_ < list_.size() / 2) return;
-        const std::vector<PrimitiveId> before = std::move(list_);
-        list_ = {};
-        list_.reserve(before.size() - free_words_);
-        free_blocks_.fill(none);
-        free_words_ = 0;
-        const auto move = [&](OrthantNode& n) {
-            if (!n.inner() && !n.empty()) n = make_leaf(std::span(before).subspan(n.first, n.count));
-        };
-        move(root);
-        for (Group& g : groups_)
-            for (OrthantNode& n : g.child) move(n);
+        const bool words_wait = free_words_ >= 1024 && free_words_ >= list_.size() / 2;
+        const bool groups_wait = free_group_count_ >= 64 && free_group_count_ >= groups_.size() / 2;
+        if (!words_wait && !groups_wait) return;
+        OrthantStore tidied;
+        tidied.reserve(groups_in_use(), list_.size() - free_words_);
+        root = tidied.graft(*this, root);
+        *this = std::move(tidied);
     }
 
 private:
@@ -139,12 +136,19 @@ private:
         const auto bits = static_cast<std::uint32_t>(std::bit_width(capacity - 1));
         return exact + 4 * (bits - 5) + (capacity >> (bits - 3)) - 4;
     }
+    /// An array that is full grows by an eighth: O(1) an element, amortized.
+    template <class Array>
+    static void make_room(Array& array, std::size_t more) {
+        const std::size_t wanted = array.size() + more;
+        if (wanted > array.capacity()) array.reserve(wanted + wanted / 8);
+    }
     std::uint32_t allocate_block(std::uint32_t capacity) {
         if (capacity == 0) return 0;
         std::uint32_t& first_free = free_blocks_[length_class(capacity)];
         if (first_free == none) {
             if (list_.size() + capacity > none)
                 throw InputError("an octree or quadtree holds at most 2^32 items: give it larger leaves");
+            make_room(list_, capacity);
             list_.resize(list_.size() + capacity, none);
             return static_cast<std::uint32_t>(list_.size() - capacity);
         }

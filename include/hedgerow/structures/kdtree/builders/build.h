@@ -15,6 +15,10 @@ struct KdOptions {
     int max_depth = 0;
     /// Of the binned builder.
     int bins = 32;
+    /// The tree has at most so many items for each primitive. Where planes only repeat primitives, as in a
+    /// fan of slivers, cells are then left whole: the build and its memory have a bound, and such leaves are
+    /// long. 0: 16 where costs decide, else 64. Meshes need 3.5 and 60.
+    double items_per_primitive = 0;
     KdCosts costs = {};
     /// Off only to show what it brings.
     bool mailbox = true;

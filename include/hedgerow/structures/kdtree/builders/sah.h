@@ -1,26 +1,9 @@
 /// The SAH over every plane that bounds some part, in O(n log n) (Wald and Havran, RT 2006).
 #pragma once
 
-#include <hedgerow/structures/kdtree/builders/costs.h>
+#include <hedgerow/structures/kdtree/builders/sweep.h>
 
 namespace hedgerow {
-
-/// Where the part of a reference begins or ends along an axis. At equal positions ends come first: what ends
-/// at a plane and what begins there are on different sides of it.
-template <std::floating_point T>
-struct KdEvent {
-    T position;
-    std::uint32_t reference_and_kind;
-
-    KdEvent(T at, std::uint32_t reference, bool begins)
-        : position(at), reference_and_kind(reference << 1 | static_cast<std::uint32_t>(begins)) {}
-    std::uint32_t reference() const { return reference_and_kind >> 1; }
-    bool begins() const { return (reference_and_kind & 1u) != 0; }
-    friend bool operator<(const KdEvent& a, const KdEvent& b) {
-        if (a.position != b.position) return a.position < b.position;
-        return a.begins() != b.begins() ? b.begins() : a.reference() < b.reference();
-    }
-};
 
 /// Events are sorted once for the whole tree. A divided cell hands its lists on in order; only those of
 /// straddlers, whose parts are new, are sorted again and merged in.
@@ -55,8 +38,8 @@ public:
         if (cell.size() <= leaf_size_) return std::nullopt;
         KdBest<T> best;
         for (int axis = 0; axis < D; ++axis)
-            sweep(lists[static_cast<std::size_t>(axis)], cell.size(),
-                  KdAxisCosts<T, D>(costs_, cell.box, axis), best);
+            sweep_events(lists[static_cast<std::size_t>(axis)], cell.size(),
+                         KdAxisCosts<T, D>(costs_, cell.box, axis), best);
         return if_it_pays(best, cell, costs_);
     }
 
@@ -73,17 +56,6 @@ private:
     static void add(List& list, const Cell& cell, std::uint32_t i, int axis) {
         list.emplace_back(cell.inside[i].low[axis], i, true);
         list.emplace_back(cell.inside[i].high[axis], i, false);
-    }
-
-    static void sweep(const List& list, std::uint32_t count, const KdAxisCosts<T, D>& costs,
-                      KdBest<T>& best) {
-        std::uint32_t on_low = 0, on_high = count;
-        for (std::size_t i = 0; i < list.size();) {
-            const T position = list[i].position;
-            for (; i < list.size() && list[i].position == position && !list[i].begins(); ++i) --on_high;
-            costs.offer(position, on_low, on_high, best);
-            for (; i < list.size() && list[i].position == position; ++i) ++on_low;
-        }
     }
 
     static void hand_on(const List& list, const std::vector<KdPlaces>& places, std::uint32_t KdPlaces::*side,
