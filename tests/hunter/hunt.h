@@ -6,16 +6,11 @@
 
 #include "answers.h"
 #include "oracle.h"
+#include "report.h"
 #include "scenes.h"
 #include "shrink.h"
 
 namespace hedgerow::hunter {
-
-/// What a round has done, and as C++ what went wrong in it.
-struct Report {
-    std::uint64_t questions = 0, checked_exactly = 0;
-    std::vector<std::string> found;
-};
 
 /// A structure with options drawn from what the list of structures says they may be.
 inline std::string any_options(const StructureInfo& structure, Random& random) {

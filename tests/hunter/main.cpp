@@ -20,7 +20,7 @@ using namespace hedgerow::hunter;
 
 namespace {
 
-/// Kinds of shapes take turns, and instruction sets, which are for triangles of float alone, among these.
+/// Kinds of shapes take turns, and so do instruction sets, which are for triangles of float alone.
 Report run(std::uint64_t seed, std::uint64_t round) {
     const auto sets = instruction_sets();
     use_instruction_set(sets[round / 16 % sets.size()]);
@@ -39,6 +39,8 @@ Report run(std::uint64_t seed, std::uint64_t round) {
         case 5:
             return round % 32 == 5 ? Hunt<Vec<float, 2>>(seed, round).run()
                                    : Hunt<Vec<double, 2>>(seed, round).run();
+        case 6:
+            return hunt_instances(seed, round);
         default:
             return round % 2 == 0 ? Hunt<Triangle<float, 3>>(seed, round).run()
                                   : Hunt<Triangle<double, 3>>(seed, round).run();

@@ -240,7 +240,13 @@ private:
             default:
                 break;
         }
-        if (below(8) == 0) r.direction = r.direction * std::ldexp(T(1), static_cast<int>(below(121)) - 60);
+        constexpr int most = std::is_same_v<T, float> ? 148 : 1073;  // lengths down to subnormal ones
+        if (const auto lengths = below(16); lengths < 2) {
+            const int reach = lengths == 0 ? 60 : most;
+            const T length =
+                std::ldexp(T(1), static_cast<int>(below(2 * static_cast<std::uint64_t>(reach) + 1)) - reach);
+            r.direction = r.direction * length;
+        }
         if (below(16) == 0) r.direction[axis] = special();
         if (below(64) == 0) r.origin[axis] = special();
         if (below(4) == 0) r.t_min = below(2) ? T(1) : T(0.5);

@@ -1,0 +1,82 @@
+/// Instances: what a structure over placed indexes answers, held against brute force over brute force.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <hedgerow/hedgerow.h>
+
+#include "../placements.h"
+#include "shapes.h"
+
+namespace hedgerow::hunter {
+
+template <class T>
+struct PlacedRayAnswer {
+    std::optional<Hit<T>> closest;
+    bool any = false;
+    std::vector<Hit<T>> all;
+
+    friend bool operator==(const PlacedRayAnswer&, const PlacedRayAnswer&) = default;
+};
+template <class Index, class T>
+PlacedRayAnswer<T> placed_answer(const Index& index, const Ray<T, 3>& ray) {
+    PlacedRayAnswer<T> said{closest_hit(index, ray), any_hit(index, ray), {}};
+    all_hits(index, ray, said.all);
+    return said;
+}
+template <class Index, class T>
+std::vector<Near<T, 3>> placed_answer(const Index& index, const Vec<T, 3>& point) {
+    std::vector<Near<T, 3>> said;
+    nearest(index, point, 4, said);
+    if (const auto closest = closest_point(index, point)) said.push_back(*closest);
+    return said;
+}
+template <class Index, class T>
+std::vector<PlacedId> placed_answer(const Index& index, const Box<T, 3>& box) {
+    std::vector<PlacedId> said;
+    overlapping(index, box, said);
+    return said;
+}
+
+/// A mesh in a structure `Inner`, placed by some transforms in a structure `Outer`.
+template <template <class, int> class Outer, template <class, int> class Inner, class T>
+class TwoLevels {
+public:
+    TwoLevels(const std::vector<Triangle<T, 3>>& shapes, const std::vector<Transform<3>>& places)
+        : mesh_(set_of(shapes)),
+          inner_(build<Inner>(mesh_)),
+          set_(placed(inner_, places)),
+          outer_(build<Outer>(set_)) {}
+
+    template <class Question>
+    auto answer(const Question& question) const {
+        return placed_answer(outer_, question);
+    }
+    std::string validate() const { return outer_.validate(); }
+
+private:
+    using InnerIndex = decltype(build<Inner>(std::declval<const TriangleMesh<T>&>()));
+    using Set = InstanceSet<InnerIndex>;
+
+    static Set placed(const InnerIndex& inner, const std::vector<Transform<3>>& places) {
+        std::vector<Instance<InnerIndex>> instances;
+        for (const auto& place : places) instances.emplace_back(inner, place);
+        return Set(instances);
+    }
+
+    TriangleMesh<T> mesh_;
+    InnerIndex inner_;
+    Set set_;
+    decltype(build<Outer>(std::declval<const Set&>())) outer_;
+};
+
+template <template <class, int> class Outer, template <class, int> class Inner, class T, class Question>
+bool placed_as_brute_force(const std::vector<Triangle<T, 3>>& shapes, const std::vector<Transform<3>>& places,
+                           const Question& question) {
+    const TwoLevels<Outer, Inner, T> levels(shapes, places);
+    return levels.validate().empty() &&
+           levels.answer(question) == TwoLevels<BruteForce, BruteForce, T>(shapes, places).answer(question);
+}
+
+}  // namespace hedgerow::hunter
