@@ -2,6 +2,7 @@
 #include "exact.h"
 
 #include <hedgerow/geometry/overlap.h>
+#include <hedgerow/geometry/transform.h>
 
 using namespace hedgerow;
 using namespace hedgerow::exact;
@@ -50,6 +51,40 @@ TYPED_TEST(Geometry, DifferencesOfProductsHaveTheExactSign) {
         zeros += exact == 0;
     }
     EXPECT_GT(zeros, 100);
+}
+
+/// Functions of their own, so that the compiler keeps what they return in registers side by side. At -O1 it
+/// drops no conversion: this program has to be compiled as the library is.
+template <int D>
+[[gnu::noinline]] Vec<double, D> to_float_and_back(const Vec<double, D>& p) {
+    return Vec<double, D>(Vec<float, D>(p));
+}
+template <int D>
+[[gnu::noinline]] Vec<double, D> offset_of_transformed(const Affine<D>& f, const Vec<float, D>& p) {
+    return Vec<double, D>(transformed(f, p)) - Vec<double, D>(p);
+}
+template <int D>
+void expect_conversions_to_round() {
+    const auto through_memory = [](const Vec<double, D>& v) {
+        return map(v, [](double x) {
+            const volatile float near = static_cast<float>(x);
+            return static_cast<double>(near);
+        });
+    };
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        Random random(3, i);
+        const Vec<double, D> p = random.in_cube<D>();
+        ASSERT_EQ(to_float_and_back(p), through_memory(p));
+        Affine<D> turn{{}, random.direction<D>()};
+        for (auto& row : turn.linear) row = random.direction<D>();
+        const Vec<float, D> narrow(p);
+        const Vec<double, D> wide(narrow);
+        ASSERT_EQ(offset_of_transformed(turn, narrow), through_memory(turn.point(wide)) - wide);
+    }
+}
+TEST(Rounding, ConversionsToFloatAreNotDropped) {
+    expect_conversions_to_round<2>();
+    expect_conversions_to_round<3>();
 }
 
 #if defined(__SSE2__)

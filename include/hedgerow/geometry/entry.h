@@ -149,8 +149,7 @@ std::optional<Meeting<T>> meet_exactly(const WatertightRay<T>& ray, const Sheare
     if (det == 0) return std::nullopt;  // seen edge-on, or of no area
     const double wa = u / det, wb = v / det, wc = w / det;
     const double z = (product(wa, double(a.z)) + product(wb, double(b.z))) + product(wc, double(c.z));
-    const T t = static_cast<T>(z / double(ray.direction_z));
-    return Meeting<T>{t, static_cast<T>(wb), static_cast<T>(wc)};
+    return Meeting<T>{rounded_to<T>(z / double(ray.direction_z)), rounded_to<T>(wb), rounded_to<T>(wc)};
 }
 
 template <class T>
@@ -188,7 +187,7 @@ std::optional<Interval<T>> meet_line(const Vec<T, D>& origin, const Vec<T, D>& d
     const double discriminant = product(r, r) - length2(nearest);
     if (discriminant < 0) return std::nullopt;
     const double half = std::sqrt(discriminant / a);
-    return Interval<T>{static_cast<T>((b / a - half) * unit), static_cast<T>((b / a + half) * unit)};
+    return Interval<T>{rounded_to<T>((b / a - half) * unit), rounded_to<T>((b / a + half) * unit)};
 }
 
 /// Ray against segment in the plane: signs of cross products in double, exact for float; a segment that lies
@@ -206,7 +205,7 @@ std::optional<Meeting<T>> meet_line(const Vec<T, 2>& origin, const Vec<T, 2>& di
     const double u = a / (a - b);
     const double za = static_cast<double>(s.a[k] - origin[k]), zb = static_cast<double>(s.b[k] - origin[k]);
     const double z = product(1 - u, za) + product(u, zb);
-    return Meeting<T>{static_cast<T>(z / static_cast<double>(direction[k])), static_cast<T>(u), T(0)};
+    return Meeting<T>{rounded_to<T>(z / static_cast<double>(direction[k])), rounded_to<T>(u), T(0)};
 }
 
 }  // namespace hedgerow

@@ -27,7 +27,7 @@ struct Vec {
     constexpr Vec(T x, T y, T z) requires(D == 3) : data{x, y, z} {}
     template <std::floating_point U>
     constexpr explicit Vec(const Vec<U, D>& other) {
-        for (int i = 0; i < D; ++i) data[i] = static_cast<T>(other[i]);
+        for (int i = 0; i < D; ++i) data[i] = rounded_to<T>(other[i]);
     }
 
     /// The vector whose components are all `value`.

@@ -63,7 +63,7 @@ private:
         } else if constexpr (requires { set_.sphere(i); }) {
             const auto ball = set_.sphere(i);
             return Sphere<T, D>{transformed(there_, ball.center),
-                                static_cast<T>(static_cast<double>(ball.radius) * similarity())};
+                                rounded_to<T>(static_cast<double>(ball.radius) * similarity())};
         } else {
             const auto p = transformed(there_, set_.point(i));
             return Box<T, D>{p, p};
