@@ -4,13 +4,10 @@
 /// heights and radii measured with the very normals, axes and centers that are kept.
 #pragma once
 
-#include <hedgerow/geometry/eigen.h>
 #include <hedgerow/geometry/volumes.h>
+#include <hedgerow/structures/bvh/volumes/frames.h>
 
 namespace hedgerow {
-
-template <int D>
-using PointSpan = std::span<const Vec<double, D>>;
 
 namespace detail {
 /// How far points reach along a normal, outward by what measuring may err by and by the margin.
@@ -51,33 +48,6 @@ Vec<double, D> center_of(PointSpan<D> points) {
     }
     return best;
 }
-
-/// The principal axes of the points (their covariance's eigenvectors), rounded to T.
-template <class T, int D>
-Rows<D> principal_axes(PointSpan<D> points) {
-    Box<double, D> box;
-    for (const auto& p : points) box.expand(p);
-    const Vec<double, D> middle = box.center();
-    const double extent = max_component(box.extent());
-    Rows<D> covariance{};
-    const double scale = extent > 0x1p-1000 ? 1 / extent : 0;
-    Vec<double, D> mean;
-    for (const auto& p : points) mean = mean + (p - middle) * scale / static_cast<double>(points.size());
-    for (const auto& p : points) {
-        const Vec<double, D> x = (p - middle) * scale - mean;
-        for (int k = 0; k < D; ++k)
-            covariance[static_cast<std::size_t>(k)] = covariance[static_cast<std::size_t>(k)] + x * x[k];
-    }
-    auto axes = eigen_of_symmetric(covariance).vectors;
-    for (auto& axis : axes) axis = Vec<double, D>(Vec<T, D>(axis));
-    return axes;
-}
-template <int D>
-Rows<D> coordinate_axes() {
-    Rows<D> axes{};
-    for (int k = 0; k < D; ++k) axes[static_cast<std::size_t>(k)][k] = 1;
-    return axes;
-}
 }  // namespace detail
 
 /// Fits a volume around points, of which there is at least one. O(points).
@@ -97,13 +67,12 @@ struct VolumeFit<Sphere<T, D>> {
     }
 };
 
-/// Of the frame of the principal axes (Gottschalk, Lin and Manocha 1996) and that of the coordinates the one
-/// with the smaller box.
+/// In a frame that was looked for, or in that of the coordinates if its box is no larger.
 template <class T, int D>
 struct VolumeFit<Obb<T, D>> {
     static Obb<T, D> around(PointSpan<D> points, double margin) {
-        const Obb<T, D> turned = in_frame(points, detail::principal_axes<T>(points), margin);
-        const Obb<T, D> straight = in_frame(points, detail::coordinate_axes<D>(), margin);
+        const Obb<T, D> turned = in_frame(points, frame_of_small_box(points), margin);
+        const Obb<T, D> straight = in_frame(points, coordinate_axes<D>(), margin);
         return half_area(turned) < half_area(straight) ? turned : straight;
     }
 
@@ -111,8 +80,8 @@ private:
     static Obb<T, D> in_frame(PointSpan<D> points, const Rows<D>& axes, double margin) {
         Obb<T, D> b;
         for (int k = 0; k < D; ++k) {
-            const auto s = detail::slab_around(points, axes[static_cast<std::size_t>(k)], margin);
-            b.axis[k] = Vec<T, D>(s.normal);
+            b.axis[k] = Vec<T, D>(axes[static_cast<std::size_t>(k)]);
+            const auto s = detail::slab_around(points, Vec<double, D>(b.axis[k]), margin);
             b.low[k] = rounded_down<T>(s.low), b.high[k] = rounded_up<T>(s.high);
         }
         return b;
@@ -140,7 +109,7 @@ struct VolumeFit<Cylinder<T>> {
     static Cylinder<T> around(PointSpan<3> points, double margin) {
         Cylinder<T> best{};
         double least = std::numeric_limits<double>::infinity();
-        for (const auto& frame : {detail::principal_axes<T>(points), detail::coordinate_axes<3>()})
+        for (const auto& frame : {principal_axes(points), coordinate_axes<3>()})
             for (const Vec3d& axis : frame) {
                 const Cylinder<T> c = along(points, axis, margin);
                 const double r = static_cast<double>(c.radius);
@@ -152,9 +121,9 @@ struct VolumeFit<Cylinder<T>> {
 
 private:
     static Cylinder<T> along(PointSpan<3> points, const Vec3d& axis, double margin) {
-        const auto s = detail::slab_around(points, axis, margin);
         Cylinder<T> c{};
         c.axis = Vec<T, 3>(axis);
+        const auto s = detail::slab_around(points, Vec3d(c.axis), margin);
         c.low = rounded_down<T>(s.low), c.high = rounded_up<T>(s.high);
         std::vector<Vec3d> flat;
         for (const auto& p : points) flat.push_back(c.across(p - points[0]));
@@ -181,7 +150,7 @@ struct HullFit {
         std::vector<Vec3d> normals =
             hull_normals(points.size() > most_corners ? extreme(points) : copy(points));
         if (normals.empty())
-            for (const Vec3d& axis : detail::principal_axes<T>(points))
+            for (const Vec3d& axis : frame_of_small_box(points))
                 normals.push_back(axis), normals.push_back(-axis);
         for (const Vec3d& n : normals) {
             const Vec<T, 3> normal(n);
