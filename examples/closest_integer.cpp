@@ -30,6 +30,32 @@ long closest_by_bisection(const Integers& sorted, long k) {
     return k - *(above - 1) <= *above - k ? *(above - 1) : *above;
 }
 
+/// Sixteen integers and k = 18: what is compared by scan, and what by bisection once they are sorted. Returns
+/// whether both find 20.
+bool show_sixteen() {
+    const Integers all = {10, 123, 2, 100, 6, 25, 64, 11, 200, 30, 950, 111, 20, 8, 1, 80};
+    constexpr long k = 18;
+    Integers sorted = all;
+    std::sort(sorted.begin(), sorted.end());
+    std::printf("sorted:");
+    for (const long i : sorted) std::printf(" %ld", i);
+    std::printf("\nk = %ld: ", k);
+    std::size_t low = 0, high = sorted.size(), steps = 0;  // the first that is not less than k
+    while (low < high) {
+        const std::size_t middle = low + (high - low) / 2;
+        std::printf("%ld%s k, ", sorted[middle], sorted[middle] < k ? " <" : " >=");
+        if (sorted[middle] < k)
+            low = middle + 1;
+        else
+            high = middle;
+        ++steps;
+    }
+    const long closest = closest_by_bisection(sorted, k);
+    std::printf("so it lies between %ld and %ld: %ld\n", sorted[low - 1], sorted[low], closest);
+    std::printf("%zu steps and 2 distances, instead of %zu distances\n\n", steps, all.size());
+    return closest == 20 && closest_by_scan(all, k) == 20;
+}
+
 double seconds_of(auto work) {
     const auto begin = std::chrono::steady_clock::now();
     work();
@@ -56,6 +82,10 @@ int main(int argc, char** argv) {
     if (n == 0) {
         std::fputs("usage: closest_integer [HOW_MANY, from 1]\n", stderr);
         return 2;
+    }
+    if (!show_sixteen()) {
+        std::fputs("the closest of the sixteen is not 20\n", stderr);
+        return 1;
     }
     hedgerow::Random random(1, 1);
     const auto some = [&](std::size_t count) {
