@@ -22,15 +22,43 @@ function(hedgerow_install_headers component)
           FILES_MATCHING PATTERN "*.h")
 endfunction()
 
+# hedgerow_pkg_config(COMPONENT PACKAGES...): its pkg-config file, hedgerow-COMPONENT.pc. What a static library is made
+# with, its users have to link too.
+file(RELATIVE_PATH hedgerow_prefix_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+function(hedgerow_pkg_config component)
+  list(JOIN ARGN " " requires)
+  set(requires_keyword Requires)
+  if(BUILD_SHARED_LIBS AND component STREQUAL "core")
+    set(requires_keyword Requires.private)
+  endif()
+  configure_file(cmake/hedgerow.pc.in hedgerow-${component}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/hedgerow-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+          COMPONENT ${component})
+endfunction()
+
 hedgerow_install(core)
+set(core_packages)
+if(HEDGEROW_TBB)
+  list(APPEND core_packages tbb)
+endif()
+if(HEDGEROW_QHULL)
+  list(APPEND core_packages qhull_r)
+endif()
+hedgerow_pkg_config(core ${core_packages})
 install(DIRECTORY include/hedgerow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT core
         FILES_MATCHING PATTERN "*.h"
         PATTERN include/hedgerow/compare EXCLUDE PATTERN include/hedgerow/io EXCLUDE
         PATTERN include/hedgerow/scenes EXCLUDE)
 hedgerow_install(any)
+hedgerow_pkg_config(any hedgerow-core)
 hedgerow_install_headers(any compare)
 if(HEDGEROW_IO)
   hedgerow_install(io)
+  set(io_packages zlib libpng)
+  if(HEDGEROW_EXR)
+    list(APPEND io_packages OpenEXR)
+  endif()
+  hedgerow_pkg_config(io hedgerow-core ${io_packages})
   hedgerow_install_headers(io io scenes)
 endif()
 if(HEDGEROW_TOOL)
@@ -47,3 +75,7 @@ foreach(component core any io tool)
           DESTINATION ${hedgerow_package_dir} COMPONENT ${component})
   install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT ${component})
 endforeach()
+
+# The documents keep the places that their links name: README.md beside docs/ and examples/.
+install(FILES README.md ARCHITECTURE.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core)
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core PATTERN CMakeLists.txt EXCLUDE)

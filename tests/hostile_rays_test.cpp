@@ -102,6 +102,36 @@ TEST(HostileRays, ByEveryKernel) {
     }
 }
 
+template <class P>
+void expect_equal_of_every_structure(const P& set) {
+    using T = typename P::Scalar;
+    const auto brute = build<BruteForce>(set);
+    Points<T, P::dimension> targets;
+    for (std::size_t i = 0; i < set.size(); i += 7) targets.push_back(set.view().bounds(i).center());
+    const auto rays = hostile_rays(brute.bounds(), targets, in_long_runs(20000, 600));
+    const auto want = closest_of(brute, std::span(rays));
+    EXPECT_GT(hits_among(want), rays.size() / 16);
+    for (const auto* const name : structures) {
+        SCOPED_TRACE(name);
+        const auto index = build_any(named_for<P>(name), set);
+        std::vector<Hit<T>> hits(rays.size());
+        const std::unique_ptr<bool[]> any(new bool[rays.size()]);
+        index->closest_hits(rays, hits);
+        index->any_hits(rays, {any.get(), rays.size()});
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(want[i], hits[i]) << "ray " << i;
+            ASSERT_EQ(bool(want[i]), any[i]) << "any, ray " << i;
+        }
+    }
+}
+
+TEST(HostileRays, ByEveryStructure) {
+    expect_equal_of_every_structure(teapot<float>(200));
+    expect_equal_of_every_structure(teapot<double>(200));
+    expect_equal_of_every_structure(spheres<double>(100));
+    expect_equal_of_every_structure(segments2d<float>(200));
+}
+
 /// Copies of one set, placed in every way, in an index of a kind.
 template <template <class, int> class Inner, class P>
 struct Placements {
@@ -179,6 +209,37 @@ TEST(HostileRays, AgainstInstances) {
     expect_hostile_rays_against_instances<WideBvh>(teapot<float>(60));
     expect_hostile_rays_against_instances<WideBvh>(teapot<double>(60));
     expect_hostile_rays_against_instances<Grid>(segments2d<double>(60));
+}
+
+/// Directions ever shorter, down to where no number is left. All levels agree on where a hit ends to be one.
+template <template <class, int> class Inner, class P>
+void expect_short_directions_against_instances(const P& set) {
+    using T = typename P::Scalar;
+    const auto placed = transforms<P::dimension>(12, Scales::any, 20);
+    const auto box = world_of(set, placed);
+    const auto middles = middles_of(set, placed);
+    std::vector<Ray<T, P::dimension>> rays;
+    for (std::size_t i = 0; i < in_long_runs(30000, 3000); ++i) {
+        Random random(32, i);
+        const auto target = i % 2 == 0 ? point_in(box, 0.0, random) : middles[random.bits() % middles.size()];
+        // Far off t would be beyond what T holds.
+        Ray<T, P::dimension> ray{target, {}};
+        if (i % 4 < 2) ray.origin += Vec<T, P::dimension>(random.template in_cube<P::dimension>());
+        if (i % 4 >= 2) ray.origin = point_in(box, 1.0, random);
+        const auto way = normalized(Vec<double, P::dimension>(target - ray.origin));
+        const int shorter = static_cast<int>(random.bits() % (i % 3 == 0 ? 80 : 20)) - 8;
+        const double unit = std::ldexp(1.0, std::numeric_limits<T>::min_exponent + shorter);
+        ray.direction = Vec<T, P::dimension>(way * unit);
+        rays.push_back(ray);
+    }
+    expect_equal_of_instances<Inner>(set, placed, rays);
+}
+
+TEST(HostileRays, ShortDirectionsAgainstInstances) {
+    expect_short_directions_against_instances<WideBvh>(teapot<float>(60));
+    expect_short_directions_against_instances<WideBvh>(teapot<double>(60));
+    expect_short_directions_against_instances<Grid>(segments2d<double>(60));
+    expect_short_directions_against_instances<KdTree>(spheres<float>(60));
 }
 
 }  // namespace

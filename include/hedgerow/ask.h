@@ -1,4 +1,4 @@
-/// The questions that an Index answers: a ray, a point or a box at a time, or rays in batches.
+/// The questions that an Index answers: a ray, a point or a box at a time, or many in a batch.
 #pragma once
 
 #include <atomic>
@@ -9,6 +9,7 @@
 #include <hedgerow/geometry/offset.h>
 #include <hedgerow/index.h>
 #include <hedgerow/queries/all_hits.h>
+#include <hedgerow/queries/answer_lists.h>
 #include <hedgerow/queries/any_hit.h>
 #include <hedgerow/queries/closest_hit.h>
 #include <hedgerow/queries/closest_point.h>
@@ -102,11 +103,11 @@ std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, 
 }
 
 namespace detail {
-inline void expect_room(std::size_t rays, std::size_t answers) {
-    if (answers < rays)
-        throw InputError("there are " + std::to_string(rays) + " rays, but room for " +
-                         std::to_string(answers) +
-                         " answers: make the array of answers as long as that of rays");
+inline void expect_room(const std::string& asked, std::size_t count, std::size_t answers) {
+    if (answers < count)
+        throw InputError("there are " + std::to_string(count) + " " + asked + ", but room for " +
+                         std::to_string(answers) + " answers: make the array of answers as long as that of " +
+                         asked);
 }
 /// Rays `begin` to `end` of a batch by `by_kernels(kernels, scene, begin, end)` where kernels answer, else
 /// `one(i, filter)` each; in pieces over the executor.
@@ -135,13 +136,14 @@ KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& ex
 /// (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a WideBvh go ray by
 /// ray.
 ///
-///   closest_hits(index, rays, hits, default_executor(),
+///   closest_hits(index, rays, hits, default_executor());
+///   closest_hits(index, rays, hits,
 ///                [&](std::size_t i, const Hit<float>& h) { return h.element != starts_on[i]; });
 template <class S, class P, class Filter = KeepAll>
 KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
                        std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor(),
                        const Filter& filter = {}) {
-    detail::expect_room(rays.size(), hits.size());
+    detail::expect_room("rays", rays.size(), hits.size());
     return detail::answer_batch(
         index, rays.size(), executor, filter,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
@@ -154,13 +156,76 @@ KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scal
 template <class S, class P, class Filter = KeepAll>
 KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
                    std::span<bool> hits, Executor& executor = serial_executor(), const Filter& filter = {}) {
-    detail::expect_room(rays.size(), hits.size());
+    detail::expect_room("rays", rays.size(), hits.size());
     return detail::answer_batch(
         index, rays.size(), executor, filter,
         [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
             return kernels.any_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
         },
         [&](std::size_t i, const auto& own) { hits[i] = any_hit(index, rays[i], own); });
+}
+template <class S, class P, FilterOf<typename P::Scalar> Filter>
+KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
+                       std::span<Hit<typename P::Scalar>> hits, const Filter& filter) {
+    return closest_hits(index, rays, hits, serial_executor(), filter);
+}
+template <class S, class P, FilterOf<typename P::Scalar> Filter>
+KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
+                   std::span<bool> hits, const Filter& filter) {
+    return any_hits(index, rays, hits, serial_executor(), filter);
+}
+
+/// The closest point for each of some points, as `closest_point` finds it; the element is none where nothing
+/// lies within the distance. Points may lie in memory as they like (primitives/strided.h); a vector or a span
+/// of them will do. Throws InputError, and writes nothing, if there are fewer places for answers.
+template <class S, class P>
+void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
+                    std::span<Near<typename P::Scalar, P::dimension>> found,
+                    Executor& executor = serial_executor(),
+                    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
+    detail::expect_room("points", points.size(), found.size());
+    executor.for_each_piece(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            found[i] = closest_point(index, points[i], max_distance2)
+                           .value_or(Near<typename P::Scalar, P::dimension>{});
+    });
+}
+
+/// A list for each of many questions: `found[i]` is what the function of the same name finds for question i.
+/// Takes the memory of all answers, twice while it runs.
+///
+///   const auto hits = all_hits(index, rays);
+///   for (const Hit<float>& hit : hits[7]) ...
+template <class S, class P, class Filter = KeepAll>
+AnswerLists<Hit<typename P::Scalar>> all_hits(const Index<S, P>& index,
+                                              const RayArray<typename P::Scalar, P::dimension>& rays,
+                                              Executor& executor = serial_executor(),
+                                              const Filter& filter = {}) {
+    return answer_lists<Hit<typename P::Scalar>>(rays.size(), executor, [&](std::size_t i, auto& hits) {
+        all_hits(index, rays[i], hits, filter_of_ray(filter, i));
+    });
+}
+template <class S, class P, FilterOf<typename P::Scalar> Filter>
+AnswerLists<Hit<typename P::Scalar>> all_hits(const Index<S, P>& index,
+                                              const RayArray<typename P::Scalar, P::dimension>& rays,
+                                              const Filter& filter) {
+    return all_hits(index, rays, serial_executor(), filter);
+}
+template <class S, class P>
+AnswerLists<Near<typename P::Scalar, P::dimension>> nearest(
+    const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points, std::size_t k,
+    Executor& executor = serial_executor(),
+    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
+    return answer_lists<Near<typename P::Scalar, P::dimension>>(
+        points.size(), executor,
+        [&](std::size_t i, auto& found) { nearest(index, points[i], k, found, max_distance2); });
+}
+template <class S, class P>
+AnswerLists<IdOf<P>> overlapping(const Index<S, P>& index,
+                                 const Strided<Box<typename P::Scalar, P::dimension>>& boxes,
+                                 Executor& executor = serial_executor()) {
+    return answer_lists<IdOf<P>>(boxes.size(), executor,
+                                 [&](std::size_t i, auto& found) { overlapping(index, boxes[i], found); });
 }
 
 }  // namespace hedgerow

@@ -8,3 +8,4 @@
 #include <hedgerow/primitives/sphere_set.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/structures/all.h>
+#include <hedgerow/surface.h>

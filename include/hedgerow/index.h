@@ -1,8 +1,10 @@
 /// A structure built over primitives. The questions it answers are in ask.h.
 #pragma once
 
+#include <concepts>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <hedgerow/geometry/transform.h>
@@ -30,9 +32,21 @@ concept Refittable = requires(S& s, const ReferenceList<typename P::Scalar, P::d
     { s.drift() } -> std::convertible_to<double>;
 };
 
+namespace detail {
+/// Takes a value, and leaves T() if there is one: of structures and views, an empty one.
+template <class T>
+T taken(T& from) noexcept {
+    if constexpr (std::default_initializable<T> && std::is_move_assignable_v<T>)
+        return std::exchange(from, T());
+    else
+        return std::move(from);
+}
+}  // namespace detail
+
 /// A structure S over the primitives that the view P looks at. Const use is thread-safe, and queries allocate
-/// nothing (those that return lists fill the caller's vector). Movable. What it looks at is not to be changed
-/// once it is built, but through `insert` and `erase`, or with a `refit` after, where the structure has them.
+/// nothing (those that return lists fill the caller's vector). Movable: an index that was moved from is empty
+/// and may be asked, changed or assigned to. What it looks at is not to be changed once it is built, but
+/// through `insert` and `erase`, or with a `refit` after, where the structure has them.
 template <class S, PrimitiveSet P>
 class Index {
     friend struct detail::IndexParts;
@@ -55,6 +69,27 @@ public:
     };
     struct Nothing {};
     using KernelInstance = std::conditional_t<by_kernels, WideInstance, Nothing>;
+
+    /// Over nothing: no query finds anything. (A view of a type of your own needs a T() for it, and what that
+    /// looks at is empty.)
+    Index() requires std::default_initializable<S> && std::default_initializable<P>
+        : primitives_(), structure_(), leaves_() {}
+    Index(const Index&) = default;
+    Index(Index&& other) noexcept
+        : owner_(std::move(other.owner_)),
+          primitives_(detail::taken(other.primitives_)),
+          structure_(detail::taken(other.structure_)),
+          leaves_(detail::taken(other.leaves_)) {}
+    Index& operator=(const Index&) = default;
+    Index& operator=(Index&& other) noexcept {
+        if (this == &other) return *this;
+        primitives_ = detail::taken(other.primitives_);
+        structure_ = detail::taken(other.structure_);
+        leaves_ = detail::taken(other.leaves_);
+        owner_ = std::move(other.owner_);
+        return *this;
+    }
+    ~Index() = default;
 
     /// Borrows what `primitives` looks at; `owner`, if any, keeps it alive.
     Index(P primitives, const typename S::Options& options, Executor& executor,
@@ -268,6 +303,11 @@ auto build(P&& primitives,
         auto view = view_of(*owner);
         return Index<Structure, View>(std::move(view), options, executor, std::move(owner));
     }
+}
+/// With the structure's own options, over an executor: `build<KdTree>(mesh, default_executor())`.
+template <template <class, int> class S, class P>
+auto build(P&& primitives, Executor& executor) {
+    return build<S>(std::forward<P>(primitives), {}, executor);
 }
 /// The default structure: the engine.
 template <class P>

@@ -89,7 +89,9 @@ private:
             const WideInstance& placed = leaves->scene_.all[instance];
             prepare<W>(way_back<true>(placed, leaves->origin_), way_back<false>(placed, leaves->direction_),
                        leaves->ray_.t_min, limit, scene.tree.bounds, 0.0f, *ray);
-            return ray->usable && trace_one<W, wanted>(scene, *ray);
+            // As PlacedIndex::inside has it. An index that was moved away since has no tree.
+            if (!ray->usable || ray->z_length < shortest_direction<float> || scene.tree.empty()) return false;
+            return trace_one<W, wanted>(scene, *ray);
         }
     };
 

@@ -18,6 +18,7 @@
 #include <functional>
 #include <numeric>
 
+#include <hedgerow/primitives/placed_index.h>
 #include <hedgerow/structures/bvh/build_tree.h>
 #include <hedgerow/structures/bvh/wide/kernels.h>
 

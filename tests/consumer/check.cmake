@@ -1,4 +1,5 @@
-# cmake -D HOW=core|installed|subdirectory -D WORK=DIR -D SOURCE=DIR [-D BINARY=DIR -D TOOL=BOOL] -D OPTIONS=... -P check.cmake
+# cmake -D HOW=core|installed|subdirectory -D WORK=DIR -D SOURCE=DIR [-D BINARY=DIR -D COMPILER=g++] -D OPTIONS=...
+#       -P check.cmake
 # Builds the consumer in WORK: with core alone in every variant, whose outputs must be the same, else in one.
 #
 # As a subdirectory core and io are compiled again: without optimisation, which is quicker, and in a folder that is
@@ -22,7 +23,7 @@ else()
   endforeach()
   # Moved after it is installed, and no path of the build in it: a package can be unpacked anywhere.
   file(RENAME ${WORK}/installed ${WORK}/prefix)
-  file(GLOB_RECURSE written ${WORK}/prefix/*.cmake)
+  file(GLOB_RECURSE written ${WORK}/prefix/*.cmake ${WORK}/prefix/*.pc)
   foreach(file ${written})
     file(READ ${file} text)
     foreach(path ${SOURCE} ${BINARY})
@@ -31,6 +32,11 @@ else()
         message(FATAL_ERROR "${file} names ${path}")
       endif()
     endforeach()
+  endforeach()
+  foreach(document README.md docs/api.md docs/pictures/ray.svg examples/instances.cpp)
+    if(NOT EXISTS ${WORK}/prefix/share/doc/hedgerow/${document})
+      message(FATAL_ERROR "${document} is not installed")
+    endif()
   endforeach()
   string(REPLACE ";" "," components "${components}")
   list(APPEND OPTIONS -DCMAKE_PREFIX_PATH=${WORK}/prefix "-DHEDGEROW_COMPONENTS=${components}")
@@ -57,3 +63,12 @@ foreach(variant IN LISTS variants)
     message(FATAL_ERROR "the consumer's variant ${variant} prints other bits than plain: compare the .txt files in ${WORK}")
   endif()
 endforeach()
+
+# What is installed is found by pkg-config too.
+if(HOW STREQUAL "core")
+  file(GLOB_RECURSE package ${WORK}/prefix/*/hedgerow-core.pc)
+  get_filename_component(folder ${package} DIRECTORY)
+  set(ENV{PKG_CONFIG_PATH} ${folder})
+  run(sh -c "'${COMPILER}' -std=c++20 '${CMAKE_CURRENT_LIST_DIR}/added/main.cpp' -o by_pkg_config \
+             $(pkg-config --cflags --libs hedgerow-core) && ./by_pkg_config | grep -qx hit" WORKING_DIRECTORY ${WORK})
+endif()

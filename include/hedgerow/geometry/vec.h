@@ -44,6 +44,10 @@ struct Vec {
     constexpr T z() const requires(D == 3) { return data[2]; }
 
     friend constexpr bool operator==(const Vec&, const Vec&) = default;
+    friend constexpr Vec& operator+=(Vec& a, const Vec& b) { return a = a + b; }
+    friend constexpr Vec& operator-=(Vec& a, const Vec& b) { return a = a - b; }
+    friend constexpr Vec& operator*=(Vec& a, T s) { return a = a * s; }
+    friend constexpr Vec& operator/=(Vec& a, T s) { return a = a / s; }
 };
 
 using Vec2f = Vec<float, 2>;

@@ -111,6 +111,7 @@ public:
 
     using KernelInstance = typename I::KernelInstance;
 
+    InstanceSetView() = default;
     InstanceSetView(std::span<const PlacedIndex<I>> all, const KernelInstance* for_kernels, double error,
                     double error_by_origin)
         : all_(all), for_kernels_(for_kernels), error_(error), error_by_origin_(error_by_origin) {}
@@ -205,8 +206,8 @@ private:
     static constexpr NoVisits uncounted{};
 
     std::span<const PlacedIndex<I>> all_;
-    const KernelInstance* for_kernels_;
-    double error_, error_by_origin_;
+    const KernelInstance* for_kernels_ = nullptr;
+    double error_ = 0, error_by_origin_ = 0;
 };
 
 /// Instances as primitives: `build<Bvh>(InstanceSet{...})` is a BVH whose leaves are grids, if the indexes
@@ -217,8 +218,9 @@ private:
 ///   const auto index = build<Bvh>(scene);
 ///
 /// A hit is the test of the ray in the object's space; it names the instance and the element of its index,
-/// and equal t goes to the lowest (instance, element). Closest points and overlaps are those of the
-/// primitives' shapes in the world, corners transformed and rounded to T; so they are right under any
+/// and equal t goes to the lowest (instance, element). A ray whose direction is shorter in that space than
+/// `shortest_direction` (2^-98, in double 2^-965) hits nothing there. Closest points and overlaps are those
+/// of the primitives' shapes in the world, corners transformed and rounded to T; so they are right under any
 /// transform. Spheres and types of one's own have such shapes only under similarities (placed.h). Visits
 /// count the instances, not what is looked at inside.
 ///

@@ -23,6 +23,12 @@ struct Instance {
              std::uint32_t = 0) = delete;  // an index has to outlive it
 };
 
+/// The largest component that a direction has at least in an object's space; a shorter one hits nothing
+/// there. What T drops of shorter components (those below its normal numbers) turns it by 1/16 unit roundoff
+/// at most.
+template <std::floating_point T>
+inline constexpr T shortest_direction = std::numeric_limits<T>::min() * (16 / unit_roundoff<T>);
+
 /// An instance made ready, and how far what it answers may err.
 ///
 /// Let A x + a be the way to the world and N x + n the way back, ‖·‖ the greatest sum of a row's magnitudes,
@@ -35,7 +41,8 @@ struct Instance {
 /// all, and the world box is enlarged by it. A triangle's world corners are in it anyway (Affine::box).
 ///
 /// *Rays.* The origin o goes to o' = N o + n, with an error of 2u|o'| + 8u(‖N‖|o| + |n|), and so does the
-/// direction: at a place in the object's box that makes 2u(L + |o'|) and 8u‖N‖ times the way. A hit lies
+/// direction, if it is not shorter than `shortest_direction`: at a place in the object's box that makes
+/// 3u(L + |o'|) and 8u‖N‖ times the way. A hit lies
 /// within e' of its primitive's box there, 16u(L + |o'|) + 4u|o'| (RayProbe). With |o'| <= ‖N‖|o| + |n| all
 /// of it is less than 32u(L + |n|) + 64u‖N‖|o|; the world sees it ‖A‖ times as large, and R(W + |a|) more,
 /// since N is rounded. That is added to the error of the world's ray, which is then as good as any: t is the
@@ -73,6 +80,7 @@ public:
     }
 
     const I& index() const { return *index_; }
+    const Transform<D>& transform() const { return transform_; }
     std::uint32_t mask() const { return mask_; }
     std::uint32_t geometry() const { return geometry_; }
     const Box<T, D>& bounds() const { return bounds_; }
@@ -84,11 +92,14 @@ public:
                                               scale_);
     }
 
-    /// The ray in the object's space: each component is computed in double and rounded once.
+    /// The ray in the object's space: each component is computed in double and rounded once. The direction is
+    /// 0 if it is shorter than `shortest_direction`.
     Ray<T, D> inside(const Ray<T, D>& ray) const {
         const auto& back = transform_.back();
-        return {Vec<T, D>(back.point(Vec<double, D>(ray.origin))),
-                Vec<T, D>(back.vector(Vec<double, D>(ray.direction))), ray.t_min, ray.t_max};
+        const Vec<T, D> direction(back.vector(Vec<double, D>(ray.direction)));
+        const bool usable = max_component(abs(direction)) >= shortest_direction<T>;
+        return {Vec<T, D>(back.point(Vec<double, D>(ray.origin))), usable ? direction : Vec<T, D>(),
+                ray.t_min, ray.t_max};
     }
 
     /// A point in the object's space, and how far from it there may lie what is within a distance of the

@@ -16,6 +16,7 @@ public:
     using Scalar = T;
     static constexpr int dimension = D;
 
+    PointCloudView() = default;
     explicit PointCloudView(Strided<Vec<T, D>> points) : points_(points) {}
 
     std::size_t size() const { return points_.size(); }

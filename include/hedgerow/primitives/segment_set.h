@@ -18,6 +18,7 @@ public:
     using Scalar = T;
     static constexpr int dimension = 2;
 
+    SegmentSetView() = default;
     explicit SegmentSetView(Strided<Segment<T, 2>> segments) : segments_(segments) {}
 
     std::size_t size() const { return segments_.size(); }

@@ -16,6 +16,7 @@ public:
     using Scalar = T;
     static constexpr int dimension = D;
 
+    SphereSetView() = default;
     explicit SphereSetView(Strided<Sphere<T, D>> spheres) : spheres_(spheres) {}
 
     std::size_t size() const { return spheres_.size(); }

@@ -28,6 +28,7 @@ public:
     using Scalar = T;
     static constexpr int dimension = 3;
 
+    TriangleMeshView() = default;
     TriangleMeshView(Strided<Vec<T, 3>> vertices, Strided<TriangleIndices> triangles,
                      Strided<std::uint32_t> faces = {})
         : vertices_(vertices), triangles_(triangles), faces_(faces) {}

@@ -135,8 +135,7 @@ public:
     /// The ray's line, 4e thick: a hit is within e of its primitive, and computing where the line enters a
     /// volume costs less than 8u·M + 8u·|o| (a plane: height, slope and quotient), which 3e exceed.
     ThickLine<D> thick_line() const {
-        double unit = std::numeric_limits<double>::infinity();  // 1 / the direction's largest component
-        for (int i = 0; i < D; ++i) unit = std::min(unit, std::abs(static_cast<double>(inverse_[i])));
+        const double unit = this->unit();
         return {Vec<double, D>(ray_.origin), Vec<double, D>(ray_.direction) * unit,
                 4 * static_cast<double>(slack_), unit};
     }
@@ -155,14 +154,16 @@ public:
     }
 
     /// The same for any plane, in double. Where the ray runs within the error of parallel it stays on both
-    /// sides, or on one. Heights and speeds err by some roundings of double, which twice the slack covers.
+    /// sides, or on one. Heights and speeds err by some roundings of double, which twice the slack covers;
+    /// where the direction is of doubles, its products could leave their range, and it is scaled to 1 first.
     Cut<State> cut(const State& s, const CutPlane<D>& plane, T limit) const {
         const double thickness = product(plane.reach(), 2 * static_cast<double>(slack_)) + plane.margin;
-        const double approach = dot(plane.normal, Vec<double, D>(ray_.direction));
+        const double unit = std::is_same_v<T, double> ? this->unit() : 1;
+        const double approach = dot(plane.normal, Vec<double, D>(ray_.direction) * unit);
         const double height = plane.height(Vec<double, D>(ray_.origin));
         const double speed = std::abs(approach), away = approach < 0 ? height : -height;
-        const T leave = static_cast<T>((away + thickness) / speed);
-        const T arrive = static_cast<T>((away - thickness) / speed);
+        const T leave = static_cast<T>((away + thickness) / speed * unit);
+        const T arrive = static_cast<T>((away - thickness) / speed * unit);
         return sides(s, approach < 0, leave, arrive, limit);
     }
 
@@ -237,6 +238,12 @@ public:
     }
 
 private:
+    /// 1 / the direction's largest component.
+    double unit() const {
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < D; ++i) least = std::min(least, std::abs(static_cast<double>(inverse_[i])));
+        return least;
+    }
     /// e over a box: a share of M, 4u of |o|, and where t may underflow some subnormal steps.
     T error_over(const Box<T, D>& box, T share) const {
         using L = Lanes<T>;

@@ -7,6 +7,12 @@
 
 namespace hedgerow {
 
+/// What may refuse hits (queries/hit.h): callable with a hit, or with a ray's number and its hit.
+template <class F, class T>
+concept FilterOf = std::invocable < const F&,
+        const Hit<T>
+& > || std::invocable<const F&, std::size_t, const Hit<T>&>;
+
 /// Whether a filter keeps a hit of ray number `ray` of a batch (0 for a ray alone). It is called with both if
 /// it takes both, else with the hit.
 template <class Filter, class H>

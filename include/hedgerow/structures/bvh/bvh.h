@@ -20,6 +20,8 @@ public:
     static constexpr int width = 2;
     static constexpr int max_depth = bvh_max_depth;
 
+    /// Over nothing.
+    Bvh() = default;
     template <PrimitiveSet P>
     static Bvh build(const P& set, const Options& options, Executor& executor) {
         const auto corners = [&](PrimitiveId id) { return corners_in(set, id); };

@@ -29,6 +29,8 @@ public:
     static constexpr int width = 2;
     static constexpr int max_depth = bvh_max_depth;
 
+    /// Over nothing.
+    VolumeBvh() = default;
     template <PrimitiveSet P>
     static VolumeBvh build(const P& set, const Options& options, Executor& executor) {
         VolumeBvh tree(options, Bvh<T, D>::build(set, options, executor));

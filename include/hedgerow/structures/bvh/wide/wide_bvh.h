@@ -32,6 +32,8 @@ public:
     /// An instance is looked into at the cost of so many triangles, so that most have a leaf of their own.
     static constexpr double instance_cost = 16;
 
+    /// Over nothing.
+    WideBvh() { options_.width = tree_.nodes.width(); }
     template <PrimitiveSet P>
     static WideBvh build(const P& set, const Options& options, Executor& executor) {
         Options all = resolved(options);
@@ -198,7 +200,7 @@ private:
     }
 
     Options options_;
-    std::size_t count_;
+    std::size_t count_ = 0;
     WideTree<T, D> tree_;
     double built_cost_ = -1;  // not asked for before the first refit
 };

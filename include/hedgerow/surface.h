@@ -1,0 +1,141 @@
+/// Where a hit lies in the world, and which way the surface faces there. All is computed in double and
+/// rounded once.
+#pragma once
+
+#include <hedgerow/primitives/instance_set.h>
+#include <hedgerow/primitives/triangle_mesh.h>
+#include <hedgerow/queries/hit.h>
+
+namespace hedgerow {
+
+namespace detail {
+
+template <class P>
+concept OfTriangles = requires(const P& set) {
+    set.triangle(0);
+};
+template <class P>
+concept OfSegments = requires(const P& set) {
+    set.segment(0);
+};
+template <class P>
+concept OfSpheres = requires(const P& set) {
+    set.sphere(0);
+};
+/// Sets of which a hit's u and v say where it lies.
+template <class P>
+inline constexpr bool has_coordinates = OfTriangles<P> || OfSegments<P>;
+template <Instanced P>
+inline constexpr bool has_coordinates<P> =
+    has_coordinates<typename std::remove_cvref_t<decltype(std::declval<const P&>()[0].index())>::Primitives>;
+
+template <int D>
+Vec<double, D> unit(const Vec<double, D>& a) {  // by way of the largest component, whose square fits
+    return normalized(a / max_component(abs(a)));
+}
+inline Vec3d unit_normal(const Triangle<double, 3>& t) {
+    const Vec3d e1 = t.b - t.a, e2 = t.c - t.a;
+    const double size = max_component(max(abs(e1), abs(e2)));
+    return unit(cross(e1 / size, e2 / size));
+}
+/// The ray in the space of an instance.
+template <class I, int D>
+Ray<double, D> inside(const PlacedIndex<I>& placed, const Ray<double, D>& ray) {
+    const auto& back = placed.transform().back();
+    return {back.point(ray.origin), back.vector(ray.direction)};
+}
+
+template <class P, int D, class T>
+Vec<double, D> normal_on(const P& set, const Ray<double, D>& ray, const Hit<T>& hit) {
+    using V = Vec<double, D>;
+    if constexpr (Instanced<P>) {
+        const auto& placed = set[hit.instance];
+        const V own = normal_on(placed.index().primitives(), inside(placed, ray), hit);
+        V there;  // by the inverse transposed
+        for (int k = 0; k < D; ++k)
+            for (int j = 0; j < D; ++j)
+                there[j] += product(placed.transform().back().linear[static_cast<std::size_t>(k)][j], own[k]);
+        return unit(there);
+    } else if constexpr (OfTriangles<P>) {
+        const auto t = set.triangle(hit.element);
+        return unit_normal({V(t.a), V(t.b), V(t.c)});
+    } else if constexpr (OfSegments<P>) {
+        const auto s = set.segment(hit.element);
+        const V along = V(s.b) - V(s.a);
+        return unit(V(-along[1], along[0]));
+    } else {
+        static_assert(OfSpheres<P>, "the normal of a type of your own is for you to say");
+        const V outward = ray.at(static_cast<double>(hit.t)) - V(set.sphere(hit.element).center);
+        return unit(max_component(abs(outward)) > 0 ? outward : -ray.direction);  // a ball may be a point
+    }
+}
+
+template <class P, int D, class T>
+Vec<double, D> position_on(const P& set, const Ray<double, D>& ray, const Hit<T>& hit) {
+    using V = Vec<double, D>;
+    const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
+    if constexpr (Instanced<P>) {
+        const auto& placed = set[hit.instance];
+        return placed.transform().there().point(
+            position_on(placed.index().primitives(), inside(placed, ray), hit));
+    } else if constexpr (OfTriangles<P>) {
+        const auto t = set.triangle(hit.element);
+        const V a(t.a);
+        return a + (V(t.b) - a) * u + (V(t.c) - a) * v;
+    } else if constexpr (OfSegments<P>) {
+        const auto s = set.segment(hit.element);
+        const V a(s.a);
+        return a + (V(s.b) - a) * u;
+    } else if constexpr (OfSpheres<P>) {
+        const auto ball = set.sphere(hit.element);
+        return V(ball.center) + normal_on(set, ray, hit) * static_cast<double>(ball.radius);
+    } else {
+        return ray.at(static_cast<double>(hit.t));
+    }
+}
+
+/// The primitives of an index, or the view of a set.
+template <class Of>
+auto primitives_of(const Of& of) {
+    if constexpr (requires { of.primitives(); })
+        return of.primitives();
+    else
+        return view_of(of);
+}
+template <class Of>
+using PrimitivesOf = decltype(primitives_of(std::declval<const Of&>()));
+template <class T, int D>
+Ray<double, D> line_of(const Ray<T, D>& ray) {
+    return {Vec<double, D>(ray.origin), Vec<double, D>(ray.direction)};
+}
+
+}  // namespace detail
+
+/// The hit point for the ray that was asked: from u and v on triangles and segments, on the surface of a
+/// sphere, and at ray.at(t) on a type of your own. The first three err by some roundings of the primitive's
+/// coordinates, however far the ray came; ray.at(t) errs by some of the way. `of` is the index that was
+/// asked, or its primitives. O(1).
+template <class Of, class T, int D>
+Vec<T, D> position(const Of& of, const Ray<T, D>& ray, const Hit<T>& hit) {
+    return Vec<T, D>(detail::position_on(detail::primitives_of(of), detail::line_of(ray), hit));
+}
+/// The unit normal: of a triangle on the side from which its corners go counterclockwise, of a sphere
+/// outward, of a segment to the left on the way from a to b. An instance turns it with the surface; a mirror
+/// does not flip it. O(1).
+template <class Of, class T, int D>
+Vec<T, D> normal(const Of& of, const Ray<T, D>& ray, const Hit<T>& hit) {
+    return Vec<T, D>(detail::normal_on(detail::primitives_of(of), detail::line_of(ray), hit));
+}
+/// The same of triangles and segments, where the ray is not needed.
+template <class Of, class T>
+requires detail::has_coordinates<detail::PrimitivesOf<Of>>
+auto position(const Of& of, const Hit<T>& hit) {
+    return position(of, Ray<T, Of::dimension>(), hit);
+}
+template <class Of, class T>
+requires detail::has_coordinates<detail::PrimitivesOf<Of>>
+auto normal(const Of& of, const Hit<T>& hit) {
+    return normal(of, Ray<T, Of::dimension>(), hit);
+}
+
+}  // namespace hedgerow

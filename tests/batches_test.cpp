@@ -1,0 +1,131 @@
+/// Batches of every question give what single calls do, over any executor; and the short ways to ask.
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/sets.h>
+
+#include "backwards.h"
+#include "contract.h"
+
+using namespace hedgerow;
+
+namespace {
+
+template <class T>
+bool same(std::span<const T> a, const std::vector<T>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+template <class I>
+void expect_same_as_alone(const I& index, Executor& executor) {
+    using T = typename I::Scalar;
+    constexpr int D = I::dimension;
+    const contract::Questions questions(index, 3000);
+    const auto alone = contract::answers(index, questions);
+
+    std::vector<Near<T, D>> found(questions.points.size());
+    closest_points(index, questions.points, found, executor);
+    const auto hits = all_hits(index, questions.rays, executor);
+    const auto near = nearest(index, questions.points, 5, executor);
+    const auto overlaps = overlapping(index, questions.boxes, executor);
+    ASSERT_EQ(hits.size(), questions.rays.size());
+    ASSERT_EQ(near.size(), questions.points.size());
+    ASSERT_EQ(overlaps.size(), questions.boxes.size());
+    std::size_t answers = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        ASSERT_TRUE(same(hits[i], alone.all[i])) << "ray " << i;
+        answers += hits[i].size();
+    }
+    EXPECT_EQ(hits.all().size(), answers);
+    EXPECT_GT(answers, 100u);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        ASSERT_EQ(found[i], alone.near[i]) << "point " << i;
+        ASSERT_TRUE(same(near[i], alone.nearest[i])) << "point " << i;
+        ASSERT_TRUE(same(overlaps[i], alone.overlapping[i])) << "box " << i;
+    }
+    EXPECT_GT(overlaps.all().size(), 100u);
+}
+
+TEST(Batches, GiveWhatSingleCallsDo) {
+    const auto mesh = teapot<float>(300);
+    const auto balls = spheres<double>(200);
+    const auto segments = segments2d<float>(200);
+    Backwards backwards;
+    for (Executor* const executor : {static_cast<Executor*>(&serial_executor()), &default_executor(),
+                                     static_cast<Executor*>(&backwards)}) {
+        contract::with_each_structure(mesh,
+                                      [&](const auto& index) { expect_same_as_alone(index, *executor); });
+        expect_same_as_alone(build<KdTree>(balls), *executor);
+        expect_same_as_alone(build<Orthtree>(segments), *executor);
+    }
+}
+
+TEST(Batches, OfInstancesNameThem) {
+    const auto mesh = teapot<float>(100);
+    const auto pot = build(mesh);
+    const InstanceSet set{Instance(pot), Instance(pot, Transform<3>::translation({9, 0, 0}))};
+    const auto index = build<Bvh>(set);
+    const std::vector<Box3f> boxes = {pot.bounds(), index.bounds()};
+    const auto found = overlapping(index, boxes);
+    EXPECT_EQ(found[0].size(), mesh.size());
+    EXPECT_EQ(found[1].size(), 2 * mesh.size());
+    EXPECT_EQ(found[1].back().instance, 1u);
+}
+
+TEST(Batches, NeedNoExecutorForAFilter) {
+    const auto mesh = teapot<float>(300);
+    const auto index = build<Bvh>(mesh);
+    const contract::Questions questions(index, 500);
+    const auto odd = [](const Hit<float>& hit) { return hit.element % 2 != 0; };
+    const auto of_even_rays = [](std::size_t ray, const Hit<float>&) { return ray % 2 == 0; };
+    const auto expect_same = [&](const auto& filter) {
+        const std::size_t n = questions.rays.size();
+        std::vector<Hit<float>> want(n), got(n);
+        const std::unique_ptr<bool[]> any(new bool[n]);
+        closest_hits(index, questions.rays, want, serial_executor(), filter);
+        closest_hits(index, questions.rays, got, filter);
+        any_hits(index, questions.rays, {any.get(), n}, filter);
+        const auto all = all_hits(index, questions.rays, filter);
+        EXPECT_EQ(want, got);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            EXPECT_EQ(bool(want[i]), any[i]);
+            EXPECT_EQ(want[i], all[i].empty() ? Hit<float>() : all[i][0]);
+            kept += bool(want[i]);
+        }
+        EXPECT_GT(kept, n / 10);
+        EXPECT_LT(kept, all_hits(index, questions.rays).all().size());
+    };
+    expect_same(odd);
+    expect_same(of_even_rays);
+    expect_same(Except{7});
+}
+
+TEST(Batches, KeepToTheDistanceAndTheRoom) {
+    const auto cloud = points<double>(500);
+    const auto index = build<PointKdTree>(cloud);
+    const std::vector<Vec3d> at = {{0.5, 0.5, 0.5}, {9, 9, 9}};
+    std::vector<Near<double, 3>> found(2);
+    closest_points(index, at, found, serial_executor(), 1.0);
+    EXPECT_EQ(found[0], closest_point(index, at[0]));
+    EXPECT_EQ(found[1], (Near<double, 3>()));
+    const auto near = nearest(index, at, 4, default_executor(), 1.0);
+    EXPECT_EQ(near[0].size(), 4u);
+    EXPECT_TRUE(near[1].empty());
+    found.pop_back();
+    EXPECT_THROW(closest_points(index, at, found), InputError);
+    EXPECT_EQ(all_hits(index, std::vector<Ray3d>()).size(), 0u);
+}
+
+/// Any structure over an executor, with its own options or yours.
+TEST(Batches, BuildsTakeAnExecutorAlone) {
+    const auto mesh = teapot<float>(300);
+    const auto balls = spheres<double>(100);
+    EXPECT_EQ(build<KdTree>(mesh, default_executor()).structure().node_count(),
+              build<KdTree>(mesh).structure().node_count());
+    EXPECT_EQ(build<Grid>(balls, default_executor()).size(), balls.size());
+    EXPECT_EQ(build<Bvh>(teapot<double>(50), default_executor()).size(), teapot<double>(50).size());
+    Backwards backwards;
+    EXPECT_EQ(build<KdTree>(mesh, {.leaf_size = 2}, backwards).validate(), "");
+}
+
+}  // namespace

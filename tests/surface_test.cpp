@@ -1,0 +1,192 @@
+/// Where hits lie and how surfaces face there: on every kind of primitive, and in instances.
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/sets.h>
+
+#include "matrix.h"
+#include "placements.h"
+
+using namespace hedgerow;
+using namespace hedgerow::matrix;
+
+namespace {
+
+template <class T>
+class Surface : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Surface, Scalars);
+
+/// Calls f(ray, hit) for rays from all around that hit, and says how many did.
+template <class I, class F>
+std::size_t for_each_hit(const I& index, F f) {
+    using T = typename I::Scalar;
+    constexpr int D = I::dimension;
+    std::size_t hits = 0;
+    for (std::uint64_t i = 0; i < 500; ++i) {
+        Random random(41, i);
+        const Vec<T, D> from = point_in(index.bounds(), 1.0, random),
+                        to = point_in(index.bounds(), 0.0, random);
+        const Ray<T, D> ray{from, to - from};
+        const auto hit = closest_hit(index, ray);
+        if (!hit) continue;
+        f(ray, *hit);
+        ++hits;
+    }
+    return hits;
+}
+
+template <class T, int D>
+double error_of(const Vec<T, D>& a, const Vec<double, D>& b) {
+    return length(Vec<double, D>(a) - b);
+}
+
+TYPED_TEST(Surface, OfTriangles) {
+    using T = TypeParam;
+    const auto mesh = teapot<T>(500);
+    const auto index = build(mesh);
+    const double u = static_cast<double>(unit_roundoff<T>);
+    EXPECT_GT(for_each_hit(index,
+                           [&](const auto& ray, const auto& hit) {
+                               const auto t = mesh.view().triangle(hit.element);
+                               const Vec3d a(t.a), b(t.b), c(t.c);
+                               const auto p = position(index, hit), n = normal(mesh, hit);
+                               EXPECT_LT(
+                                   error_of(p, Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t)),
+                                   512 * u);
+                               EXPECT_EQ(p, position(mesh, ray, hit));
+                               EXPECT_EQ(n, normal(index, ray, hit));
+                               EXPECT_NEAR(length(Vec3d(n)), 1, 4 * u);
+                               EXPECT_NEAR(dot(Vec3d(n), Vec3d(p) - a), 0, 64 * u);
+                               EXPECT_NEAR(dot(Vec3d(n), normalized(b - a)), 0, 8 * u);
+                               EXPECT_NEAR(dot(Vec3d(n), normalized(c - a)), 0, 8 * u);
+                               EXPECT_GT(dot(Vec3d(n), cross(b - a, c - a)), 0);
+                           }),
+              100u);
+}
+
+/// ray.at(t) errs by roundings of the way, the place by u and v by roundings of the triangle alone.
+TEST(Surface, IsMetAsExactlyFromAfar) {
+    const TriangleMesh<float> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+    const auto index = build(mesh);
+    int hits = 0, off_the_plane = 0;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+        Random random(42, i);
+        const Vec3f from = Vec3f(random.direction<3>()) * 1e6f, at(0.25f, 0.25f, 0);
+        const Ray3f ray{from, (at - from) * 0.3f};
+        const auto hit = closest_hit(index, ray);
+        if (!hit) continue;
+        ++hits, off_the_plane += ray.at(hit->t)[2] != 0;
+        EXPECT_EQ(position(index, *hit)[2], 0);
+        EXPECT_EQ(normal(index, *hit), Vec3f(0, 0, 1));
+    }
+    EXPECT_GT(hits, 100);
+    EXPECT_GT(off_the_plane, 20);
+}
+
+/// Triangles at both ends of the range have normals, though their areas' squares are beyond it.
+TYPED_TEST(Surface, OfTinyAndHugeTriangles) {
+    using T = TypeParam;
+    for (const T size : {largest_coordinate<T>, T(1) / largest_coordinate<T>}) {
+        const TriangleMesh<T> mesh{{{0, 0, 0}, {0, size, 0}, {0, 0, size}}, {{0, 1, 2}}, {}};
+        const auto index = build(mesh);
+        const auto hit = closest_hit(index, Ray<T, 3>{{size, size / 4, size / 4}, {-size, 0, 0}});
+        ASSERT_TRUE(hit);
+        EXPECT_EQ(normal(index, *hit), (Vec<T, 3>(1, 0, 0)));
+        EXPECT_EQ(position(index, *hit), (Vec<T, 3>(0, size / 4, size / 4)));
+    }
+}
+
+TYPED_TEST(Surface, OfSpheres) {
+    using T = TypeParam;
+    const auto set = spheres<T>(50);
+    const auto index = build<KdTree>(set);
+    const double u = static_cast<double>(unit_roundoff<T>);
+    EXPECT_GT(for_each_hit(index,
+                           [&](const auto& ray, const auto& hit) {
+                               const auto ball = set.view().sphere(hit.element);
+                               const Vec3d center(ball.center);
+                               const auto p = position(index, ray, hit), n = normal(index, ray, hit);
+                               const double radius = static_cast<double>(ball.radius);
+                               EXPECT_NEAR(length(Vec3d(p) - center), radius, 4 * u);
+                               EXPECT_LT(
+                                   error_of(p, Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t)),
+                                   512 * u);
+                               EXPECT_LT(error_of(n, (Vec3d(p) - center) / radius), 512 * u);
+                           }),
+              100u);
+    const SphereSet<T, 3> one_point{{{{1, 2, 3}, 0}}};
+    EXPECT_EQ(normal(one_point, Ray<T, 3>{{1, 2, 5}, {0, 0, -2}}, Hit<T>{1, 0, 0, 0, 0, 0, 0}),
+              (Vec<T, 3>(0, 0, 1)));
+}
+
+TYPED_TEST(Surface, OfSegments) {
+    using T = TypeParam;
+    const auto set = segments2d<T>(200);
+    const auto index = build<Orthtree>(set);
+    const double u = static_cast<double>(unit_roundoff<T>);
+    EXPECT_GT(for_each_hit(index,
+                           [&](const auto& ray, const auto& hit) {
+                               const auto s = set.view().segment(hit.element);
+                               const Vec2d along = normalized(Vec2d(s.b) - Vec2d(s.a));
+                               const auto p = position(index, hit), n = normal(index, hit);
+                               EXPECT_LT(
+                                   error_of(p, Vec2d(ray.origin) + Vec2d(ray.direction) * double(hit.t)),
+                                   512 * u);
+                               EXPECT_LT(error_of(n, Vec2d(-along[1], along[0])), 4 * u);
+                           }),
+              100u);
+}
+
+/// In the world, hits on instances lie on the triangles there and face as these do; mirrored ones keep their
+/// outside.
+TYPED_TEST(Surface, OfInstances) {
+    using T = TypeParam;
+    const auto mesh = teapot<T>(200);
+    const auto pot = build<Grid>(mesh);
+    const auto places = transforms<3>(20, Scales::any, 20);
+    std::vector<Instance<decltype(pot)>> instances;
+    for (const auto& place : places) instances.emplace_back(pot, place);
+    const InstanceSet set(instances);
+    const auto index = build<Bvh>(set);
+    const double u = static_cast<double>(unit_roundoff<T>);
+    int mirrored = 0;
+    EXPECT_GT(for_each_hit(index,
+                           [&](const auto& ray, const auto& hit) {
+                               const auto& there = places[hit.instance].there();
+                               const auto own = mesh.view().triangle(hit.element);
+                               const Vec3d a = there.point(Vec3d(own.a)), b = there.point(Vec3d(own.b)),
+                                           c = there.point(Vec3d(own.c));
+                               const auto p = position(index, hit), n = normal(set, hit);
+                               EXPECT_EQ(p, position(index, ray, hit));
+                               EXPECT_LT(
+                                   error_of(p, Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t)),
+                                   4096 * u);
+                               EXPECT_NEAR(dot(Vec3d(n), normalized(b - a)), 0, 64 * u);
+                               EXPECT_NEAR(dot(Vec3d(n), normalized(c - a)), 0, 64 * u);
+                               EXPECT_NEAR(length(Vec3d(n)), 1, 4 * u);
+                               const auto& m = there.linear;
+                               const double volume = dot(m[0], cross(m[1], m[2]));
+                               mirrored += volume < 0;
+                               EXPECT_GT(volume * dot(Vec3d(n), cross(b - a, c - a)), 0);
+                           }),
+              100u);
+    EXPECT_GT(mirrored, 5);
+}
+
+TEST(Surface, OfInstancesOfSpheres) {
+    const auto balls = spheres<double>(50);
+    const auto index = build<Bvh>(balls);
+    const auto placed = Transform<3>::translation({1, 2, 3}) * Transform<3>::scaling(4);
+    const InstanceSet set{Instance(index, placed)};
+    EXPECT_GT(for_each_hit(build<Bvh>(set),
+                           [&](const auto& ray, const auto& hit) {
+                               const auto ball = balls.view().sphere(hit.element);
+                               const Vec3d center = placed.there().point(ball.center);
+                               const Vec3d p = position(set, ray, hit), n = normal(set, ray, hit);
+                               EXPECT_LT(length(p - ray.at(hit.t)), 1e-12);
+                               EXPECT_LT(length(center + n * (4 * ball.radius) - p), 1e-12);
+                           }),
+              50u);
+}
+
+}  // namespace
