@@ -114,10 +114,10 @@ TEST(BadIndexFile, OfAnotherKindIsRefused) {
     expect_refused(with([](auto& h) { h.scalar_bytes = 8; }), {"cut off"});
     for (const auto& way : ways_to_load)
         expect_input_error([&] { load_index<double>(folder / "small.hedgerow", way); },
-                           {"small.hedgerow", "holds floats", "load_index<float>"});
+                           {"small.hedgerow", "holds floats", "Load it as float"});
     save_index(folder / "double.hedgerow", built(soup<double>(30)));
     expect_input_error([&] { load_index<float>(folder / "double.hedgerow"); },
-                       {"holds doubles", "load_index<double>"});
+                       {"holds doubles", "Load it as double"});
     expect_refused(folder.file("other.hedgerow", "ply\nformat ascii 1.0\n" + std::string(1000, ' ')),
                    {"no saved index"});
 }
@@ -285,17 +285,17 @@ private:
 TEST(BadIndexFile, ThatCannotBeWrittenLeavesNothingBehind) {
     const TempFolder folder;
     const auto index = built(soup<float>(3000));
-    expect_input_error([&] { save_index(folder / "no/such.hedgerow", index); },
-                       {"such.hedgerow", "cannot be written"});
+    expect_output_error([&] { save_index(folder / "no/such.hedgerow", index); },
+                        {"such.hedgerow", "cannot be written"});
     std::filesystem::create_directory(folder / "folder.hedgerow");
-    expect_input_error([&] { save_index(folder / "folder.hedgerow", index); },
-                       {"folder.hedgerow", "directory"});
+    expect_output_error([&] { save_index(folder / "folder.hedgerow", index); },
+                        {"folder.hedgerow", "directory"});
     if (std::filesystem::exists("/dev/full"))
-        expect_input_error([&] { save_index("/dev/full", index); }, {"/dev/full", "No space left"});
+        expect_output_error([&] { save_index("/dev/full", index); }, {"/dev/full", "No space left"});
     {
         const LittleRoom room(100000);
-        expect_input_error([&] { save_index(folder / "large.hedgerow", index); },
-                           {"large.hedgerow", "cannot be written", "space left"});
+        expect_output_error([&] { save_index(folder / "large.hedgerow", index); },
+                            {"large.hedgerow", "cannot be written", "space left"});
     }
     EXPECT_EQ(folder.file_count(), 1u);
 }

@@ -196,9 +196,9 @@ TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {
     EXPECT_EQ(run("draw gen:cube --scale 5" + png).code, 2);
     EXPECT_EQ(run("draw gen:cube --heat steps --slice z=0.5" + png).code, 2);
     EXPECT_EQ(run("draw gen:cube --depth -1" + png).code, 2);
-    expect_bad("draw gen:points2d:20" + png, ".svg");
-    expect_bad("draw gen:cube" + svg, ".png");
-    expect_bad("draw gen:cube --slice z=0.5" + png, ".svg");
+    expect_usage("draw gen:points2d:20" + png, ".svg");
+    expect_usage("draw gen:cube" + svg, ".png");
+    expect_usage("draw gen:cube --slice z=0.5" + png, ".svg");
     for (const char* slice : {"w=0.5", "z=2", "z", "z=", "z=@", "z=0.5x", "z=nan"})
         expect_bad("draw gen:cube --slice " + std::string(slice) + svg, "--slice");
     expect_bad("draw gen:points2d:20 --slice x=0.5" + svg, "flat");
@@ -206,12 +206,12 @@ TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {
     expect_bad("draw gen:points2d:20 --ray 1,2,3,4,5,6" + svg, "4 are needed");
     expect_bad("draw gen:cube --ray 1,2,3,4" + svg, "6 are needed");
     expect_bad("draw gen:cube --ray 1,2,3,0,0,0" + svg, "direction");
-    expect_bad("draw gen:cube --ray 1,2,3,0,0,1 --frames" + svg, ".html");
-    expect_bad("draw gen:cube --structure kdtre" + png, "did you mean 'kdtree'");
-    expect_bad("draw gen:cube --structure bvh --beside octre --slice x=0.5" + svg, "did you mean 'octree'");
+    expect_usage("draw gen:cube --ray 1,2,3,0,0,1 --frames" + svg, ".html");
+    expect_usage("draw gen:cube --structure kdtre" + png, "did you mean 'kdtree'");
+    expect_usage("draw gen:cube --structure bvh --beside octre --slice x=0.5" + svg, "did you mean 'octree'");
     expect_bad("draw gen:points2d:300k" + svg, "too many");
-    expect_bad("draw gen:cube --size 0x0" + png, "--size");
-    expect_bad("draw gen:cube -o " + file("no/such/folder/x.png"), "no folder");
+    expect_usage("draw gen:cube --size 0x0" + png, "--size");
+    expect_failure(1, "draw gen:cube -o " + file("no/such/folder/x.png"), "no folder");
 }
 
 }  // namespace

@@ -127,8 +127,8 @@ TEST(Exr, BadInput) {
     expect_input_error([&] { save(2, 2, {good, good}); }, {"a.exr", "two channels", "\"R\""});
     for (const std::string& name : {std::string(), std::string(256, 'x'), std::string("a\0b", 3)})
         expect_input_error([&] { save(2, 2, {{name, four}}); }, {"a.exr", "the name of channel 1"});
-    expect_input_error([&] { save(2, 2, {good}, "none/a.exr"); }, {"none/a.exr", "cannot be written"});
-    expect_input_error([&] { save(2, 2, {good}, "."); }, {"directory"});
+    expect_output_error([&] { save(2, 2, {good}, "none/a.exr"); }, {"none/a.exr", "cannot be written"});
+    expect_output_error([&] { save(2, 2, {good}, "."); }, {"directory"});
     EXPECT_EQ(folder.file_count(), 0u);
     save(2, 2, {good});
     const std::string before = contents(folder / "a.exr");
@@ -136,7 +136,7 @@ TEST(Exr, BadInput) {
     EXPECT_EQ(contents(folder / "a.exr"), before) << "what was there stays until it is replaced";
     if (std::filesystem::exists("/dev/full")) {
         const std::vector<float> many(1000000, 1);
-        expect_input_error(
+        expect_output_error(
             [&] {
                 save_exr("/dev/full", {1000, 1000, {{"R", Strided<float>(many)}}});
             },
@@ -244,16 +244,17 @@ TEST_F(ExrTool, CountsAreNumbersAndNotHeat) {
 TEST_F(ExrTool, OtherEndingsAreRefused) {
     for (const char* verb : {"render gen:cube -o ", "draw gen:cube --heat tests -o "})
         for (const char* name : {"x.jpg", "x.exr.gz", "x", ".exr"}) {
-            expect_bad(verb + file(name), name);
-            expect_bad(verb + file(name), ".png (colours) or .exr");
+            expect_usage(verb + file(name), name);
+            expect_usage(verb + file(name), ".png (colours) or .exr");
         }
-    expect_bad("render gen:cube -o " + file("no/such/folder/x.exr"), "no folder");
+    expect_failure(1, "render gen:cube -o " + file("no/such/folder/x.exr"), "no folder");
 }
 
 TEST_F(ExrTool, AnInterruptedRenderSavesWhatIsDone) {
     const std::string output = file("part.exr");
     EXPECT_EQ(run_interrupted_render(output), 130);
-    const Read read(output);
+    EXPECT_FALSE(std::filesystem::exists(output)) << "that is for a whole picture";
+    const Read read(file("part.unfinished.exr"));
     ASSERT_EQ(read.width, 1600);
     ASSERT_EQ(read.height, 1200);
     const auto &tested = read.words.at("primitives"), &red = read.words.at("R"), &id = read.words.at("id"),

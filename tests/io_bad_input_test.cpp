@@ -50,8 +50,8 @@ TEST_F(BadInput, UnknownExtension) {
 }
 
 TEST_F(BadInput, OnlyPoints) {
-    expect_bad("a.ply", ply("3", "0", corners), {"only points (3", "load_points"});
-    expect_bad("a.obj", "v 0 0 0\nf 1 1\n", {"only points", "load_points"});
+    expect_bad("a.ply", ply("3", "0", corners), {"only points (3", "as points"});
+    expect_bad("a.obj", "v 0 0 0\nf 1 1\n", {"only points", "as points"});
     expect_bad("a.off", "OFF\n3 0 0\n" + corners, {"only points"});
 }
 

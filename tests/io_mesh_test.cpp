@@ -273,18 +273,18 @@ TEST(Progress, IsToldAndCancels) {
 TEST(SaveMesh, ReportsWhatItCannotWrite) {
     TempFolder folder;
     const TriangleMesh<float> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
-    expect_input_error([&] { save_mesh(folder / "none/a.ply", mesh); }, {"a.ply", "cannot be written"});
+    expect_output_error([&] { save_mesh(folder / "none/a.ply", mesh); }, {"a.ply", "cannot be written"});
     expect_input_error([&] { save_mesh(folder / "a.xyz", mesh); }, {"a.xyz", ".ply .stl .obj .off"});
     expect_input_error([&] { save_mesh(folder / "a", mesh); }, {"no extension"});
     std::filesystem::create_directory(folder / "d.ply");
-    expect_input_error([&] { save_mesh(folder / "d.ply", mesh); }, {"d.ply", "directory"});
+    expect_output_error([&] { save_mesh(folder / "d.ply", mesh); }, {"d.ply", "directory"});
     TriangleMesh<float> broken = mesh;
     broken.triangles[0][1] = 3;
     expect_input_error([&] { save_mesh(folder / "a.stl", broken); }, {"triangle 0", "vertex 3"});
     EXPECT_EQ(folder.file_count(), 1u);
     if (std::filesystem::exists("/dev/full")) {
         std::filesystem::create_symlink("/dev/full", folder / "full.ply");
-        expect_input_error([&] { save_mesh(folder / "full.ply", mesh); }, {"full", "cannot be written"});
+        expect_output_error([&] { save_mesh(folder / "full.ply", mesh); }, {"full", "cannot be written"});
     }
 }
 

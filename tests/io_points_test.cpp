@@ -92,7 +92,7 @@ TEST(PointFile, BadInput) {
     expect_input_error([&] { load_points<float, 3>(folder / "a.npy"); }, {"shape (4, 2)", "(N, 3)"});
     EXPECT_EQ((load_points<float, 2>(folder / "a.npy").size()), 4u);
     const PointCloud<float, 3> one{{{1, 2, 3}}};
-    expect_input_error([&] { save_points(folder / "none/a.npy", one); }, {"cannot be written"});
+    expect_output_error([&] { save_points(folder / "none/a.npy", one); }, {"cannot be written"});
     expect_input_error([&] { save_points(folder / "a.obj", one); }, {"'.obj'", ".ply .npy .csv"});
     EXPECT_NO_THROW(validate_points(one, "one"));
 }
@@ -213,8 +213,8 @@ TEST(Npy, BadInput) {
     expect_bad(version, {"version 9"});
     expect_input_error([&] { save_npy<float>(folder / "b.npy", std::vector<float>(3), {2}); },
                        {"b.npy", "3 values"});
-    expect_input_error([&] { save_npy<float>(folder / "no/b.npy", std::vector<float>(2), {2}); },
-                       {"cannot be written"});
+    expect_output_error([&] { save_npy<float>(folder / "no/b.npy", std::vector<float>(2), {2}); },
+                        {"cannot be written"});
 }
 
 }  // namespace

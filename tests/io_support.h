@@ -72,18 +72,26 @@ void append(std::string& bytes, U value, std::endian order = std::endian::little
     bytes.append(raw, sizeof(U));
 }
 
-/// f throws InputError with all these parts in its message.
-template <class F>
-void expect_input_error(F f, const std::vector<std::string>& parts) {
+/// f throws an E with all these parts in its message.
+template <class E, class F>
+void expect_error(F f, const std::vector<std::string>& parts) {
     try {
         f();
-    } catch (const InputError& error) {
+    } catch (const E& error) {
         for (const std::string& part : parts)
             EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
                 << "no \"" << part << "\" in: " << error.what();
         return;
     }
-    ADD_FAILURE() << "no InputError with \"" << parts.front() << "\"";
+    ADD_FAILURE() << "no error with \"" << parts.front() << "\"";
+}
+template <class F>
+void expect_input_error(F f, const std::vector<std::string>& parts) {
+    expect_error<InputError>(f, parts);
+}
+template <class F>
+void expect_output_error(F f, const std::vector<std::string>& parts) {
+    expect_error<OutputError>(f, parts);
 }
 
 /// Coordinates of every magnitude that is allowed, −0 and subnormals among them.

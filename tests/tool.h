@@ -37,10 +37,12 @@ inline ToolResult run(const std::string& arguments) {
     return run_shell(HEDGEROW_TOOL_PATH " " + arguments + " 2>&1");
 }
 
-/// The exit code of the tool when it gets a SIGINT after a second and a half.
-inline int run_interrupted(std::vector<std::string> arguments) {
+/// The exit code of the tool when it gets a SIGINT after so many milliseconds, as a shell has it: 130 too
+/// where the process was not yet listening.
+inline int run_interrupted(std::vector<std::string> arguments, int milliseconds = 1500) {
     const pid_t child = fork();
     if (child == 0) {
+        std::signal(SIGINT, SIG_DFL);
         std::vector<char*> all = {const_cast<char*>(HEDGEROW_TOOL_PATH)};
         for (auto& a : arguments) all.push_back(a.data());
         all.push_back(nullptr);
@@ -48,16 +50,16 @@ inline int run_interrupted(std::vector<std::string> arguments) {
         _exit(127);
     }
     if (child < 0) return -1;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     kill(child, SIGINT);
     int status = 0;
     waitpid(child, &status, 0);
-    return WEXITSTATUS(status);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 /// The exit code of a picture of 1600 x 1200 that takes longer than that.
 inline int run_interrupted_render(const std::string& output) {
-    return run_interrupted({"render", "gen:teapot:20000", "--structure", "brute-force", "--size", "1600x1200",
+    return run_interrupted({"render", "gen:teapot:6000", "--structure", "brute-force", "--size", "1600x1200",
                             "--quiet", "-o", output});
 }
 
@@ -75,10 +77,17 @@ protected:
     void SetUp() override { std::filesystem::create_directories(folder); }
     void TearDown() override { std::filesystem::remove_all(folder); }
     std::string file(const std::string& name) const { return (folder / name).string(); }
-    void expect_bad(const std::string& arguments, const std::string& said) const {
+    /// The tool ends with this code, and says this.
+    static void expect_failure(int code, const std::string& arguments, const std::string& said) {
         const auto r = run(arguments);
-        EXPECT_EQ(r.code, 3) << arguments << "\n" << r.output;
-        EXPECT_NE(r.output.find(said), std::string::npos) << r.output;
+        EXPECT_EQ(r.code, code) << arguments << "\n" << r.output;
+        EXPECT_NE(r.output.find(said), std::string::npos) << arguments << "\n" << r.output;
+    }
+    static void expect_usage(const std::string& arguments, const std::string& said) {
+        expect_failure(2, arguments, said);
+    }
+    static void expect_bad(const std::string& arguments, const std::string& said) {
+        expect_failure(3, arguments, said);
     }
 };
 

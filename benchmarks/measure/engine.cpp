@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <hedgerow/error.h>
+#include <hedgerow/parallel/watched_executor.h>
 
 #include "engine_trial.h"
 
@@ -30,7 +31,11 @@ public:
     }
 
     SceneCosts run() {
-        costs_.finished = builds() && builds_on_threads() && plant() && traces();
+        try {
+            costs_.finished = builds() && builds_on_threads() && plant() && traces();
+        } catch (const Cancelled&) {  // in a build
+            costs_.finished = false;
+        }
         return std::move(costs_);
     }
 
@@ -38,7 +43,8 @@ private:
     Engine built(WideBuilder builder, Executor& executor = serial_executor()) const {
         WideOptions options;
         options.builder = builder, options.width = o_.width;
-        return build<WideBvh>(mesh_, options, executor);
+        WatchedExecutor watched(executor, {{}, o_.cancel});
+        return build<WideBvh>(mesh_, options, watched);
     }
     /// Calls f with each peer and each of its ways to build, until it says no.
     template <class F>

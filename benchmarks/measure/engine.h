@@ -1,6 +1,7 @@
 /// The engine on one scene beside its peers: builds, and ray sets × questions × modes.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -57,6 +58,7 @@ struct EngineOptions {
     std::size_t random = 1 << 19;  ///< random rays
     std::size_t sample = 20'000;   ///< at most so many of a set are counted and checked
     std::uint64_t seed = 0;
+    const std::atomic<bool>* cancel = nullptr;  ///< looked at during our builds, besides what GoOn says
 };
 
 /// What one of our trees did in a row. Counts are means a ray, by the plain walk of the same tree.

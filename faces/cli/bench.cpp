@@ -42,7 +42,7 @@ std::vector<E> list_of(const std::string& option, const std::string& list,
         const std::string word = list.substr(begin, end - begin);
         const auto at = std::find(std::begin(known), std::end(known), word);
         if (at == std::end(known))
-            throw InputError(fmt::format("{}: there is no '{}'{}; there are {}", option, word,
+            throw UsageError(fmt::format("{}: there is no '{}'{}; there are {}", option, word,
                                          suggestion(word, known), fmt::join(known, ", ")));
         const auto value = static_cast<E>(at - std::begin(known));
         if (std::find(all.begin(), all.end(), value) == all.end()) all.push_back(value);
@@ -58,10 +58,10 @@ EngineOptions options_of(const BenchArguments& a) {
     o.modes = list_of<Mode>("--modes", a.modes, modes);
     o.builders = list_of<WideBuilder>("--builders", a.builders, builders);
     if (o.sets == std::vector{RayKind::shadow} && o.questions == std::vector{Question::closest})
-        throw InputError("--sets shadow: shadow rays are asked for any hit; add --questions any");
+        throw UsageError("--sets shadow: shadow rays are asked for any hit; add --questions any");
     if (a.quick) o.rounds = 3, o.picture = 128, o.random = 1 << 14, o.sample = 2000;
     if (a.rounds > 0) o.rounds = a.rounds;
-    o.seed = a.seed;
+    o.seed = a.seed, o.cancel = &interrupted;
     o.threads = a.threads > 0 ? a.threads : std::max(1u, std::thread::hardware_concurrency());
     WideOptions tree;
     tree.width = a.width;
@@ -118,18 +118,22 @@ BenchReport report_for(const EngineOptions& options, const std::vector<std::uniq
 }
 
 void show(const BenchArguments& a, const BenchReport& r) {
-    if (!a.html.empty()) save_text(a.html, page_of(r));
-    if (!a.output.empty()) save_text(a.output, chart_of(r));
-    if (a.json) {
-        fmt::print("{}\n", json_of(r).dump(2));
-        return;
-    }
+    if (a.json) return print_json(json_of(r));
     std::string text = machine_of(r) + "\n\n";
     for (const Table& t : tables_of(r)) text += text_of(t) + "\n";
     for (const std::string& n : r.notes) text += "Note: " + n + ".\n";
     fmt::print("{}", text);
-    for (const auto& path : {a.html, a.output})
-        if (!path.empty()) fmt::print("{}\n", path);
+}
+/// The page and the chart; those of before stay where an interruption left something out.
+void save_pages(const BenchArguments& a, const BenchReport& r) {
+    std::fflush(stdout);  // the tables, before anything happens to the files
+    const auto save = [&](const std::string& path, const std::string& text) {
+        const std::string to = r.finished ? path : unfinished_name(path);
+        save_text(to, text);
+        if (!a.json) fmt::print("{}\n", to);
+    };
+    if (!a.html.empty()) save(a.html, page_of(r));
+    if (!a.output.empty()) save(a.output, chart_of(r));
 }
 
 int bench(const BenchArguments& a) {
@@ -151,7 +155,12 @@ int bench(const BenchArguments& a) {
     }
     report.finished = !interrupted;
     if (interrupted) report.notes.emplace_back("interrupted: only what was finished is here");
+    if (!report.finished && std::all_of(report.scenes.begin(), report.scenes.end(), [](const SceneCosts& s) {
+            return s.rows.empty() && s.builds.empty();
+        }))
+        throw Cancelled("nothing was measured");
     show(a, report);
+    save_pages(a, report);
     return interrupted ? 130 : 0;
 }
 
@@ -186,7 +195,7 @@ Run add_bench(CLI::App& verb) {
         if (!a->html.empty()) check_writable(a->html);
         if (!a->output.empty()) {
             if (std::filesystem::path(a->output).extension() != ".svg")
-                throw InputError(a->output + ": the chart is written as .svg; let the output end so");
+                throw UsageError(a->output + ": the chart is written as .svg; let the output end so");
             check_writable(a->output);
         }
         return bench(*a);

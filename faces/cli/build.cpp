@@ -6,6 +6,7 @@
 
 #include <hedgerow/error.h>
 #include <hedgerow/io/index_file.h>
+#include <hedgerow/io/writable.h>
 
 #include "verbs.h"
 
@@ -32,7 +33,7 @@ void report(const BuildArguments& a, const Seconds& seconds) {
             {"builder", a.builder},         {"width", file.options.width},  {"build_seconds", seconds.build},
             {"save_seconds", seconds.save}, {"nodes", file.nodes},          {"leaves", file.leaves},
             {"bytes_per_triangle", bytes},  {"file_bytes", file.file_bytes}};
-        fmt::print("{}\n", j.dump(2));
+        print_json(j);
     } else if (!a.quiet) {
         fmt::print("{}: {} triangles ({}), built in {:.1f} ms, saved in {:.1f} ms\n", a.output,
                    file.triangles, file.scalar, seconds.build * 1e3, seconds.save * 1e3);
@@ -53,9 +54,16 @@ int build_and_save(const BuildArguments& a, const TriangleMesh<T>& mesh) {
     const ThreadLimit limit(a.threads);
     Seconds seconds;
     const double start = now();
-    const auto index = build<WideBvh>(mesh, options, default_executor());
+    const auto index = [&] {
+        ProgressLine line("building the index", a.quiet);
+        WatchedExecutor watched(default_executor(), line.progress());
+        return build<WideBvh>(mesh, options, watched);
+    }();
     const double built = now();
-    save_index(a.output, index);
+    {
+        ProgressLine line("saving " + a.output, a.quiet, "bytes");
+        save_index(a.output, index, line.progress());
+    }
     seconds.build = built - start, seconds.save = now() - built;
     report(a, seconds);
     return 0;
@@ -76,10 +84,12 @@ Run add_build(CLI::App& verb) {
         ->check(CLI::IsMember({"fast", "medium", "high"}));
     verb.add_option("--width", a->width, "children a node: 4, 8 or 16; 0: what this processor is best at")
         ->check(CLI::IsMember({0, 4, 8, 16}));
-    verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
+    verb.add_option("--threads", a->threads, "that build; 0: all cores")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
     return [a] {
         if (!names_index_file(a->output))
-            throw InputError(a->output + ": a saved index is known by its ending; call it NAME.hedgerow");
+            throw UsageError(a->output + ": a saved index is known by its ending; call it NAME.hedgerow");
         check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) {
             return std::visit([&](const auto& set) { return build_and_save(*a, set); }, load<T>(*a));

@@ -122,6 +122,13 @@ public:
         return structures;
     }
 
+    /// Whether there is anything to show.
+    bool measured_any() const {
+        const auto& r = report_;
+        return (r.comparison && !r.comparison->structures.empty()) || !r.by_size.empty() ||
+               std::any_of(r.sweeps.begin(), r.sweeps.end(),
+                           [](const auto& s) { return !s.comparison.structures.empty(); });
+    }
     const CompareReport& report() {
         if (a_.counts) {
             note(fmt::format("{} queries of each kind, asked once; nothing is timed", a_.queries));
@@ -139,6 +146,7 @@ public:
                 a_.queries, a_.seconds));
         }
         if (interrupted) note("interrupted: only what was finished is here");
+        std::erase_if(report_.sweeps, [](const auto& s) { return s.comparison.structures.empty(); });
         return report_;
     }
 
@@ -153,18 +161,23 @@ private:
         auto options = measure_options(a_, all);
         if (const auto placed = placed_camera(a_, primitives)) options.camera = placed;
         ProgressLine line(what, a_.quiet);
-        auto c = compare::measure(primitives, structures, options, executor_, line.progress());
+        compare::Comparison c;
+        try {
+            c = compare::measure(primitives, structures, options, executor_, line.progress());
+        } catch (const Cancelled&) {  // what was measured before is shown
+            c.finished = false;
+        }
         c.scene = a_.scene;
         for (auto& text : ray_notes(c)) note(std::move(text));
         return c;
     }
     compare::Ask ask_for(const compare::Comparison& c) const {
+        if (c.structures.empty()) return {};
         if (a_.ask.empty()) return compare::usual_ask(c);
         const auto ask = ask_named(a_.ask);
-        if (!c.structures.empty() &&
-            std::none_of(c.structures.front().queries.begin(), c.structures.front().queries.end(),
+        if (std::none_of(c.structures.front().queries.begin(), c.structures.front().queries.end(),
                          [&](const auto& q) { return q.ask == ask; }))
-            throw InputError(
+            throw UsageError(
                 fmt::format("--for {}: {} cannot be asked that; try --for nearest", a_.ask, c.primitive));
         return ask;
     }
@@ -178,26 +191,27 @@ private:
 template <class T>
 void run_scale(const CompareArguments& a, Comparing& comparing) {
     if (!a.scene.starts_with("gen:"))
-        throw InputError(a.scene + ": --scale needs a scene of any size, as gen:terrain");
+        throw UsageError(a.scene + ": --scale needs a scene of any size, as gen:terrain");
     SceneSpec spec = parse_scene_spec(a.scene);
-    spec.seed = a.seed;
     const std::string standard =
         fmt::format("1000..{}", std::max<std::uint64_t>(8000, spec.size.value_or(64'000)));
     const auto sizes = compare::sizes_of(a.sizes.empty() ? standard : a.sizes);
     if (sizes.size() < 3)
-        throw InputError("--sizes " + a.sizes + ": growth needs at least three sizes, as 1k,4k,16k");
+        throw UsageError("--sizes " + a.sizes + ": growth needs at least three sizes, as 1k,4k,16k");
     std::vector<std::string> structures;
-    for (const std::uint64_t size : sizes) {
-        if (interrupted) return;
-        spec.size = size;
-        std::visit(
-            [&](const auto& set) {
-                // The same ones at each size: those that the largest allows.
-                if (structures.empty())
-                    structures = comparing.structures_for<std::remove_cvref_t<decltype(set)>>(sizes.back());
-                comparing.scale_on(set, structures);
-            },
-            generate<T>(spec));
+    const auto scale = [&](const auto& set) {
+        // The same ones at each size: those that the largest allows.
+        if (structures.empty())
+            structures = comparing.structures_for<std::remove_cvref_t<decltype(set)>>(sizes.back());
+        comparing.scale_on(set, structures);
+    };
+    try {
+        for (const std::uint64_t size : sizes) {
+            if (interrupted) return;
+            spec.size = size;
+            std::visit(scale, generate_scene<T>(a, spec));
+        }
+    } catch (const Cancelled&) {  // while generating: the sizes before are shown
     }
 }
 
@@ -211,9 +225,8 @@ std::string paragraph(const std::string& text) {
 }
 
 void show(const CompareArguments& a, const CompareReport& r) {
-    if (!a.html.empty()) save_text(a.html, page_of(r));
     if (a.json) {
-        fmt::print("{}\n", json_of(r).dump(2));
+        print_json(json_of(r));
     } else {
         std::string text = r.scene;
         if (r.comparison) text += fmt::format(": {} {}", r.comparison->size, r.comparison->primitive);
@@ -226,8 +239,12 @@ void show(const CompareArguments& a, const CompareReport& r) {
         if (r.comparison && !a.full)
             text += paragraph("Note: --full shows each kind of query, changes and break-even.");
         fmt::print("{}", text);
-        if (!a.html.empty()) fmt::print("{}\n", a.html);
     }
+    if (a.html.empty()) return;
+    std::fflush(stdout);  // before anything happens to the page
+    const std::string page = interrupted ? unfinished_name(a.html) : a.html;
+    save_text(page, page_of(r));
+    if (!a.json) fmt::print("{}\n", page);
 }
 
 template <class T>
@@ -236,6 +253,7 @@ int compare_in(const CompareArguments& a) {
     if (a.scale) run_scale<T>(a, comparing);
     if (!a.scale || !a.sweeps.empty())
         std::visit([&](const auto& set) { comparing.compare_on(set); }, load<T>(a));
+    if (!comparing.measured_any()) throw Cancelled("nothing was measured");
     show(a, comparing.report());
     return interrupted ? 130 : 0;
 }

@@ -35,7 +35,7 @@ int draw(const DrawArguments& a, const Scene<T>& scene) {
 
 void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what) {
     if (std::filesystem::path(a.output).extension() != ending)
-        throw InputError(
+        throw UsageError(
             fmt::format("{}: {} is written as {}; let the output end so", a.output, what, ending));
 }
 
@@ -84,10 +84,12 @@ Run add_draw(CLI::App& verb) {
         ->needs(heat);
     ray->excludes(slice)->excludes(heat)->excludes(beside);
     heat->excludes(slice)->excludes(beside);
-    verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
+    verb.add_option("--threads", a->threads, "that build and cast rays; 0: all cores")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     return [a] {
-        parse_size(a->view.size);
+        check_picture_memory(a->view.size, false);
         check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) { return draw(*a, load<T>(*a)); });
     };

@@ -40,7 +40,7 @@ int draw_wireframe(const DrawArguments& a, const Scene<T>& scene);
 template <class T>
 int draw_heat(const DrawArguments& a, const Scene<T>& scene);
 
-/// Throws InputError unless the output ends as what is written there does.
+/// Throws UsageError unless the output ends as what is written there does.
 void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what);
 
 /// Beyond this a picture of lines shows nothing, and no viewer opens it.

@@ -63,7 +63,7 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
     FlatScene scene;
     ordered_json report = ordered_json::array();
     for (const auto& spec : specs) {
-        const auto index = build_any(spec, set);
+        const auto index = build_shown(a, spec, set);
         const auto bounds = bounds_of(*index);
         const auto section = section_of(a, bounds, upright_of(a.view, a, set));
         const auto limits = section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels);
@@ -90,7 +90,7 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
     if (a.levels > 0) scene.title += fmt::format(", first {} levels", a.levels);
     save_text(a.output, cells_picture(scene, structures));
     if (a.json)
-        fmt::print("{}\n", ordered_json{{"output", a.output}, {"structures", report}}.dump(2));
+        print_json({{"output", a.output}, {"structures", report}});
     else if (!a.quiet)
         for (const auto& s : structures) fmt::print("{}: {}\n", s.name, fmt::join(s.facts, "; "));
     return 0;

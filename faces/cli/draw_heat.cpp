@@ -29,14 +29,16 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     options.seed = a.seed;
     options.shading = parse_shading(a.heat);
     options.steps_max = a.scale > 0 ? a.scale : usual_scale(options.shading);
-    const auto index = build_any(a.structure, set);
+    const auto index = build_shown(a, a.structure, set);
     const Upright upright = upright_of(a.view, a, set);
     options.camera =
         camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)}, upright);
     Picture picture;
+    FinishedPicture finished;
     {
-        ProgressLine line("casting rays", a.quiet);
+        ProgressLine line("casting rays", a.quiet, "rows");
         picture = raycast(*index, set, options, default_executor(), line.progress());
+        finished = finish_picture(a.output, line.done(), options.height);
     }
     const std::string unit =
         a.heat == "time" ? "nanoseconds" : (a.heat == "tests" ? "primitives tested" : a.heat);
@@ -46,17 +48,17 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
                                    fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit,
                                                picture.mean, picture.most)}),
         letter_scale(picture.image));
-    save(a.output, picture);
+    save(finished.output, picture);
     const double pixels = double(options.width) * double(options.height);
     if (a.json)
-        fmt::print("{}\n", ordered_json{{"output", a.output},
+        fmt::print("{}\n", ordered_json{{"output", finished.output},
                                         {"structure", a.structure},
                                         {"heat", a.heat},
                                         {"scale", options.steps_max},
                                         {"mean", picture.mean},
                                         {"most", picture.most},
                                         {"share_beyond_scale", double(picture.beyond) / pixels},
-                                        {"finished", !interrupted.load()}}
+                                        {"finished", finished.whole}}
                                .dump(2));
     else if (!a.quiet)
         fmt::print(
@@ -64,7 +66,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
             "pixels lie beyond\n{}",
             a.structure, unit, picture.mean, picture.most, options.steps_max,
             100 * double(picture.beyond) / pixels, up_text(a.view, a, upright));
-    return interrupted ? 130 : 0;
+    return finished.exit_code();
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ int draw_ray_in(const DrawArguments& a, const P& set) {
     constexpr int D = P::dimension;
     expect_ending(a, a.frames ? ".html" : ".svg", a.frames ? "a page of frames" : "a ray's way");
     const auto ray = ray_of<T, D>(a);
-    const auto index = build_any(a.structure, set);
+    const auto index = build_shown(a, a.structure, set);
     const auto bounds = bounds_of(*index);
     const auto section = section_along(ray, upright_of(a.view, a, set));
     const auto table = table_of(a.structure, ray, index->trace(ray), section);
@@ -136,7 +136,7 @@ int draw_ray_in(const DrawArguments& a, const P& set) {
     if (cells.size() <= most_behind) all = flat_structure(cells, section);
     save_text(a.output, a.frames ? ray_page(scene, all, table) : ray_picture(scene, all, table));
     if (a.json)
-        fmt::print("{}\n", json_of(table).dump(2));
+        print_json(json_of(table));
     else if (!a.quiet)
         fmt::print("{}", text_of(table));
     return 0;

@@ -84,12 +84,12 @@ void draw_level_legend(Image& image, const std::vector<std::string>& title, int 
 template <class T, class Seen>
 Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, const Seen& seen,
                 const RenderOptions& options, int wanted, std::string& facts) {
-    auto picture = raycast(seen_index, seen, options, default_executor());
+    auto picture = raycast(seen_index, seen, options, interruptible_executor());
     for (auto& pixel : picture.image.pixels)
         for (auto& c : pixel)
             c = static_cast<std::uint8_t>(255 - (255 - c) * 9 / 20);  // pale, under the lines
     const RayMaker maker(options.camera, options.width, options.height);
-    const auto surface = depths(seen_index, maker, options.width, options.height, default_executor());
+    const auto surface = depths(seen_index, maker, options.width, options.height, interruptible_executor());
     int levels = 0;
     auto cells = boxes_of(index, wanted, levels);
     std::stable_sort(cells.begin(), cells.end(),
@@ -124,7 +124,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
         specs.push_back(a.beside);
         options.width = std::max(1, (options.width - 4) / 2);
     }
-    const auto seen_index = build_any("bvh", seen);
+    const auto seen_index = build_shown(a, "bvh", seen);
     const Upright upright = upright_of(a.view, a, set);
     options.camera = camera_of(
         a.view, a, Box3f{Vec3f(seen_index->bounds().low), Vec3f(seen_index->bounds().high)}, upright);
@@ -132,7 +132,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     ordered_json report = ordered_json::array();
     std::string text;
     for (const auto& spec : specs) {
-        const auto index = build_any(spec, set);
+        const auto index = build_shown(a, spec, set);
         std::string facts;
         const Image one = wireframe(*index, *seen_index, seen, options, a.levels, facts);
         image = image ? joined(*image, one) : one;
@@ -148,7 +148,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     }
     save_png(a.output, *image);
     if (a.json)
-        fmt::print("{}\n", ordered_json{{"output", a.output}, {"structures", report}}.dump(2));
+        print_json({{"output", a.output}, {"structures", report}});
     else if (!a.quiet)
         fmt::print("{}{}", text, up_text(a.view, a, upright));
     return 0;

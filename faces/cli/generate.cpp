@@ -1,9 +1,11 @@
 /// hedgerow generate: writes a generated scene.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <hedgerow/error.h>
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/io/point_file.h>
+#include <hedgerow/io/writable.h>
 
 #include "verbs.h"
 
@@ -12,15 +14,15 @@ namespace hedgerow::cli {
 namespace {
 
 template <class T>
-void save(const Common& c, const TriangleMesh<T>& mesh) {
-    save_mesh(c.output, mesh);
+void save(const Common& c, const TriangleMesh<T>& mesh, const Progress& progress) {
+    save_mesh(c.output, mesh, progress);
 }
 template <class T, int D>
-void save(const Common& c, const PointCloud<T, D>& cloud) {
-    save_points(c.output, cloud);
+void save(const Common& c, const PointCloud<T, D>& cloud, const Progress& progress) {
+    save_points(c.output, cloud, progress);
 }
 template <class Other>
-void save(const Common& c, const Other&) {
+void save(const Common& c, const Other&, const Progress&) {
     throw InputError(c.scene + ": no file format here holds these primitives");
 }
 
@@ -31,12 +33,16 @@ Run add_generate(CLI::App& verb) {
     add_common(verb, *c, true);
     return [c] {
         if (!c->scene.starts_with("gen:"))
-            throw InputError(c->scene + ": only a gen: scene can be generated, as gen:terrain:200000");
+            throw UsageError(c->scene + ": only a gen: scene can be generated, as gen:terrain:200000");
         check_writable(c->output);
         return in_precision(*c, [&]<class T>(T) {
-            std::visit([&](const auto& set) { save(*c, set); }, load<T>(*c));
+            const Scene<T> scene = load<T>(*c);
+            {
+                ProgressLine line("saving " + c->output, c->quiet, "elements");
+                std::visit([&](const auto& set) { save(*c, set, line.progress()); }, scene);
+            }
             if (c->json)
-                fmt::print("{{\"output\": \"{}\"}}\n", c->output);
+                print_json({{"output", c->output}});
             else if (!c->quiet)
                 fmt::print("{}\n", c->output);
             return 0;

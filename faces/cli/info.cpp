@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/io/index_file.h>
+#include <hedgerow/parallel/radix_sort.h>
+#include <hedgerow/parallel/sort.h>
 
 #include "verbs.h"
 
@@ -14,12 +16,23 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Calls f(i) for each element, in order, while nobody interrupts.
+template <class F>
+void for_each_element(std::size_t count, Executor& executor, F f) {
+    executor.expect(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i % worth_a_task == worth_a_task - 1) executor.advance(worth_a_task);
+        f(i);
+    }
+}
+
 template <class P>
-ordered_json extent_of(const P& set) {
+ordered_json extent_of(const P& set, Executor& executor) {
     Box<typename P::Scalar, P::dimension> box;
-    for (std::size_t i = 0; i < set.size(); ++i) box.expand(view_of(set).bounds(i));
+    for_each_element(set.size(), executor, [&](std::size_t i) { box.expand(view_of(set).bounds(i)); });
     ordered_json low, high;
-    for (int k = 0; k < P::dimension; ++k) low.push_back(box.low[k]), high.push_back(box.high[k]);
+    for (int k = 0; k < P::dimension; ++k)
+        low.push_back(shortest(box.low[k])), high.push_back(shortest(box.high[k]));
     return {{"low", low}, {"high", high}};
 }
 
@@ -27,16 +40,20 @@ ordered_json extent_of(const P& set) {
 struct EdgeFaults {
     std::size_t open = 0, crowded = 0;
 
-    /// O(n log n): equal edges stand side by side once sorted.
-    explicit EdgeFaults(const std::vector<TriangleIndices>& triangles) {
-        std::vector<std::uint64_t> edges;
-        edges.reserve(3 * triangles.size());
-        for (const auto& t : triangles)
+    /// O(n): equal edges stand side by side once sorted.
+    EdgeFaults(const std::vector<TriangleIndices>& triangles, Executor& executor) {
+        BareVector<std::uint64_t> edges(3 * triangles.size());
+        for_each_element(triangles.size(), executor, [&](std::size_t i) {
+            const auto& t = triangles[i];
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto [a, b] = std::minmax(t[k], t[(k + 1) % 3]);
-                edges.push_back(std::uint64_t(a) << 32 | b);
+                edges[3 * i + k] = std::uint64_t(a) << 32 | b;
             }
-        std::sort(edges.begin(), edges.end());
+        });
+        executor.expect(8 * triangles.size());  // a sort takes about so many times as long
+        radix_sort(
+            edges, [](std::uint64_t e) { return e; }, 0, 6, executor);
+        executor.advance(8 * triangles.size());
         for (std::size_t i = 0, end; i < edges.size(); i = end) {
             for (end = i; end < edges.size() && edges[end] == edges[i];) ++end;
             open += end - i == 1, crowded += end - i > 2;
@@ -45,14 +62,14 @@ struct EdgeFaults {
 };
 
 template <class T>
-ordered_json facts(const TriangleMesh<T>& mesh) {
+ordered_json facts(const TriangleMesh<T>& mesh, Executor& executor) {
     std::vector<bool> used(mesh.vertices.size());
     std::size_t flat = 0;
-    for (std::size_t i = 0; i < mesh.size(); ++i) {
+    for_each_element(mesh.size(), executor, [&](std::size_t i) {
         for (const auto corner : mesh.triangles[i]) used[corner] = true;
         flat += length2(Vec3d(mesh.view().normal(i))) == 0;
-    }
-    const EdgeFaults edges(mesh.triangles);
+    });
+    const EdgeFaults edges(mesh.triangles, executor);
     return {{"kind", "triangles"},
             {"triangles", mesh.size()},
             {"vertices", mesh.vertices.size()},
@@ -63,16 +80,16 @@ ordered_json facts(const TriangleMesh<T>& mesh) {
             {"closed", edges.open == 0 && edges.crowded == 0}};
 }
 template <class T, int D>
-ordered_json facts(const SphereSet<T, D>& s) {
+ordered_json facts(const SphereSet<T, D>& s, Executor&) {
     return {{"kind", "spheres"}, {"spheres", s.size()}, {"dimension", D}};
 }
 template <class T, int D>
-ordered_json facts(const PointCloud<T, D>& s) {
+ordered_json facts(const PointCloud<T, D>& s, Executor& executor) {
     auto sorted = s.points;
     const auto before = [](const auto& a, const auto& b) {
         return std::lexicographical_compare(a.data, a.data + D, b.data, b.data + D);
     };
-    std::sort(sorted.begin(), sorted.end(), before);
+    sort_watched(sorted.begin(), sorted.end(), executor, before);
     const auto distinct = std::unique(sorted.begin(), sorted.end()) - sorted.begin();
     return {{"kind", "points"},
             {"points", s.size()},
@@ -80,7 +97,7 @@ ordered_json facts(const PointCloud<T, D>& s) {
             {"coincident_points", s.size() - static_cast<std::size_t>(distinct)}};
 }
 template <class T>
-ordered_json facts(const SegmentSet<T>& s) {
+ordered_json facts(const SegmentSet<T>& s, Executor&) {
     return {{"kind", "segments"}, {"segments", s.size()}, {"dimension", 2}};
 }
 
@@ -108,16 +125,19 @@ Run add_info(CLI::App& verb) {
     add_common(verb, *c, false);
     return [c] {
         return in_precision(*c, [&]<class T>(T) {
+            const Scene<T> scene = load<T>(*c);
+            ProgressLine line("looking at " + c->scene, c->quiet);
+            WatchedExecutor watched(serial_executor(), line.progress());
             ordered_json all = std::visit(
-                [](const auto& set) {
-                    auto j = facts(set);
-                    j.update(extent_of(set));
+                [&](const auto& set) {
+                    auto j = facts(set, watched);
+                    j.update(extent_of(set, watched));
                     return j;
                 },
-                load<T>(*c));
+                scene);
             if (names_index_file(c->scene)) all.update(facts_of_index(c->scene));
             if (c->json) {
-                fmt::print("{}\n", all.dump(2));
+                print_json(all);
             } else {
                 for (const auto& [key, value] : all.items()) fmt::print("{:22} {}\n", key, value.dump());
             }

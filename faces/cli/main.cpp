@@ -1,12 +1,20 @@
 /// The tool: reads the command line and runs a verb.
-#include <csignal>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <system_error>
 #include <vector>
+
+#include <fcntl.h>
 
 #include <fmt/format.h>
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/error.h>
 
+#include "arguments.h"
+#include "memory.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -90,6 +98,17 @@ std::string footer() {
     return text;
 }
 
+/// The library passes over a name that it does not know; who sets it for the tool should hear of it.
+void use_instruction_set_of_environment() {
+    const char* const set = std::getenv("HEDGEROW_INSTRUCTION_SET");
+    if (set == nullptr || *set == '\0') return;
+    try {
+        use_instruction_set(set);
+    } catch (const UsageError& e) {
+        throw UsageError(std::string("HEDGEROW_INSTRUCTION_SET: ") + e.what());
+    }
+}
+
 int run(int count, char** arguments) {
     CLI::App app(
         "Examples:\n  hedgerow render gen:teapot-in-stadium -o stadium.png\n  hedgerow render dragon.ply "
@@ -104,33 +123,72 @@ int run(int count, char** arguments) {
         auto* const verb = app.add_subcommand(v.name, v.help);
         verb->footer(where_to_look);
         runs.emplace_back(verb, v.add(*verb));
+        check_arguments(*verb);
     }
     app.footer(footer());
+    check_verb(app, count, arguments);
     try {
         app.parse(count, arguments);
+    } catch (const CLI::ExtrasError&) {
+        throw UsageError(unknown_argument(app));
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : 2;
     }
-    std::signal(SIGINT, [](int) { interrupted = true; });
+    use_instruction_set_of_environment();
     for (const auto& [verb, run_verb] : runs)
         if (*verb) return run_verb();
     return 2;
+}
+
+/// Where a standard stream is closed, the next file that is opened takes its place and gets what is printed.
+void hold_standard_streams() {
+    for (int stream = 0; stream < 3; ++stream)
+        if (fcntl(stream, F_GETFD) == -1) static_cast<void>(open("/dev/null", O_RDONLY));
+}
+
+/// The exit code, after a message.
+int failed(int code, const std::string& why) {
+    std::fprintf(stderr, "hedgerow: %s\n", why.c_str());
+    return code;
+}
+int short_of_memory() {
+    const std::string& work = ProgressLine::failed();
+    return failed(1, "memory ran out" + (work.empty() ? std::string() : " while " + work) +
+                         ": ask for less, or allow more");
+}
+int lost_output(int error) {
+    return failed(1, "the results cannot be printed: " + std::generic_category().message(error));
+}
+
+/// What `run` ends with. What is printed may still lie in a buffer, and fail to leave it.
+int run_safely(int count, char** arguments) {
+    try {
+        const int code = run(count, arguments);
+        errno = 0;
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return lost_output(errno);
+        return code == 0 && interrupted ? 130 : code;
+    } catch (const Cancelled&) {
+        return failed(130, "interrupted");
+    } catch (const UsageError& e) {
+        return failed(2, e.what());
+    } catch (const InputError& e) {
+        return failed(3, e.what());
+    } catch (const std::bad_alloc&) {
+        return short_of_memory();
+    } catch (const std::length_error&) {  // more elements than any memory has addresses
+        return short_of_memory();
+    } catch (const std::system_error& e) {  // from fmt, printing
+        return lost_output(e.code().value());
+    } catch (const std::exception& e) {
+        return failed(1, e.what());
+    }
 }
 
 }  // namespace
 }  // namespace hedgerow::cli
 
 int main(int count, char** arguments) {
-    try {
-        return hedgerow::cli::run(count, arguments);
-    } catch (const hedgerow::Cancelled&) {
-        fmt::print(stderr, "hedgerow: interrupted\n");
-        return 130;
-    } catch (const hedgerow::InputError& e) {
-        fmt::print(stderr, "hedgerow: {}\n", e.what());
-        return 3;
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "hedgerow: {}\n", e.what());
-        return 1;
-    }
+    hedgerow::cli::hold_standard_streams();
+    hedgerow::cli::listen_to_interrupts();
+    return hedgerow::cli::run_safely(count, arguments);
 }

@@ -29,6 +29,7 @@ struct Outcome {
     std::size_t primitives = 0, bytes = 0;
     Upright upright{2, ""};
     Vec3f up;
+    FinishedPicture finished;
     bool loaded = false;   // not built
     bool counted = false;  // what rays visit
     double build_seconds = 0, seconds = 0;
@@ -48,7 +49,7 @@ void report(const RenderArguments& a, const Outcome& o) {
     const auto a_ray = [&](std::uint64_t count) { return double(count) / rays; };
     if (a.json) {
         nlohmann::ordered_json j = {{"structure", a.structure},
-                                    {"output", a.output},
+                                    {"output", o.finished.output},
                                     {"width", p.image.width},
                                     {"height", p.image.height},
                                     {"primitives", o.primitives},
@@ -59,17 +60,18 @@ void report(const RenderArguments& a, const Outcome& o) {
                                     {"rays_by", rays_by(p.use)},
                                     {"seconds", o.seconds},
                                     {"rays_per_second", rays / o.seconds},
-                                    {"finished", !interrupted.load()}};
+                                    {"finished", o.finished.whole}};
         if (o.counted) {
             j["nodes_per_ray"] = a_ray(p.visits.nodes);
             j["leaves_per_ray"] = a_ray(p.visits.leaves);
             j["primitives_per_ray"] = a_ray(p.visits.primitives);
         }
-        fmt::print("{}\n", j.dump(2));
+        print_json(j);
     } else if (!a.quiet) {
-        fmt::print("{}: {}x{}, {} primitives, {} {} in {:.1f} ms, {:.1f} bytes a primitive\n", a.output,
-                   p.image.width, p.image.height, o.primitives, a.structure, o.loaded ? "loaded" : "built",
-                   o.build_seconds * 1e3, double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
+        fmt::print("{}: {}x{}, {} primitives, {} {} in {:.1f} ms, {:.1f} bytes a primitive\n",
+                   o.finished.output, p.image.width, p.image.height, o.primitives, a.structure,
+                   o.loaded ? "loaded" : "built", o.build_seconds * 1e3,
+                   double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
         fmt::print("{} rays in {:.3f} s: {:.3f} million a second", p.rays, o.seconds,
                    rays / o.seconds * 1e-6);
         if (p.use.packets + p.use.phased > 0) fmt::print("; {}", most_used(p.use, p.rays));
@@ -94,23 +96,22 @@ int render(const RenderArguments& a, const Any& index, const P& primitives, Outc
         camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)}, o.upright);
     o.up = options.camera.up;
     {
-        ProgressLine line("rendering", a.quiet);
+        ProgressLine line("rendering", a.quiet, "rows");
         const double start = now();
         o.picture = raycast(index, primitives, options, default_executor(), line.progress());
         o.seconds = now() - start;
+        o.finished = finish_picture(a.output, line.done(), options.height);
     }
-    save(a.output, o.picture);
+    save(o.finished.output, o.picture);
     report(a, o);
-    if (!interrupted) return 0;
-    fmt::print(stderr, "hedgerow: interrupted; the finished part is in {}\n", a.output);
-    return 130;
+    return o.finished.exit_code();
 }
 template <class P>
 int render(const RenderArguments& a, const P& primitives) {
     const ThreadLimit limit(a.threads);
     Outcome o;
     const double start = now();
-    const auto index = build_any(a.structure, primitives);
+    const auto index = build_shown(a, a.structure, primitives);
     o.build_seconds = now() - start;
     return render(a, *index, primitives, std::move(o));
 }
@@ -120,7 +121,11 @@ int render_saved(const RenderArguments& a) {
     const ThreadLimit limit(a.threads);
     Outcome o;
     const double start = now();
-    auto saved = load_index<T>(a.scene, {}, default_executor());
+    auto saved = [&] {
+        ProgressLine line("loading " + a.scene, a.quiet, "bytes");
+        WatchedExecutor watched(default_executor(), line.progress());
+        return load_index<T>(a.scene, {}, watched);
+    }();
     const auto mesh = saved.primitives();
     const auto index = any_index(std::move(saved));
     o.loaded = true, o.build_seconds = now() - start;
@@ -155,14 +160,16 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
     verb.add_flag("--counts", a->counts,
                   "count what rays visit, without the engine's kernels; layers and steps are counts already");
-    verb.add_option("--threads", a->threads, "0: all cores")->check(CLI::Range(0, 1024));
+    verb.add_option("--threads", a->threads, "that build and render; 0: all cores")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
     return [a] {
         const bool saved = names_index_file(a->scene);
-        parse_size(a->view.size);
-        check_writable(a->output);
         a->layers = asks_for_layers(a->output);
+        check_picture_memory(a->view.size, a->layers);
+        check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) {
             if (saved && a->structure == "wide") return render_saved<T>(*a);
             return std::visit([&](const auto& set) { return render(*a, set); }, load<T>(*a));

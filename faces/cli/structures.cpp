@@ -20,7 +20,7 @@ const StructureInfo& structure_named(const std::string& name) {
         names.push_back(s.name);
         list += (list.empty() ? "" : ", ") + std::string(s.name);
     }
-    throw InputError(fmt::format("there is no structure '{}'{}; the structures are {}", name,
+    throw UsageError(fmt::format("there is no structure '{}'{}; the structures are {}", name,
                                  suggestion(name, names), list));
 }
 

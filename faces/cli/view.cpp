@@ -1,14 +1,18 @@
 #include "view.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include <hedgerow/error.h>
 #include <hedgerow/io/exr.h>
 #include <hedgerow/io/image.h>
+
+#include "memory.h"
 
 namespace hedgerow::cli {
 
@@ -31,11 +35,16 @@ void add_view(CLI::App& verb, ViewArguments& view) {
 }
 
 std::pair<int, int> parse_size(const std::string& text) {
+    constexpr int most = 32768;
     int w = 0, h = 0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > 32768 || h > 32768)
-        throw InputError(fmt::format(
-            "--size {}: a picture is WIDTHxHEIGHT pixels, each from 1 to 32768, as 1024x768", text));
+    const char* const end = text.data() + text.size();
+    const auto width = std::from_chars(text.data(), end, w);
+    const char* const by = width.ptr;
+    const auto height = by != end && *by == 'x' ? std::from_chars(by + 1, end, h) : width;
+    if (width.ec != std::errc() || height.ec != std::errc() || height.ptr != end || std::min(w, h) < 1 ||
+        std::max(w, h) > most)
+        throw UsageError(fmt::format(
+            "--size {}: a picture is WIDTHxHEIGHT pixels, each from 1 to {}, as 1024x768", text, most));
     return {w, h};
 }
 
@@ -43,12 +52,29 @@ bool asks_for_layers(const std::string& output) {
     const auto ending = std::filesystem::path(output).extension();
     if (ending == ".png") return false;
     if (ending != ".exr")
-        throw InputError(fmt::format(
+        throw UsageError(fmt::format(
             "{}: a picture is written as .png (colours) or .exr (layers of numbers); let the output end so",
             output));
     if (!exr_supported())
         throw InputError(output + ": this tool was built without OpenEXR; let the output end with .png");
     return true;
+}
+
+int FinishedPicture::exit_code() const {
+    if (whole) return 0;
+    fmt::print(stderr, "hedgerow: interrupted; the finished part is in {}\n", output);
+    return 130;
+}
+FinishedPicture finish_picture(const std::string& output, std::uint64_t rows, int height) {
+    if (rows == 0) throw Cancelled("no row of the picture was finished");
+    if (rows == static_cast<std::uint64_t>(height)) return {output, true};
+    return {unfinished_name(output), false};
+}
+
+void check_picture_memory(const std::string& size, bool layers) {
+    const auto [width, height] = parse_size(size);
+    const double pixel = sizeof(Image::Pixel) + sizeof(Vec3f) + (layers ? sizeof(Seen) : 0);
+    expect_memory("a picture of " + size, pixel * width * height, "ask for a smaller --size");
 }
 
 void save(const std::string& output, const Picture& picture) {
@@ -71,10 +97,17 @@ Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& b
         c = *own;
     if (view.eye.size() == 3) c.eye = {view.eye[0], view.eye[1], view.eye[2]};
     if (view.target.size() == 3) c.target = {view.target[0], view.target[1], view.target[2]};
+    if (view.light.size() == 3 && view.light == std::vector<float>{0, 0, 0})
+        throw UsageError("--light 0,0,0 is no direction: give one towards the light, as 1,1,2");
     if (view.light.size() == 3) c.light = {view.light[0], view.light[1], view.light[2]};
     if (view.fov > 0) c.field_of_view = view.fov;
+    if (c.eye == c.target)
+        throw UsageError(fmt::format("the camera is at its target, ({}): change --eye or --target",
+                                     fmt::join(c.eye.data, ", ")));
+    if (!(length2(c.target - c.eye) <= std::numeric_limits<float>::max()))
+        throw UsageError("the camera is too far from its target: bring --eye or --target nearer");
     if (length2(cross(c.target - c.eye, c.up)) == 0)
-        throw InputError("the camera looks along its up direction; change --eye, --target or --up");
+        throw UsageError("the camera looks along its up direction; change --eye, --target or --up");
     return c;
 }
 

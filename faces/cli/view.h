@@ -46,6 +46,20 @@ Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& b
 /// ending, and for .exr in a build without OpenEXR.
 bool asks_for_layers(const std::string& output);
 
+/// Where a picture goes: one that was interrupted must not replace one of before.
+struct FinishedPicture {
+    std::string output;
+    bool whole = true;
+
+    /// After a message, if it is not whole.
+    int exit_code() const;
+};
+/// By how many of its rows are done. Throws Cancelled if none is.
+FinishedPicture finish_picture(const std::string& output, std::uint64_t rows, int height);
+
+/// Throws MemoryShort for a picture too large to be held. `layers` are kept beside its colours.
+void check_picture_memory(const std::string& size, bool layers);
+
 /// Writes layers, if the picture has them, else colours.
 void save(const std::string& output, const Picture& picture);
 

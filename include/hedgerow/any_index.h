@@ -92,7 +92,8 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
 }
 
 /// Builds what `spec` names over primitives that are borrowed: "bvh", "bvh:builder=sweep,max_leaf_size=4".
-/// Throws InputError for unknown names and options (with the nearest that exists) and for bad primitives.
+/// Throws UsageError for unknown names and options (with the nearest that exists), and InputError for bad
+/// primitives.
 /// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T> and for views of
 /// such in arrays of the caller's, T float or double.
 template <class P>

@@ -1,4 +1,4 @@
-/// How the library says that its input is bad.
+/// How the library says that its input is bad, and that a file cannot be written.
 #pragma once
 
 #include <stdexcept>
@@ -9,6 +9,20 @@ namespace hedgerow {
 /// Bad input: a file, an option, an array or a size. The message names the place (file, line or byte, field)
 /// and says what to do. The tool answers it with exit code 3.
 class InputError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// A request that no input could satisfy: a structure, scene or option that does not exist, or a value out of
+/// its range. The tool answers it with exit code 2.
+class UsageError : public InputError {
+public:
+    using InputError::InputError;
+};
+
+/// A file cannot be written: the disk is full, the folder is missing, or permission is denied. What was there
+/// before is untouched. The tool answers it with exit code 1.
+class OutputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };

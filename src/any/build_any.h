@@ -157,14 +157,14 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
             built = std::make_unique<Holder<S<T, D>, View>>(
                 std::string(spec), Index<S<T, D>, View>(primitives, options, executor));
         else
-            throw InputError("structure '" + std::string(wanted) + "' holds points alone");
+            throw UsageError("structure '" + std::string(wanted) + "' holds points alone");
     });
     if (wanted == orthtree_name(5 - D))
-        throw InputError("structure '" + std::string(wanted) + "' holds what lies in " +
+        throw UsageError("structure '" + std::string(wanted) + "' holds what lies in " +
                          (D == 2 ? "space" : "the plane") + ": in " + (D == 2 ? "the plane" : "space") +
                          " use '" + std::string(orthtree_name(D)) + "'");
     if (!built)
-        throw InputError("no structure is called '" + std::string(wanted) + "'" + suggestion(wanted, known) +
+        throw UsageError("no structure is called '" + std::string(wanted) + "'" + suggestion(wanted, known) +
                          "; there are " + choices(known));
     return built;
 }

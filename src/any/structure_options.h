@@ -25,6 +25,13 @@ inline std::string choices(const std::vector<std::string_view>& all) {
     return text;
 }
 
+/// The fewest digits that read back as the number.
+template <class T>
+std::string shortest(T number) {
+    char text[64];
+    return {text, std::to_chars(std::begin(text), std::end(text), number).ptr};
+}
+
 /// The options of one structure, as pairs; each is taken once by its reader, and what is left over is
 /// unknown.
 class OptionReader {
@@ -36,7 +43,7 @@ public:
             text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
             const auto equals = pair.find('=');
             if (equals == std::string_view::npos)
-                throw InputError("structure '" + structure_ + "': option '" + std::string(pair) +
+                throw UsageError("structure '" + structure_ + "': option '" + std::string(pair) +
                                  "' lacks its '=value'");
             given_[std::string(pair.substr(0, equals))] = std::string(pair.substr(equals + 1));
         }
@@ -49,7 +56,7 @@ public:
         T read{};
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
         if (error != std::errc() || end != text.data() + text.size() || !(read >= least && read <= most))
-            fail(name, text, "a number from " + std::to_string(least) + " to " + std::to_string(most));
+            fail(name, text, "a number from " + shortest(least) + " to " + shortest(most));
         value = read;
     }
     template <class E>
@@ -72,7 +79,7 @@ public:
     }
     void finish() const {
         for (const auto& [name, value] : given_)
-            throw InputError("structure '" + structure_ + "' has no option '" + name + "'" +
+            throw UsageError("structure '" + structure_ + "' has no option '" + name + "'" +
                              suggestion(name, known_) +
                              (known_.empty() ? "" : "; it has " + choices(known_)));
     }
@@ -88,7 +95,7 @@ private:
         return value;
     }
     [[noreturn]] void fail(const char* name, const std::string& text, const std::string& wanted) const {
-        throw InputError("structure '" + structure_ + "': " + name + "=" + text + " is not " + wanted);
+        throw UsageError("structure '" + structure_ + "': " + name + "=" + text + " is not " + wanted);
     }
 
     std::string structure_;

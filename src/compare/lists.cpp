@@ -58,13 +58,13 @@ std::vector<std::string> structures_of(View list) {
     std::vector<std::string> structures;
     for (const View part : parts_of(list, ',')) {
         if (part.empty())
-            throw InputError("'" + std::string(list) +
+            throw UsageError("'" + std::string(list) +
                              "' has an empty part; write structures as grid,bvh:builder=sweep,kdtree");
         const bool more = part.find('=') != View::npos && part.find(':') == View::npos;
         if (!more) {
             structures.emplace_back(part);
         } else if (structures.empty()) {
-            throw InputError("'" + std::string(part) +
+            throw UsageError("'" + std::string(part) +
                              "' is an option without a structure; write it as grid:" + std::string(part));
         } else {
             structures.back() +=
@@ -76,7 +76,7 @@ std::vector<std::string> structures_of(View list) {
 
 Sweep sweep_of(View text) {
     const auto complain = [&](const std::string& what) {
-        throw InputError("--sweep " + std::string(text) + ": " + what +
+        throw UsageError("--sweep " + std::string(text) + ": " + what +
                          "; write it as grid:resolution=8..256 or bvh:builder=binned,sweep,lbvh");
     };
     const auto colon = text.find(':');
@@ -120,7 +120,7 @@ Sweep sweep_of(View text) {
 std::vector<double> range_of(View text) {
     const auto dots = text.find("..");
     const auto complain = [&] {
-        throw InputError("'" + std::string(text) + "' is no range; write two numbers that go up, as 8..256");
+        throw UsageError("'" + std::string(text) + "' is no range; write two numbers that go up, as 8..256");
     };
     if (dots == View::npos) complain();
     const auto from = number_of(text.substr(0, dots)), to = number_of(text.substr(dots + 2));
@@ -152,7 +152,7 @@ std::vector<std::uint64_t> sizes_of(View text) {
     std::vector<std::uint64_t> sizes;
     for (const double v : values) {
         if (!(v >= 1 && v < 1e15) || !whole(v) || (!sizes.empty() && v <= static_cast<double>(sizes.back())))
-            throw InputError("'" + std::string(text) +
+            throw UsageError("'" + std::string(text) +
                              "' are no sizes; write whole numbers that go up, as 1k,10k,100k or 1000..64000");
         sizes.push_back(static_cast<std::uint64_t>(v));
     }

@@ -4,6 +4,7 @@
 
 #include <hedgerow/compare/clock.h>
 #include <hedgerow/error.h>
+#include <hedgerow/parallel/watched_executor.h>
 
 #include "motion.h"
 #include "scene_questions.h"
@@ -47,12 +48,12 @@ public:
               const Progress& progress)
         : primitives_(primitives),
           o_(options),
-          executor_(executor),
           building_(&executor == &serial_executor() ? Clock::thread : Clock::wall),
-          progress_(progress) {
+          progress_(progress),
+          executor_(executor, {{}, progress.cancel}) {
         if (primitives.size() == 0)
             throw InputError("there are no primitives, so there is nothing to compare");
-        oracle_ = build_any("bvh", primitives, executor);
+        oracle_ = build_any("bvh", primitives, executor_);
         const SceneQuestions<P> scene(primitives, *oracle_, options);
         questions_ = scene.all();
         ray_sets_ = scene.ray_sets();
@@ -64,10 +65,14 @@ public:
     Comparison run(std::span<const std::string> structures) {
         Comparison c{{}, noun(primitives_), primitives_.size(), D, {}, ray_sets_, seen_from_outside_, true};
         steps_ = structures.size() * (static_cast<std::size_t>(o_.rounds) + 2);
-        for (const std::string& s : structures) {
-            if (progress_.cancelled()) break;
-            contenders_.push_back(contender(s));
-            step();
+        try {
+            for (const std::string& s : structures) {
+                if (progress_.cancelled()) break;
+                contenders_.push_back(contender(s));
+                step();
+            }
+        } catch (const Cancelled&) {  // in a build: those that are built are not measured yet
+            return c.finished = false, c;
         }
         for (int round = 0; round < o_.rounds; ++round)
             for (Contender& contender : contenders_) {
@@ -191,8 +196,11 @@ private:
         }
         c.cost.update.one = c.cost.update.all = c.cost.build_seconds;
         if (!o_.updates || o_.rounds == 0 || progress_.cancelled()) return;
-        if (c.index->changes_one_by_one()) change(c);
-        if (c.index->refittable()) refit(c);
+        try {
+            if (c.index->changes_one_by_one()) change(c);
+            if (c.index->refittable()) refit(c);
+        } catch (const Cancelled&) {  // the queries are measured all the same
+        }
     }
 
     /// Erases some primitives and inserts them again.
@@ -255,9 +263,9 @@ private:
 
     const P& primitives_;
     const MeasureOptions& o_;
-    Executor& executor_;
     Clock building_;  // several threads have no time of their own
     const Progress& progress_;
+    WatchedExecutor executor_;  // throws Cancelled
     std::unique_ptr<Any> oracle_;
     std::vector<Set> questions_;
     std::vector<RaySet> ray_sets_;

@@ -15,22 +15,27 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 BuildTree<T, D> build_tree(ReferenceList<T, D> references, CornersOf<T, D> corners, const BvhOptions& options,
                            Executor& executor) {
+    const std::size_t count = references.size();
     const auto top_down = [&]<class Splitter>(Splitter splitter, const SahOptions& sah) {
+        executor.expect(count);
         return TopDown<T, D, Splitter>(splitter, sah.max_leaf_size, executor).build();
     };
     const auto build = [&](const SahOptions& sah) {
         switch (options.builder) {
             case BvhBuilder::sweep:
-                return top_down(SweepSplitter<T, D>(std::move(references), sah), sah);
+                return top_down(SweepSplitter<T, D>(std::move(references), sah, executor), sah);
             case BvhBuilder::equal_counts:
                 return top_down(EqualCountsSplitter<T, D>(std::move(references), sah), sah);
             case BvhBuilder::midpoint:
                 return top_down(MidpointSplitter<T, D>(std::move(references), sah), sah);
             case BvhBuilder::lbvh:
+                executor.expect(count);
                 return build_lbvh<T, D>(references, sah, executor);
             case BvhBuilder::ploc:
+                executor.expect(2 * count);
                 return build_ploc<T, D>(references, sah, options.search_radius, executor);
             case BvhBuilder::agglomerative:
+                executor.expect(2 * count);
                 return build_agglomerative<T, D>(references, sah, executor);
             case BvhBuilder::spatial_splits:
                 return top_down(SpatialSplitter<T, D>(corners, std::move(references), sah, options.duplicates,

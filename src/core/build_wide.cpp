@@ -14,7 +14,7 @@ namespace {
 template <class V>
 void require(bool good, const char* name, V value, const char* wanted) {
     if (good) return;
-    throw InputError(std::string(name) + "=" + std::to_string(value) + " is not " + wanted);
+    throw UsageError(std::string(name) + "=" + std::to_string(value) + " is not " + wanted);
 }
 
 BvhOptions binary(const WideOptions& options) {
@@ -49,11 +49,14 @@ WideTree<T, D> build_wide_tree(ReferenceList<T, D> references, const WideOptions
                                Executor& executor) {
     const WideOptions all = resolved(options);
     const auto whole = [](PrimitiveId) { return Corners<T, D>(); };  // asked by no builder that is used here
+    const std::size_t count = references.size();
+    executor.expect(count);  // for the collapse, which counts leaves
     const auto tree = build_tree<T, D>(std::move(references), whole, binary(all), executor);
     if (tree.items.empty()) return {};
     if (tree.leaves > WideCollapse<T, D>::most_leaves)
         throw InputError("a wide BVH has at most 2^28 leaves, and these primitives would take " +
                          std::to_string(tree.leaves));
+    executor.advance(count - std::min<std::size_t>(count, tree.leaves));
     return WideCollapse<T, D>(tree, all.width, executor).build();
 }
 

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include <hedgerow/error.h>
-#include <hedgerow/io/load_options.h>
+#include <hedgerow/parallel/progress.h>
 
 namespace hedgerow::detail {
 

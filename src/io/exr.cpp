@@ -119,8 +119,8 @@ void save_exr(const std::filesystem::path& path, const Layers& layers) {
     try {
         write(file, layers);
     } catch (const Iex::BaseExc& error) {
-        throw InputError(path.string() + ": cannot be written (" + error.what() +
-                         "). Check the folder, its permissions and the space left");
+        throw OutputError(path.string() + ": cannot be written (" + error.what() +
+                          "). Check the folder, its permissions and the space left");
     }
     file.commit();
 }

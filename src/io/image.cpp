@@ -39,8 +39,8 @@ void save_png(const std::filesystem::path& path, const Image& image) {
     png.format = PNG_FORMAT_RGB;
     detail::OutputFile file(path);
     if (!png_image_write_to_stdio(&png, file.stream(), 0, image.pixels.data(), 0, nullptr))
-        throw InputError(path.string() + ": cannot be written (" + png.message +
-                         "). Check the folder, its permissions and the space left");
+        throw OutputError(path.string() + ": cannot be written (" + png.message +
+                          "). Check the folder, its permissions and the space left");
     file.commit();
 }
 

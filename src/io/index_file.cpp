@@ -69,6 +69,7 @@ public:
             n = std::min(size - done, std::size_t(1) << 18);
             checksums_.add(begin + done, n);
             file_.write({begin + done, n});
+            file_.advance(n);
         }
         written_ += size;
     }
@@ -152,11 +153,13 @@ void check_sums(const IndexLayout& layout, const FileBytes& file, const std::fil
     if (checksum(sums, 8 * count) != sum(count))
         refuse_index(path, "the checksums from byte " + std::to_string(end) + " on are damaged");
     std::atomic<std::uint64_t> first_bad{count};
+    executor.expect(end);
     executor.for_each_piece(count, 1, [&](std::size_t begin, std::size_t pieces_end) {
         for (std::uint64_t i = begin; i < pieces_end; ++i) {
             const std::uint64_t at = i * checksum_piece;
-            if (checksum(file.data + at, std::min<std::uint64_t>(checksum_piece, end - at)) == sum(i))
-                continue;
+            const auto size = std::min<std::uint64_t>(checksum_piece, end - at);
+            executor.advance(size);
+            if (checksum(file.data + at, size) == sum(i)) continue;
             for (std::uint64_t seen = first_bad; i < seen && !first_bad.compare_exchange_weak(seen, i);) {
             }
         }
@@ -208,7 +211,7 @@ void check_contents(const MeshIndex<T>& index, const std::filesystem::path& path
 }  // namespace detail
 
 template <std::floating_point T>
-void save_index(const std::filesystem::path& path, const MeshIndex<T>& index) {
+void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, const Progress& progress) {
     const TriangleMeshView<T>& mesh = index.primitives();
     const WideTree<T, 3>& tree = index.structure().tree();
     const TriangleBlocks<T>& blocks = detail::IndexParts::blocks(index);
@@ -217,7 +220,8 @@ void save_index(const std::filesystem::path& path, const MeshIndex<T>& index) {
     using Block = TriangleBlock<T>;
     const int width = index.structure().options().width;
 
-    detail::OutputFile file(path);
+    detail::OutputFile file(path, progress);
+    file.expect(detail::layout_of(header).checksums);
     detail::SectionWriter out(file);
     out.bytes(&header, sizeof header);
     out.align();
@@ -244,7 +248,7 @@ MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOption
     const auto header = detail::checked_header(file.data, file.size, file.size, path);
     if (header.scalar_bytes != sizeof(T)) {
         const std::string held = header.holds_floats() ? "float" : "double";
-        throw InputError(path.string() + ": holds " + held + "s. Load it with load_index<" + held + ">");
+        throw InputError(path.string() + ": holds " + held + "s. Load it as " + held);
     }
     const auto layout = detail::layout_of(header);
     if (options.verify != Verify::header) detail::check_sums(layout, file, path, executor);
@@ -253,8 +257,8 @@ MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOption
     return index;
 }
 
-template void save_index(const std::filesystem::path&, const MeshIndex<float>&);
-template void save_index(const std::filesystem::path&, const MeshIndex<double>&);
+template void save_index(const std::filesystem::path&, const MeshIndex<float>&, const Progress&);
+template void save_index(const std::filesystem::path&, const MeshIndex<double>&, const Progress&);
 template MeshIndex<float> load_index(const std::filesystem::path&, const LoadIndexOptions&, Executor&);
 template MeshIndex<double> load_index(const std::filesystem::path&, const LoadIndexOptions&, Executor&);
 

@@ -67,7 +67,7 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 }
 
 template <class T>
-void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh) {
+void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress) {
     const std::string extension = detail::lower_case(path.extension().string());
     void (*write)(detail::OutputFile&, const TriangleMesh<T>&) = nullptr;
     if (extension == ".ply") write = detail::write_ply;
@@ -76,14 +76,15 @@ void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh) {
     if (extension == ".off") write = detail::write_off;
     if (write == nullptr) detail::fail_unknown(path, ".ply .stl .obj .off");
     detail::check_indices(mesh);
-    detail::OutputFile file(path);
+    detail::OutputFile file(path, progress);
+    file.expect(mesh.vertices.size() + mesh.size());
     write(file, mesh);
     file.commit();
 }
 
 template TriangleMesh<float> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
 template TriangleMesh<double> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
-template void save_mesh(const std::filesystem::path&, const TriangleMesh<float>&);
-template void save_mesh(const std::filesystem::path&, const TriangleMesh<double>&);
+template void save_mesh(const std::filesystem::path&, const TriangleMesh<float>&, const Progress&);
+template void save_mesh(const std::filesystem::path&, const TriangleMesh<double>&, const Progress&);
 
 }  // namespace hedgerow

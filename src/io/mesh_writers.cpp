@@ -33,8 +33,12 @@ void write_ply(OutputFile& file, const TriangleMesh<T>& mesh) {
     header +=
         std::string("property list uchar ") + (small ? "int" : "uint") + " vertex_indices\nend_header\n";
     file.write(header);
-    for (const Vec<T, 3>& p : mesh.vertices) write_point(file, p);
+    for (const Vec<T, 3>& p : mesh.vertices) {
+        write_point(file, p);
+        file.advance();
+    }
     for (const TriangleIndices& t : mesh.triangles) {
+        file.advance();
         file.little(std::uint8_t(3));
         for (const std::uint32_t v : t) file.little(v);
     }
@@ -49,6 +53,7 @@ void write_stl(OutputFile& file, const TriangleMesh<T>& mesh) {
     file.write(header);
     file.little(static_cast<std::uint32_t>(mesh.size()));
     for (const auto& [a, b, c] : mesh.triangles) {
+        file.advance();
         const Vec3d p(mesh.vertices[a]), q(mesh.vertices[b]), r(mesh.vertices[c]);
         write_point(file, Vec3f(normalized(cross(q - p, r - p))));
         for (const std::uint32_t v : {a, b, c}) {
@@ -66,8 +71,10 @@ void write_obj(OutputFile& file, const TriangleMesh<T>& mesh) {
         line.assign("v ", 2);
         append_point(line, p);
         file.write(line);
+        file.advance();
     }
     for (const auto& [a, b, c] : mesh.triangles) {
+        file.advance();
         line.assign(1, 'f');
         for (const std::uint32_t v : {a, b, c}) line += ' ', append_number(line, std::uint64_t(v) + 1);
         file.write(line += '\n');
@@ -82,8 +89,10 @@ void write_off(OutputFile& file, const TriangleMesh<T>& mesh) {
         line.clear();
         append_point(line, p);
         file.write(line);
+        file.advance();
     }
     for (const auto& [a, b, c] : mesh.triangles) {
+        file.advance();
         line.assign(1, '3');
         for (const std::uint32_t v : {a, b, c}) line += ' ', append_number(line, v);
         file.write(line += '\n');

@@ -7,34 +7,77 @@
 #include <system_error>
 
 #include <sys/types.h>
+#include <unistd.h>
 
 #include <hedgerow/error.h>
+#include <hedgerow/io/writable.h>
 
 #include "text.h"
 
-namespace hedgerow::detail {
+namespace hedgerow {
 
 namespace {
+
 std::string unique_suffix() {
     static std::atomic<std::uint32_t> calls = 0;
     std::random_device random;
     std::string suffix(1, '.');
-    append_number(suffix, random());
-    append_number(suffix += '-', calls++);
+    detail::append_number(suffix, random());
+    detail::append_number(suffix += '-', calls++);
     return suffix + ".part";
 }
-}  // namespace
 
-OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
+/// What a link names is replaced, and the link stays.
+std::filesystem::path followed(const std::filesystem::path& path) {
+    std::error_code failed;
+    if (!std::filesystem::is_symlink(path, failed)) return path;
+    const auto target = std::filesystem::weakly_canonical(path, failed);
+    return failed ? path : target;
+}
+
+/// Renaming would replace a read-only file, since it asks for permission to its folder alone.
+bool read_only(const std::filesystem::path& path, const std::filesystem::file_status& status) {
+    using std::filesystem::perms;
+    const auto writers = perms::owner_write | perms::group_write | perms::others_write;
+    return (status.permissions() & writers) == perms::none || ::access(path.c_str(), W_OK) != 0;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+    throw OutputError(path.string() + ": cannot be written" + why);
+}
+
+/// As check_writable, of a file that is no link.
+void check(const std::filesystem::path& path) {
+    if (path.empty()) throw OutputError("the output has no name. Name a file");
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
-    if (std::filesystem::is_directory(status))
-        throw InputError(path.string() + ": cannot be written, it is a directory. Name a file");
-    const bool straight = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-    if (std::filesystem::is_symlink(path, ignored)) {  // the link stays, what it names is replaced
-        const auto target = std::filesystem::weakly_canonical(path, ignored);
-        if (!ignored) path_ = target;
+    if (std::filesystem::is_directory(status)) refuse(path, ", it is a directory. Name a file");
+    if (std::filesystem::exists(status)) {
+        if (read_only(path, status))
+            refuse(path, ", it is read-only. Choose another output, or permit writing it");
+        if (!std::filesystem::is_regular_file(status)) return;
     }
+    const auto folder = std::filesystem::absolute(path).parent_path();
+    if (!std::filesystem::is_directory(folder, ignored))
+        refuse(path, ": there is no folder " + folder.string() + ". Make it first");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        refuse(path, ": the folder " + folder.string() + " is read-only. Choose another output");
+}
+
+}  // namespace
+
+void check_writable(const std::filesystem::path& path) {
+    check(followed(path));
+}
+
+namespace detail {
+
+OutputFile::OutputFile(const std::filesystem::path& path, Progress progress)
+    : path_(followed(path)), progress_(std::move(progress)) {
+    check(path_);
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path_, ignored);
+    const bool straight = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
     written_ = path_;
     if (!straight) written_ += unique_suffix();
     errno = 0;
@@ -67,6 +110,7 @@ void OutputFile::seek(std::uint64_t place) {
 }
 
 void OutputFile::commit() {
+    progress_.look();
     errno = 0;
     if (std::fflush(file_) != 0 || std::ferror(file_) != 0) fail(errno);
     const int closed = std::fclose(file_);
@@ -80,9 +124,9 @@ void OutputFile::commit() {
 }
 
 void OutputFile::fail(int error) const {
-    throw InputError(path_.string() + ": cannot be written: " +
-                     (error == 0 ? "the disk may be full" : std::generic_category().message(error)) +
-                     ". Check the folder, its permissions and the space left");
+    refuse(path_, ": " + (error == 0 ? "the disk may be full" : std::generic_category().message(error)) +
+                      ". Check the folder, its permissions and the space left");
 }
 
-}  // namespace hedgerow::detail
+}  // namespace detail
+}  // namespace hedgerow

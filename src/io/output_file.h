@@ -11,13 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include <hedgerow/parallel/progress.h>
+
 namespace hedgerow::detail {
 
-/// Writes beside `path`, under another name, and renames that in `commit`; what was not committed is removed.
-/// What is no regular file (a pipe, a device) is written straight. All errors are InputError.
+/// Writes beside `path`, under another name that no other writer has, and renames that in `commit`; what was
+/// not committed is removed. A device or pipe is written straight. Throws OutputError; and Cancelled, once
+/// the progress is.
 class OutputFile {
 public:
-    explicit OutputFile(const std::filesystem::path& path);
+    explicit OutputFile(const std::filesystem::path& path, Progress progress = {});
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
@@ -31,6 +34,16 @@ public:
             for (std::size_t i = 0; i < sizeof(U) / 2; ++i) std::swap(bytes[i], bytes[sizeof(U) - 1 - i]);
         write({bytes, sizeof(U)});
     }
+    /// Announces how much there is to write, in the writer's unit, and then says how much more is written.
+    /// The progress is told, and asked whether to stop, about every 4096.
+    void expect(std::uint64_t total) { total_ = total; }
+    void advance(std::uint64_t more = 1) {
+        done_ += more;
+        if (done_ - reported_ < 4096) return;
+        reported_ = done_;
+        progress_.look();
+        progress_(done_, total_);
+    }
     std::FILE* stream() const { return file_; }
     /// The next byte's place, for formats that go back to fill in what they did not know. Pipes have none.
     std::uint64_t tell() const;
@@ -41,6 +54,8 @@ private:
     [[noreturn]] void fail(int error) const;
 
     std::filesystem::path path_, written_;
+    Progress progress_;
+    std::uint64_t done_ = 0, reported_ = 0, total_ = 0;
     std::FILE* file_ = nullptr;
 };
 

@@ -46,15 +46,19 @@ void write_ply_points(OutputFile& file, const PointCloud<T, D>& cloud) {
     header += std::to_string(cloud.size()) + "\n";
     for (const char axis : {'x', 'y', 'z'}) header += "property " + type + " " + axis + "\n";
     file.write(header + "end_header\n");
-    for (const Vec<T, D>& p : cloud.points)
+    for (const Vec<T, D>& p : cloud.points) {
         for (int i = 0; i < 3; ++i) file.little(i < D ? p[i] : T(0));
+        file.advance();
+    }
 }
 
 template <class T, int D>
 void write_npy_points(OutputFile& file, const PointCloud<T, D>& cloud) {
     file.write(npy_header(npy_dtype<T>(), {cloud.size(), D}));
-    for (const Vec<T, D>& p : cloud.points)
+    for (const Vec<T, D>& p : cloud.points) {
         for (int i = 0; i < D; ++i) file.little(p[i]);
+        file.advance();
+    }
 }
 
 template <class T, int D>
@@ -67,6 +71,7 @@ void write_lines(OutputFile& file, const PointCloud<T, D>& cloud, char separator
             append_number(line, p[i]);
         }
         file.write(line += '\n');
+        file.advance();
     }
 }
 
@@ -104,7 +109,7 @@ PointCloud<T, D> load_points(const std::filesystem::path& path, const LoadOption
 }
 
 template <class T, int D>
-void save_points(const std::filesystem::path& path, const PointCloud<T, D>& cloud) {
+void save_points(const std::filesystem::path& path, const PointCloud<T, D>& cloud, const Progress& progress) {
     const std::string extension = detail::lower_case(path.extension().string());
     void (*write)(detail::OutputFile&, const PointCloud<T, D>&) = nullptr;
     if (extension == ".ply") write = detail::write_ply_points;
@@ -112,7 +117,8 @@ void save_points(const std::filesystem::path& path, const PointCloud<T, D>& clou
     if (extension == ".csv") write = detail::write_csv_points;
     if (extension == ".xyz") write = detail::write_xyz_points;
     if (write == nullptr) detail::fail_unknown_points(path, ".ply .npy .csv .xyz");
-    detail::OutputFile file(path);
+    detail::OutputFile file(path, progress);
+    file.expect(cloud.size());
     write(file, cloud);
     file.commit();
 }
@@ -122,9 +128,9 @@ template PointCloud<float, 2> load_points(const Path&, const LoadOptions&, const
 template PointCloud<float, 3> load_points(const Path&, const LoadOptions&, const Progress&);
 template PointCloud<double, 2> load_points(const Path&, const LoadOptions&, const Progress&);
 template PointCloud<double, 3> load_points(const Path&, const LoadOptions&, const Progress&);
-template void save_points(const Path&, const PointCloud<float, 2>&);
-template void save_points(const Path&, const PointCloud<float, 3>&);
-template void save_points(const Path&, const PointCloud<double, 2>&);
-template void save_points(const Path&, const PointCloud<double, 3>&);
+template void save_points(const Path&, const PointCloud<float, 2>&, const Progress&);
+template void save_points(const Path&, const PointCloud<float, 3>&, const Progress&);
+template void save_points(const Path&, const PointCloud<double, 2>&, const Progress&);
+template void save_points(const Path&, const PointCloud<double, 3>&, const Progress&);
 
 }  // namespace hedgerow

@@ -4,6 +4,7 @@
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/io/point_file.h>
+#include <hedgerow/parallel/watched_executor.h>
 
 #include "memory.h"
 #include "npy_format.h"
@@ -49,6 +50,12 @@ TriangleMesh<T> mesh_of(const TriangleMeshView<T>& view) {
     return mesh;
 }
 
+template <class T>
+TriangleMesh<T> load_mesh_of_index(const std::filesystem::path& path, const Progress& progress) {
+    WatchedExecutor watched(serial_executor(), progress);
+    return mesh_of(load_index<T>(path, {}, watched).primitives());
+}
+
 }  // namespace
 
 template <class T>
@@ -59,7 +66,7 @@ Scene<T> load_scene(const std::filesystem::path& path, const LoadOptions& option
         case Holds::points2d:
             return load_points<T, 2>(path, options, progress);
         case Holds::index:
-            return detail::within_memory(path, [&] { return mesh_of(load_index<T>(path).primitives()); });
+            return detail::within_memory(path, [&] { return load_mesh_of_index<T>(path, progress); });
         case Holds::mesh:
             break;
     }

@@ -24,7 +24,7 @@ std::string bad_coordinates(std::string_view name, const std::string& what, cons
     std::string message = std::string(name) + ": " + what + " is (";
     for (int i = 0; i < D; ++i) message += (i == 0 ? "" : ", ") + std::to_string(p[i]);
     return message + "), which is " + (std::is_same_v<T, float> ? "not within ±2^60" : "not within ±2^480") +
-           ". Repair the file, or load it with drop_bad";
+           ". Repair the file, or drop what is bad (--drop-bad, LoadOptions::drop_bad)";
 }
 
 /// What the triangle is in the file.
@@ -41,7 +41,7 @@ void validate_faces(const TriangleMesh<T>& mesh, std::string_view name) {
         throw InputError(start + "holds neither faces nor points. Is it the right file?");
     if (mesh.triangles.empty())
         throw InputError(start + "holds only points (" + std::to_string(count) +
-                         " vertices, and no face with three corners). Read them with load_points");
+                         " vertices, and no face with three corners). Read them as points");
     if (!mesh.faces.empty() && mesh.faces.size() != mesh.triangles.size())
         throw InputError(start + "has " + std::to_string(mesh.faces.size()) + " face ids for " +
                          std::to_string(mesh.triangles.size()) + " triangles. Give one a triangle, or none");

@@ -5,6 +5,7 @@
 
 #include "precision.h"
 #include "sizing.h"
+#include "steps.h"
 #include "welding.h"
 
 namespace hedgerow {
@@ -29,10 +30,9 @@ constexpr Quad short_block_top = {Vec3d(130, 165, 65), Vec3d(82, 165, 225), Vec3
 constexpr Quad tall_block_top = {Vec3d(423, 330, 247), Vec3d(265, 330, 296), Vec3d(314, 330, 456),
                                  Vec3d(472, 330, 406)};
 
-TriangleMesh<double> room(const Pieces& n) {
+TriangleMesh<double> room(const Pieces& n, detail::WeldedMesh to) {
     const Quad& f = floor_corners;
     const Quad& c = ceiling_corners;
-    detail::WeldedMesh to;
     to.add_divided_quad({f[3], f[2], f[1], f[0]}, n[2], n[0]);
     to.add_divided_quad(c, n[2], n[0]);
     to.add_divided_quad({f[1], f[2], c[2], c[1]}, n[0], n[1]);  // back
@@ -41,14 +41,12 @@ TriangleMesh<double> room(const Pieces& n) {
     return std::move(to.mesh);
 }
 
-TriangleMesh<double> light(const Pieces& n) {
-    detail::WeldedMesh to;
+TriangleMesh<double> light(const Pieces& n, detail::WeldedMesh to) {
     to.add_divided_quad(light_corners, n[2], n[0]);
     return std::move(to.mesh);
 }
 
-TriangleMesh<double> block(const Quad& top, const Pieces& n) {
-    detail::WeldedMesh to;
+TriangleMesh<double> block(const Quad& top, const Pieces& n, detail::WeldedMesh to) {
     to.add_divided_quad(top, n[0], n[2]);
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3d a = top[i], b = top[(i + 1) % 4];
@@ -58,23 +56,25 @@ TriangleMesh<double> block(const Quad& top, const Pieces& n) {
     return std::move(to.mesh);
 }
 
-TriangleMesh<double> build(std::uint64_t size) {
+TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
     // Triangles across (y, z), (z, x) and (x, y), two a piece.
     const Pieces pieces = detail::nearest_box_split(size, {12, 10, 10});
-    TriangleMesh<double> mesh = room(pieces);
-    detail::append(mesh, light(pieces));
-    detail::append(mesh, block(short_block_top, pieces));
-    detail::append(mesh, block(tall_block_top, pieces));
+    TriangleMesh<double> mesh;
+    const auto welded = [&] { return detail::WeldedMesh(progress, size, mesh.size()); };
+    mesh = room(pieces, welded());
+    detail::append(mesh, light(pieces, welded()));
+    detail::append(mesh, block(short_block_top, pieces, welded()));
+    detail::append(mesh, block(tall_block_top, pieces, welded()));
     return mesh;
 }
 
 }  // namespace
 
 template <class T>
-TriangleMesh<T> cornell_box(std::uint64_t size) {
-    return detail::in_precision<T>([&] { return build(size); });
+TriangleMesh<T> cornell_box(std::uint64_t size, const Progress& progress) {
+    return detail::in_precision<T>([&] { return build(size, progress); });
 }
-template TriangleMesh<float> cornell_box<float>(std::uint64_t);
-template TriangleMesh<double> cornell_box<double>(std::uint64_t);
+template TriangleMesh<float> cornell_box<float>(std::uint64_t, const Progress&);
+template TriangleMesh<double> cornell_box<double>(std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

@@ -5,14 +5,15 @@
 
 #include "precision.h"
 #include "sizing.h"
+#include "steps.h"
 #include "welding.h"
 
 namespace hedgerow {
 namespace {
 
-TriangleMesh<double> build(std::uint64_t size) {
+TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
     const auto pieces = detail::nearest_box_split(size, {4, 4, 4});
-    detail::WeldedMesh to;
+    detail::WeldedMesh to(progress, size);
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-1.0, 1.0}) {
             const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -33,10 +34,10 @@ TriangleMesh<double> build(std::uint64_t size) {
 }  // namespace
 
 template <class T>
-TriangleMesh<T> cube(std::uint64_t size) {
-    return detail::in_precision<T>([&] { return build(size); });
+TriangleMesh<T> cube(std::uint64_t size, const Progress& progress) {
+    return detail::in_precision<T>([&] { return build(size, progress); });
 }
-template TriangleMesh<float> cube<float>(std::uint64_t);
-template TriangleMesh<double> cube<double>(std::uint64_t);
+template TriangleMesh<float> cube<float>(std::uint64_t, const Progress&);
+template TriangleMesh<double> cube<double>(std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

@@ -13,56 +13,62 @@
 namespace hedgerow {
 namespace {
 
+using U = std::uint64_t;
+using P = Progress;
+
 template <class T>
 struct In {};  // names a precision
 
-/// A line of the list, from a function of (In<T>, size, seed).
+/// A line of the list, from a function of (In<T>, size, seed, progress).
 template <class F>
 constexpr SceneInfo scene(std::string_view name, std::uint64_t size, std::string_view yields, int dimension,
-                          std::string_view description, F) {
+                          std::string_view description, double bytes, F) {
     return {name,
             size,
             yields,
             dimension,
             description,
-            [](std::uint64_t n, std::uint64_t seed) -> Scene<float> { return F{}(In<float>{}, n, seed); },
-            [](std::uint64_t n, std::uint64_t seed) -> Scene<double> { return F{}(In<double>{}, n, seed); }};
+            bytes,
+            [](U n, U seed, const Progress& progress) -> Scene<float> {
+                return F{}(In<float>{}, n, seed, progress);
+            },
+            [](U n, U seed, const Progress& progress) -> Scene<double> {
+                return F{}(In<double>{}, n, seed, progress);
+            }};
 }
-
-using U = std::uint64_t;
 
 /// The one list of scenes.
 constexpr SceneInfo scenes[] = {
-    scene("teapot", 6'320, "triangles", 3, "the Utah teapot from its Bézier patches",
-          []<class T>(In<T>, U n, U) { return teapot<T>(n); }),
-    scene("teapot-in-stadium", 54'056, "triangles", 3, "a small fine teapot in a huge coarse stadium",
-          []<class T>(In<T>, U n, U) { return teapot_in_stadium<T>(n); }),
-    scene("turned-stadium", 54'056, "triangles", 3, "the same, turned by 30 degrees about two axes",
-          []<class T>(In<T>, U n, U) { return turned_stadium<T>(n); }),
-    scene("terrain", 2 * 1024 * 1024, "triangles", 3, "a fractal landscape over the unit square",
-          []<class T>(In<T>, U n, U seed) { return terrain<T>(n, seed); }),
-    scene("grass", 1'000'001, "triangles", 3, "thin blades of grass on uneven ground",
-          []<class T>(In<T>, U n, U seed) { return grass<T>(n, seed); }),
-    scene("hairball", 1'000'000, "triangles", 3, "thin long curved strands around a ball",
-          []<class T>(In<T>, U n, U seed) { return hairball<T>(n, seed); }),
-    scene("soup", 1'000'000, "triangles", 3, "separate random triangles in the unit cube",
-          []<class T>(In<T>, U n, U seed) { return soup<T>(n, seed); }),
-    scene("interior", 967'616, "triangles", 3, "a furnished flat of six rooms, from walls to pens",
-          []<class T>(In<T>, U n, U seed) { return interior<T>(n, seed); }),
-    scene("cornell-box", 32, "triangles", 3, "the Cornell box: a room with a light and two blocks",
-          []<class T>(In<T>, U n, U) { return cornell_box<T>(n); }),
-    scene("cube", 12, "triangles", 3, "the closed cube from -1 to 1",
-          []<class T>(In<T>, U n, U) { return cube<T>(n); }),
-    scene("spheres", 10'000, "spheres", 3, "random spheres in the unit cube",
-          []<class T>(In<T>, U n, U seed) { return spheres<T>(n, seed); }),
-    scene("points", 100'000, "points", 3, "random points in the unit cube",
-          []<class T>(In<T>, U n, U seed) { return points<T>(n, seed); }),
-    scene("points2d", 100'000, "points", 2, "random points in the unit square",
-          []<class T>(In<T>, U n, U seed) { return points2d<T>(n, seed); }),
-    scene("clusters2d", 100'000, "points", 2, "random points in 16 heaps in the unit square",
-          []<class T>(In<T>, U n, U seed) { return clusters2d<T>(n, seed); }),
-    scene("segments2d", 10'000, "segments", 2, "short random segments in the unit square",
-          []<class T>(In<T>, U n, U seed) { return segments2d<T>(n, seed); }),
+    scene("teapot", 6'320, "triangles", 3, "the Utah teapot from its Bézier patches", 60,
+          []<class T>(In<T>, U n, U, const P& p) { return teapot<T>(n, p); }),
+    scene("teapot-in-stadium", 54'056, "triangles", 3, "a small fine teapot in a huge coarse stadium", 24,
+          []<class T>(In<T>, U n, U, const P& p) { return teapot_in_stadium<T>(n, p); }),
+    scene("turned-stadium", 54'056, "triangles", 3, "the same, turned by 30 degrees about two axes", 24,
+          []<class T>(In<T>, U n, U, const P& p) { return turned_stadium<T>(n, p); }),
+    scene("terrain", 2 * 1024 * 1024, "triangles", 3, "a fractal landscape over the unit square", 24,
+          []<class T>(In<T>, U n, U seed, const P& p) { return terrain<T>(n, seed, p); }),
+    scene("grass", 1'000'001, "triangles", 3, "thin blades of grass on uneven ground", 52,
+          []<class T>(In<T>, U n, U seed, const P& p) { return grass<T>(n, seed, p); }),
+    scene("hairball", 1'000'000, "triangles", 3, "thin long curved strands around a ball", 37,
+          []<class T>(In<T>, U n, U seed, const P& p) { return hairball<T>(n, seed, p); }),
+    scene("soup", 1'000'000, "triangles", 3, "separate random triangles in the unit cube", 84,
+          []<class T>(In<T>, U n, U seed, const P& p) { return soup<T>(n, seed, p); }),
+    scene("interior", 967'616, "triangles", 3, "a furnished flat of six rooms, from walls to pens", 24,
+          []<class T>(In<T>, U n, U seed, const P& p) { return interior<T>(n, seed, p); }),
+    scene("cornell-box", 32, "triangles", 3, "the Cornell box: a room with a light and two blocks", 60,
+          []<class T>(In<T>, U n, U, const P& p) { return cornell_box<T>(n, p); }),
+    scene("cube", 12, "triangles", 3, "the closed cube from -1 to 1", 60,
+          []<class T>(In<T>, U n, U, const P& p) { return cube<T>(n, p); }),
+    scene("spheres", 10'000, "spheres", 3, "random spheres in the unit cube", 32,
+          []<class T>(In<T>, U n, U seed, const P& p) { return spheres<T>(n, seed, p); }),
+    scene("points", 100'000, "points", 3, "random points in the unit cube", 24,
+          []<class T>(In<T>, U n, U seed, const P& p) { return points<T>(n, seed, p); }),
+    scene("points2d", 100'000, "points", 2, "random points in the unit square", 16,
+          []<class T>(In<T>, U n, U seed, const P& p) { return points2d<T>(n, seed, p); }),
+    scene("clusters2d", 100'000, "points", 2, "random points in 16 heaps in the unit square", 16,
+          []<class T>(In<T>, U n, U seed, const P& p) { return clusters2d<T>(n, seed, p); }),
+    scene("segments2d", 10'000, "segments", 2, "short random segments in the unit square", 32,
+          []<class T>(In<T>, U n, U seed, const P& p) { return segments2d<T>(n, seed, p); }),
 };
 
 const SceneInfo& scene_named(std::string_view name) {
@@ -74,13 +80,13 @@ const SceneInfo& scene_named(std::string_view name) {
         names.push_back(s.name);
         list += (list.empty() ? "" : ", ") + std::string(s.name);
     }
-    throw InputError("gen:" + std::string(name) + ": there is no scene '" + std::string(name) + "'" +
+    throw UsageError("gen:" + std::string(name) + ": there is no scene '" + std::string(name) + "'" +
                      suggestion(name, names) + "; the scenes are " + list);
 }
 
 void check_size(std::string_view name, std::uint64_t size) {
     if (size > largest_scene_size)
-        throw InputError("gen:" + std::string(name) + ": size " + std::to_string(size) +
+        throw UsageError("gen:" + std::string(name) + ": size " + std::to_string(size) +
                          " is too large; ask for at most " + std::to_string(largest_scene_size));
 }
 
@@ -99,11 +105,11 @@ std::uint64_t parse_size(std::string_view name, std::string_view text) {
     const auto [rest, error] = std::from_chars(text.data(), end, value);
     const std::uint64_t times = multiplier({rest, static_cast<std::size_t>(end - rest)});
     if (error == std::errc::invalid_argument || times == 0)
-        throw InputError("gen:" + std::string(name) + ": '" + std::string(text) +
+        throw UsageError("gen:" + std::string(name) + ": '" + std::string(text) +
                          "' is not a size; write a whole number such as 5000, 100k or 2M");
     // Beyond 64 bits, or soon: any number above the largest allowed one will do for the message.
     if (error == std::errc::result_out_of_range || value > largest_scene_size / times)
-        throw InputError("gen:" + std::string(name) + ": size " + std::string(text) +
+        throw UsageError("gen:" + std::string(name) + ": size " + std::string(text) +
                          " is too large; ask for at most " + std::to_string(largest_scene_size));
     return value * times;
 }
@@ -117,7 +123,7 @@ std::span<const SceneInfo> scene_list() {
 SceneSpec parse_scene_spec(std::string_view text) {
     constexpr std::string_view scheme = "gen:";
     if (!text.starts_with(scheme))
-        throw InputError("'" + std::string(text) +
+        throw UsageError("'" + std::string(text) +
                          "' is not a generated scene; write gen:NAME or gen:NAME:SIZE");
     std::string_view name = text.substr(scheme.size());
     const std::size_t colon = name.find(':');
@@ -131,16 +137,16 @@ SceneSpec parse_scene_spec(std::string_view text) {
 }
 
 template <class T>
-Scene<T> generate(const SceneSpec& spec) {
+Scene<T> generate(const SceneSpec& spec, const Progress& progress) {
     const SceneInfo& info = scene_named(spec.name);
     const std::uint64_t size = spec.size.value_or(info.default_size);
     check_size(info.name, size);
     if constexpr (std::is_same_v<T, float>)
-        return info.in_float(size, spec.seed);
+        return info.in_float(size, spec.seed, progress);
     else
-        return info.in_double(size, spec.seed);
+        return info.in_double(size, spec.seed, progress);
 }
-template Scene<float> generate<float>(const SceneSpec&);
-template Scene<double> generate<double>(const SceneSpec&);
+template Scene<float> generate<float>(const SceneSpec&, const Progress&);
+template Scene<double> generate<double>(const SceneSpec&, const Progress&);
 
 }  // namespace hedgerow

@@ -6,6 +6,7 @@
 #include <hedgerow/scenes/random.h>
 
 #include "precision.h"
+#include "steps.h"
 
 namespace hedgerow {
 namespace {
@@ -38,8 +39,8 @@ void grow_blade(TriangleMesh<double>& mesh, const Vec3d& root, double width, Ran
     mesh.triangles.push_back({first + 2, first + 3, first + 4});
 }
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
-    TriangleMesh<double> mesh = terrain<double>(size / 8, seed);
+TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+    TriangleMesh<double> mesh = terrain<double>(size / 8, seed, detail::part_of(progress));
     const std::size_t ground = mesh.triangles.size();
     const std::uint64_t blades = size > ground ? (size - ground + 1) / triangles_a_blade : 0;
     // As many blades as there are, a third of the ground is under their feet at most.
@@ -48,6 +49,7 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
     mesh.vertices.reserve(mesh.vertices.size() + 5 * blades);
     mesh.triangles.reserve(ground + triangles_a_blade * blades);
     for (std::uint64_t i = 0; i < blades; ++i) {
+        detail::step(progress, i, blades);
         Random random(~seed, i);
         const TriangleIndices under = mesh.triangles[random.bits() % ground];
         grow_blade(mesh, point_of(mesh, under, random), width, random);
@@ -58,10 +60,10 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
 }  // namespace
 
 template <class T>
-TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed) {
-    return detail::in_precision<T>([&] { return build(size, seed); });
+TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+    return detail::in_precision<T>([&] { return build(size, seed, progress); });
 }
-template TriangleMesh<float> grass<float>(std::uint64_t, std::uint64_t);
-template TriangleMesh<double> grass<double>(std::uint64_t, std::uint64_t);
+template TriangleMesh<float> grass<float>(std::uint64_t, std::uint64_t, const Progress&);
+template TriangleMesh<double> grass<double>(std::uint64_t, std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

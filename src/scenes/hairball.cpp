@@ -6,6 +6,7 @@
 #include <hedgerow/scenes/random.h>
 
 #include "precision.h"
+#include "steps.h"
 
 namespace hedgerow {
 namespace {
@@ -38,13 +39,14 @@ void grow_strand(TriangleMesh<double>& mesh, double width, Random& random) {
     }
 }
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
+TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     const std::uint64_t strands = std::max<std::uint64_t>(1, (size + steps) / (2 * steps));
     const double width = std::min(widest, 0.5 / std::sqrt(static_cast<double>(strands)));
     TriangleMesh<double> mesh;
     mesh.vertices.reserve(strands * 2 * (steps + 1));
     mesh.triangles.reserve(strands * 2 * steps);
     for (std::uint64_t i = 0; i < strands; ++i) {
+        detail::step(progress, i * steps, strands * steps, steps);
         Random random(seed, i);
         grow_strand(mesh, width, random);
     }
@@ -54,10 +56,10 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
 }  // namespace
 
 template <class T>
-TriangleMesh<T> hairball(std::uint64_t size, std::uint64_t seed) {
-    return detail::in_precision<T>([&] { return build(size, seed); });
+TriangleMesh<T> hairball(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+    return detail::in_precision<T>([&] { return build(size, seed, progress); });
 }
-template TriangleMesh<float> hairball<float>(std::uint64_t, std::uint64_t);
-template TriangleMesh<double> hairball<double>(std::uint64_t, std::uint64_t);
+template TriangleMesh<float> hairball<float>(std::uint64_t, std::uint64_t, const Progress&);
+template TriangleMesh<double> hairball<double>(std::uint64_t, std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

@@ -14,9 +14,11 @@ using namespace detail;
 
 /// Adds things in order, but for those that would make it larger than `size`. The first stands always.
 TriangleMesh<double> furnished(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t size,
-                               std::uint64_t seed) {
+                               std::uint64_t seed, const Progress& progress) {
     TriangleMesh<double> mesh;
     for (std::size_t i = 0; i < things.size(); ++i) {
+        progress.look();
+        progress(mesh.size(), size);
         Model model(level);
         things[i](model, Random(seed, i));
         if (i == 0 || mesh.size() + model.mesh.size() <= size) append(mesh, model.mesh);
@@ -25,9 +27,11 @@ TriangleMesh<double> furnished(const std::vector<Thing>& things, std::uint64_t l
 }
 
 /// Whether all things together have so many triangles.
-bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t size, std::uint64_t seed) {
+bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t size, std::uint64_t seed,
+           const Progress& progress) {
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < things.size() && count < size; ++i) {
+        progress.look();
         Model model(level);
         things[i](model, Random(seed, i));
         count += model.mesh.size();
@@ -35,29 +39,29 @@ bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t 
     return count >= size;
 }
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
+TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     const std::vector<Thing> things = flat();
     // The least level that fills the size: counts grow with levels.
     std::uint64_t below = 0, enough = 0;
-    for (std::uint64_t step = 1; !fills(things, enough, size, seed); step *= 2)
+    for (std::uint64_t step = 1; !fills(things, enough, size, seed, progress); step *= 2)
         below = enough + 1, enough += step;
     while (below < enough) {
         const std::uint64_t middle = below + (enough - below) / 2;
-        if (fills(things, middle, size, seed))
+        if (fills(things, middle, size, seed, progress))
             enough = middle;
         else
             below = middle + 1;
     }
-    return furnished(things, enough, size, seed);
+    return furnished(things, enough, size, seed, progress);
 }
 
 }  // namespace
 
 template <class T>
-TriangleMesh<T> interior(std::uint64_t size, std::uint64_t seed) {
-    return in_precision<T>([&] { return build(size, seed); });
+TriangleMesh<T> interior(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+    return in_precision<T>([&] { return build(size, seed, progress); });
 }
-template TriangleMesh<float> interior<float>(std::uint64_t, std::uint64_t);
-template TriangleMesh<double> interior<double>(std::uint64_t, std::uint64_t);
+template TriangleMesh<float> interior<float>(std::uint64_t, std::uint64_t, const Progress&);
+template TriangleMesh<double> interior<double>(std::uint64_t, std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

@@ -6,6 +6,7 @@
 #include "circle.h"
 #include "precision.h"
 #include "sizing.h"
+#include "steps.h"
 #include "welding.h"
 
 namespace hedgerow {
@@ -37,7 +38,7 @@ std::vector<SectionPoint> section(std::uint64_t rows, int field_rings) {
     return points;
 }
 
-TriangleMesh<double> bowl(std::uint64_t size) {
+TriangleMesh<double> bowl(std::uint64_t size, const Progress& progress) {
     const int field_rings = size < 4000 ? 1 : 2;
     // Eight segments a column; four triangles a row of seats, and the field and the outer wall.
     const detail::Split split = detail::nearest_split(size, {32, 16 * field_rings + 8, 0.5});
@@ -52,6 +53,7 @@ TriangleMesh<double> bowl(std::uint64_t size) {
         const double b = product(field_half_width, at.scale) + at.outside;
         for (const Vec2d& p : around) mesh.vertices.push_back({product(a, p[0]), product(b, p[1]), at.z});
         for (std::uint32_t i = 0; i < n; ++i) {
+            detail::step(progress, mesh.size(), size, 2);
             const std::uint32_t next = i + 1 < n ? i + 1 : 0;
             mesh.triangles.push_back({inner == 0 ? 0 : inner + i, outer + i, outer + next});
             if (inner != 0) mesh.triangles.push_back({inner + i, outer + next, inner + next});
@@ -61,10 +63,11 @@ TriangleMesh<double> bowl(std::uint64_t size) {
     return mesh;
 }
 
-TriangleMesh<double> build(std::uint64_t size) {
+TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
     constexpr std::uint64_t default_total = 54'056, default_teapot = 6'320;
-    const TriangleMesh<double> pot = teapot<double>(size * default_teapot / default_total);
-    TriangleMesh<double> mesh = bowl(size > pot.size() ? size - pot.size() : 0);
+    const TriangleMesh<double> pot =
+        teapot<double>(size * default_teapot / default_total, detail::part_of(progress));
+    TriangleMesh<double> mesh = bowl(size > pot.size() ? size - pot.size() : 0, progress);
     detail::append(mesh, pot, {0, 0, teapot_height_above_field});
     return mesh;
 }
@@ -72,10 +75,10 @@ TriangleMesh<double> build(std::uint64_t size) {
 }  // namespace
 
 template <class T>
-TriangleMesh<T> teapot_in_stadium(std::uint64_t size) {
-    return detail::in_precision<T>([&] { return build(size); });
+TriangleMesh<T> teapot_in_stadium(std::uint64_t size, const Progress& progress) {
+    return detail::in_precision<T>([&] { return build(size, progress); });
 }
-template TriangleMesh<float> teapot_in_stadium<float>(std::uint64_t);
-template TriangleMesh<double> teapot_in_stadium<double>(std::uint64_t);
+template TriangleMesh<float> teapot_in_stadium<float>(std::uint64_t, const Progress&);
+template TriangleMesh<double> teapot_in_stadium<double>(std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

@@ -5,6 +5,7 @@
 
 #include "precision.h"
 #include "sizing.h"
+#include "steps.h"
 #include "teapot_patches.h"
 #include "welding.h"
 
@@ -63,13 +64,13 @@ void add_patch(detail::WeldedMesh& to, const Patch& patch, const detail::Split& 
     }
 }
 
-TriangleMesh<double> build(std::uint64_t size) {
+TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
     // 32 patches of two triangles a cell; at the two poles a patch in each quarter loses one a column. In one
     // column handle and spout would be flat, which is left to those who ask for less than can be had
     // otherwise.
     const std::uint64_t least_columns = size < 90 ? 1 : 2;
     const detail::Split split = detail::nearest_split(size, {64, -8, 1, least_columns});
-    detail::WeldedMesh to;
+    detail::WeldedMesh to(progress, size);
     for (const auto& rings : detail::teapot_revolved)
         for (const bool flip_x : {false, true})
             for (const bool flip_y : {false, true})
@@ -82,10 +83,10 @@ TriangleMesh<double> build(std::uint64_t size) {
 }  // namespace
 
 template <class T>
-TriangleMesh<T> teapot(std::uint64_t size) {
-    return detail::in_precision<T>([&] { return build(size); });
+TriangleMesh<T> teapot(std::uint64_t size, const Progress& progress) {
+    return detail::in_precision<T>([&] { return build(size, progress); });
 }
-template TriangleMesh<float> teapot<float>(std::uint64_t);
-template TriangleMesh<double> teapot<double>(std::uint64_t);
+template TriangleMesh<float> teapot<float>(std::uint64_t, const Progress&);
+template TriangleMesh<double> teapot<double>(std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

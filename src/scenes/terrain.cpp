@@ -4,6 +4,7 @@
 
 #include "precision.h"
 #include "sizing.h"
+#include "steps.h"
 
 namespace hedgerow {
 namespace {
@@ -44,7 +45,7 @@ double height(std::uint64_t seed, Vec2d p) {
     return sum;
 }
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
+TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     const detail::Split split = detail::nearest_split(size, {2});
     const auto columns = static_cast<std::uint32_t>(split.columns),
                rows = static_cast<std::uint32_t>(split.rows);
@@ -53,25 +54,28 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed) {
     mesh.triangles.reserve(std::size_t{2} * columns * rows);
     for (std::uint32_t k = 0; k <= rows; ++k)
         for (std::uint32_t i = 0; i <= columns; ++i) {
+            detail::step(progress, mesh.vertices.size(), mesh.vertices.capacity());
             const Vec2d p(static_cast<double>(i) / columns, static_cast<double>(k) / rows);
             mesh.vertices.push_back({p[0], p[1], height(seed, p)});
         }
-    for (std::uint32_t k = 0; k < rows; ++k)
+    for (std::uint32_t k = 0; k < rows; ++k) {
+        progress.look();
         for (std::uint32_t i = 0; i < columns; ++i) {
             const std::uint32_t here = k * (columns + 1) + i, above = here + columns + 1;
             mesh.triangles.push_back({here, here + 1, above + 1});
             mesh.triangles.push_back({here, above + 1, above});
         }
+    }
     return mesh;
 }
 
 }  // namespace
 
 template <class T>
-TriangleMesh<T> terrain(std::uint64_t size, std::uint64_t seed) {
-    return detail::in_precision<T>([&] { return build(size, seed); });
+TriangleMesh<T> terrain(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+    return detail::in_precision<T>([&] { return build(size, seed, progress); });
 }
-template TriangleMesh<float> terrain<float>(std::uint64_t, std::uint64_t);
-template TriangleMesh<double> terrain<double>(std::uint64_t, std::uint64_t);
+template TriangleMesh<float> terrain<float>(std::uint64_t, std::uint64_t, const Progress&);
+template TriangleMesh<double> terrain<double>(std::uint64_t, std::uint64_t, const Progress&);
 
 }  // namespace hedgerow

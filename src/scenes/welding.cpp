@@ -5,6 +5,8 @@
 
 #include <hedgerow/scenes/random.h>
 
+#include "steps.h"
+
 namespace hedgerow::detail {
 
 std::size_t WeldedMesh::Hash::operator()(const Vec3d& p) const {
@@ -21,6 +23,7 @@ std::uint32_t WeldedMesh::vertex(const Vec3d& p) {
 }
 
 void WeldedMesh::add(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    step(progress_, before_ + mesh.triangles.size(), total_);
     if (!(length2(Triangle<double, 3>{a, b, c}.normal()) > 0)) return;
     const std::uint32_t i = vertex(a), k = vertex(b), l = vertex(c);
     mesh.triangles.push_back({i, k, l});

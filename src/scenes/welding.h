@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include <hedgerow/parallel/progress.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 
 namespace hedgerow::detail {
@@ -12,6 +13,9 @@ namespace hedgerow::detail {
 /// joined need a mesh of their own each.
 class WeldedMesh {
 public:
+    /// Reports how many of about `total` triangles there are; `before` were made elsewhere.
+    explicit WeldedMesh(const Progress& progress, std::uint64_t total, std::uint64_t before = 0)
+        : progress_(progress), total_(total), before_(before) {}
     /// A triangle without area is dropped.
     void add(const Vec3d& a, const Vec3d& b, const Vec3d& c);
     /// Triangles a, b, c and a, c, d.
@@ -28,6 +32,8 @@ private:
     struct Hash {
         std::size_t operator()(const Vec3d& p) const;
     };
+    const Progress& progress_;
+    std::uint64_t total_, before_;
     std::unordered_map<Vec3d, std::uint32_t, Hash> known_;
 };
 

@@ -71,7 +71,7 @@ void use_instruction_set(std::string_view name) {
     if (!find(name, found)) {
         std::string all;
         for (const auto n : instruction_sets()) all += (all.empty() ? "" : ", ") + std::string(n);
-        throw InputError("instruction set '" + std::string(name) + "' is not to be had here; there are " +
+        throw UsageError("instruction set '" + std::string(name) + "' is not to be had here; there are " +
                          all);
     }
     chosen().store(found, std::memory_order_relaxed);

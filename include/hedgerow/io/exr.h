@@ -27,9 +27,9 @@ struct Layers {
 /// Writes an EXR file: scan lines of FLOAT and UINT channels, packed without loss (ZIP), so that every value
 /// is kept as it is, infinities and NaN too. By way of a file beside `path` that is then renamed. Throws
 /// InputError if there are no pixels or no channels, a channel has other than width × height values, a name
-/// is bad or there twice, or the path cannot be written (a pipe cannot: the format is not written in one go).
-/// The format is "OpenEXR File Layout", openexr.com/en/latest/OpenEXRFileLayout.html. O(values), in the
-/// memory of some rows.
+/// is bad or there twice; OutputError if the path cannot be written (a pipe cannot: the format is not written
+/// in one go). The format is "OpenEXR File Layout", openexr.com/en/latest/OpenEXRFileLayout.html. O(values),
+/// in the memory of some rows.
 void save_exr(const std::filesystem::path& path, const Layers& layers);
 
 /// Whether this build has OpenEXR (HEDGEROW_EXR=ON). Without it `save_exr` throws InputError.

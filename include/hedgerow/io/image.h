@@ -33,7 +33,7 @@ private:
 };
 
 /// Writes a PNG, by way of a file beside `path` that is then renamed. Throws InputError if the image has no
-/// pixels, or other than width × height, or the path cannot be written.
+/// pixels, or other than width × height, and OutputError if the path cannot be written.
 void save_png(const std::filesystem::path& path, const Image& image);
 
 /// Reads any PNG: greys and palettes become RGB, 16 bits become 8, what is transparent lies on black. Throws

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include <hedgerow/index.h>
+#include <hedgerow/parallel/progress.h>
 
 namespace hedgerow {
 
@@ -36,9 +37,10 @@ struct LoadIndexOptions {
 ///
 /// Written under another name beside `path` and then renamed, so there never is half a file, and indexes that
 /// were loaded from an earlier one are not disturbed. T is float or double. O(n) time; beyond the index 1 MiB
-/// of memory. Throws InputError if the path cannot be written (the disk is full, say).
+/// of memory. `progress` is told of the bytes that are written. Throws OutputError if the path cannot be
+/// written (the disk is full, say), and Cancelled if `progress` is cancelled.
 template <std::floating_point T>
-void save_index(const std::filesystem::path& path, const MeshIndex<T>& index);
+void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, const Progress& progress = {});
 
 /// The index of a file that `save_index` wrote. It answers every query with the bits of the one that was
 /// saved, owns its mapping, and may outlive the file's name. A `refit` changes its memory, never the file.

@@ -1,8 +1,5 @@
-/// What all loaders share: their options, and how they end when they are cancelled.
+/// What all loaders share: their options.
 #pragma once
-
-#include <stdexcept>
-#include <string>
 
 namespace hedgerow {
 
@@ -12,12 +9,6 @@ struct LoadOptions {
     /// ordinals in the file), the vertices that stay are renumbered. Of a point cloud the points go; the rest
     /// move up.
     bool drop_bad = false;
-};
-
-/// Thrown by loaders once `Progress::cancelled()`: half a file is of no use to anyone.
-class Cancelled : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
 };
 
 }  // namespace hedgerow

@@ -46,9 +46,11 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 /// is not. The file is written under another name beside `path` and then renamed, so there never is half a
 /// file.
 ///
-/// Throws InputError if the extension is none of these, the path cannot be written (the disk is full, say),
-/// or a triangle names a vertex that does not exist. T is float or double. O(vertices + triangles).
+/// `progress` is told of the vertices and triangles that are written. Throws InputError if the extension is
+/// none of these or a triangle names a vertex that does not exist, OutputError if the path cannot be written
+/// (the disk is full, say), and Cancelled if `progress` is cancelled. T is float or double. O(vertices +
+/// triangles).
 template <class T>
-void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh);
+void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress = {});
 
 }  // namespace hedgerow

@@ -34,7 +34,7 @@ struct NpyArray {
 NpyArray load_npy(const std::filesystem::path& path, const Progress& progress = {});
 
 /// Writes elements in C order as version 1, little endian. T is float, double or a fixed-width integer.
-/// Throws InputError if `values` is not what `shape` holds, or the path cannot be written.
+/// Throws InputError if `values` is not what `shape` holds, OutputError if the path cannot be written.
 template <class T>
 void save_npy(const std::filesystem::path& path, std::span<const T> values,
               const std::vector<std::size_t>& shape);

@@ -30,8 +30,10 @@ PointCloud<T, D> load_points(const std::filesystem::path& path, const LoadOption
 
 /// Writes points as `.ply` (binary, little endian; z is 0 in 2D), `.npy`, `.csv` (a line of names, then the
 /// shortest decimals that read back to the same T) or `.xyz` (those alone), by way of a file beside `path`
-/// that is then renamed. Throws InputError if the extension is none of these or the path cannot be written.
+/// that is then renamed. Throws InputError if the extension is none of these, OutputError if the path cannot
+/// be written, and Cancelled if `progress` is cancelled.
 template <class T, int D>
-void save_points(const std::filesystem::path& path, const PointCloud<T, D>& cloud);
+void save_points(const std::filesystem::path& path, const PointCloud<T, D>& cloud,
+                 const Progress& progress = {});
 
 }  // namespace hedgerow

@@ -26,8 +26,12 @@ private:
     R (*call_)(void*, Args...);
 };
 
+/// Primitives in a piece of work that is worth a task of its own.
+inline constexpr std::size_t worth_a_task = 4096;
+
 /// Derive from it to bring a pool of your own: two functions, both of which return when all is done and let
 /// the first exception through. Results never depend on how the work is cut or on the number of threads.
+/// WatchedExecutor adds progress and a token to stop to any executor.
 class Executor {
 public:
     virtual ~Executor() = default;
@@ -36,6 +40,13 @@ public:
                                 FunctionRef<void(std::size_t, std::size_t)> body) = 0;
     /// Calls both, perhaps at once.
     virtual void both(FunctionRef<void()> first, FunctionRef<void()> second) = 0;
+
+    /// Long work announces here how much there is to do, in primitives that take one step each; and says,
+    /// about every 4096 of them, how much is done. Overrides may throw, which ends the work.
+    virtual void expect(std::size_t work) { static_cast<void>(work); }
+    virtual void advance(std::size_t work) { static_cast<void>(work); }
+    /// For serial work whose share of the whole is small: a place where it may be stopped.
+    void look() { advance(0); }
 };
 
 /// Everything in the calling thread.

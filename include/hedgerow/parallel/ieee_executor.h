@@ -19,6 +19,8 @@ public:
     void both(FunctionRef<void()> first, FunctionRef<void()> second) override {
         threads_.both([&] { in_ieee_mode(first); }, [&] { in_ieee_mode(second); });
     }
+    void expect(std::size_t work) override { threads_.expect(work); }
+    void advance(std::size_t work) override { threads_.advance(work); }
 
 private:
     Executor& threads_;

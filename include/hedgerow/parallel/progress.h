@@ -4,12 +4,19 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <stdexcept>
 
 namespace hedgerow {
 
-/// Given to long work (loading, building, rendering). `report(done, total)` may be called from any thread,
-/// with `total` 0 while it is unknown. Work looks at `cancelled()` now and then and ends early with what it
-/// has.
+/// Thrown by long work once `Progress::cancelled()`: half a file, scene or structure is of no use to anyone.
+class Cancelled : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Given to long work (loading, generating, building, rendering, saving). `report(done, total)` may be called
+/// from any thread, with `total` 0 while it is unknown. Work looks at `cancelled()` now and then. It ends
+/// early with what it has, or throws Cancelled where that is of no use.
 struct Progress {
     std::function<void(std::uint64_t done, std::uint64_t total)> report;
     const std::atomic<bool>* cancel = nullptr;
@@ -18,6 +25,10 @@ struct Progress {
         if (report) report(done, total);
     }
     bool cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
+    /// Throws Cancelled if the work was asked to stop.
+    void look() const {
+        if (cancelled()) throw Cancelled("cancelled");
+    }
 };
 
 }  // namespace hedgerow

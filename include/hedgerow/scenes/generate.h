@@ -29,13 +29,14 @@ struct SceneSpec {
 /// One generator. Sizes count what it yields.
 struct SceneInfo {
     template <class T>
-    using Generator = Scene<T> (*)(std::uint64_t size, std::uint64_t seed);
+    using Generator = Scene<T> (*)(std::uint64_t size, std::uint64_t seed, const Progress& progress);
 
     std::string_view name;
     std::uint64_t default_size;
     std::string_view yields;  ///< "triangles", "spheres", "points" or "segments"
     int dimension;
     std::string_view description;  ///< one line
+    double bytes;                  ///< of memory an element takes while it is made, at least
     Generator<float> in_float;
     Generator<double> in_double;
 };
@@ -47,13 +48,14 @@ inline constexpr std::uint64_t largest_scene_size = std::uint64_t{1} << 31;
 std::span<const SceneInfo> scene_list();
 
 /// Reads "gen:NAME" or "gen:NAME:SIZE"; SIZE is a whole number, with k, M or G behind it for thousands,
-/// millions or thousands of millions. Throws InputError for an unknown name (suggesting a near one, and
+/// millions or thousands of millions. Throws UsageError for an unknown name (suggesting a near one, and
 /// listing all), a size that is no number, or one beyond `largest_scene_size`.
 SceneSpec parse_scene_spec(std::string_view text);
 
-/// The scene, in single or double precision (T = float or double). Throws InputError as `parse_scene_spec`
-/// does.
+/// The scene, in single or double precision (T = float or double). `progress` is told of the elements that
+/// are made and looked at about once in 4096 of them. Throws UsageError as `parse_scene_spec` does, and
+/// Cancelled if `progress` is cancelled.
 template <class T>
-Scene<T> generate(const SceneSpec& spec);
+Scene<T> generate(const SceneSpec& spec, const Progress& progress = {});
 
 }  // namespace hedgerow

@@ -1,11 +1,13 @@
 /// Generated sets of spheres, points and segments.
 ///
 /// Exactly `size` elements, the same bits on every machine; the float set is the double set rounded. Element
-/// i depends only on (size, seed, i). Each costs O(size) time and memory. T is float or double.
+/// i depends only on (size, seed, i). Each costs O(size) time and memory. T is float or double. Throws
+/// Cancelled if `progress` is cancelled.
 #pragma once
 
 #include <cstdint>
 
+#include <hedgerow/parallel/progress.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
@@ -14,23 +16,23 @@ namespace hedgerow {
 
 /// Spheres wholly in the unit cube, radii evenly in [1/8, 1/2]·size^(-1/3). Some overlap.
 template <class T>
-SphereSet<T, 3> spheres(std::uint64_t size, std::uint64_t seed = 0);
+SphereSet<T, 3> spheres(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
 /// Points evenly in the unit cube.
 template <class T>
-PointCloud<T, 3> points(std::uint64_t size, std::uint64_t seed = 0);
+PointCloud<T, 3> points(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
 /// Points evenly in the unit square.
 template <class T>
-PointCloud<T, 2> points2d(std::uint64_t size, std::uint64_t seed = 0);
+PointCloud<T, 2> points2d(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
 /// Points of the unit square in 16 heaps with standard deviations between 0.006 and 0.035 (sums of four
 /// uniform numbers, so they end), equally many in each but for chance.
 template <class T>
-PointCloud<T, 2> clusters2d(std::uint64_t size, std::uint64_t seed = 0);
+PointCloud<T, 2> clusters2d(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
 /// Short segments in the unit square, evenly spread and turned, lengths evenly in [1/4, 1]·size^(-1/2).
 template <class T>
-SegmentSet<T> segments2d(std::uint64_t size, std::uint64_t seed = 0);
+SegmentSet<T> segments2d(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
 }  // namespace hedgerow

@@ -51,7 +51,7 @@ struct GrowingCutTree {
     }
     /// Brings siblings together, and small subtrees of as many pairs as fill a line of the cache: a walk down
     /// enters fewer lines than in depth-first order (as the treelets of Yoon and Manocha, 2006). O(n).
-    CutTree<Node> packed() && {
+    CutTree<Node> packed(Executor& executor) && {
         constexpr std::size_t pairs_together = 64 / (2 * sizeof(Node)) > 1 ? 64 / (2 * sizeof(Node)) : 1;
         struct Copied {
             std::uint32_t grown, packed;
@@ -62,6 +62,7 @@ struct GrowingCutTree {
         tree.nodes.push_back(Node::leaf(0, 0));
         std::vector<Copied> waiting = {{0, 0}}, near;
         while (!waiting.empty()) {
+            if (tree.nodes.size() % (2 * worth_a_task) == 0) executor.look();
             near.assign(1, waiting.back());
             waiting.pop_back();
             std::size_t next = 0;
@@ -107,21 +108,30 @@ public:
     template <class Root>
     CutTree<Node> grow(Root root) {
         Tree tree;
-        grow(root(), most_items_, 1, tree);
+        grow_all(root(), tree);
         if (items_ > most_items_) {
             tree = {};
             rationed_ = true;
-            grow(root(), most_items_, 1, tree);
+            grow_all(root(), tree);
         }
-        return std::move(tree).packed();
+        return std::move(tree).packed(executor_);
     }
 
 private:
-    void grow(Cell cell, std::uint64_t ration, int depth, Tree& tree) {
+    void grow_all(Cell cell, Tree& tree) {
+        executor_.expect(cell.size());
+        const auto work = static_cast<double>(cell.size());
+        grow(std::move(cell), most_items_, 1, work, tree);
+    }
+    /// `work` is the cell's share of the primitives, which are more the deeper they are cut.
+    void grow(Cell cell, std::uint64_t ration, int depth, double work, Tree& tree) {
         if (!rationed_ && items_ > most_items_) return;
         tree.depth = std::max(tree.depth, depth);
         const auto plane = depth < deepest_ ? cutter_.choose(cell, depth) : std::nullopt;
+        const bool large = cell.size() > worth_a_task;
+        if (!plane && large) executor_.advance(static_cast<std::size_t>(work));
         if (!plane) return add_leaf(cell, tree);
+        if (large) executor_.look();
         auto [low, high] = cutter_.cut(cell, *plane);
         const std::uint64_t items = std::uint64_t(low.size()) + high.size();
         if (rationed_ && items > ration) return add_leaf(cell, tree);
@@ -132,19 +142,26 @@ private:
 
         const auto at = tree.nodes.size();
         tree.nodes.push_back(Node::inner(*plane));
-        const bool large = cell.size() > 4096;
         cell = {};
         if (large) {
             Tree high_tree;
-            executor_.both([&, &side = low] { grow(std::move(side), low_ration, depth + 1, tree); },
-                           [&, &side = high] { grow(std::move(side), high_ration, depth + 1, high_tree); });
+            const double share = work / (static_cast<double>(low.size()) + static_cast<double>(high.size()));
+            executor_.both([&, &side = low] { grow_task(side, low_ration, depth + 1, share, tree); },
+                           [&, &side = high] { grow_task(side, high_ration, depth + 1, share, high_tree); });
             tree.nodes[at].set_link(static_cast<std::uint32_t>(tree.nodes.size()));
             tree.append(high_tree);
         } else {
-            grow(std::move(low), low_ration, depth + 1, tree);
+            grow(std::move(low), low_ration, depth + 1, 0, tree);
             tree.nodes[at].set_link(static_cast<std::uint32_t>(tree.nodes.size()));
-            grow(std::move(high), high_ration, depth + 1, tree);
+            grow(std::move(high), high_ration, depth + 1, 0, tree);
         }
+    }
+    /// `share` is the work of one of the cell's primitives.
+    void grow_task(Cell& cell, std::uint64_t ration, int depth, double share, Tree& tree) {
+        const double work = share * static_cast<double>(cell.size());
+        const bool last = cell.size() <= worth_a_task;
+        grow(std::move(cell), ration, depth, work, tree);
+        if (last) executor_.advance(static_cast<std::size_t>(work));
     }
     void add_leaf(const Cell& cell, Tree& tree) {
         tree.nodes.push_back(Node::leaf(static_cast<std::uint32_t>(tree.items.size()), cell.size()));

@@ -36,7 +36,8 @@ public:
         VolumeBvh tree(options, Bvh<T, D>::build(set, options, executor));
         const double margin = static_cast<double>(cell_margin(tree.bounds_));
         std::vector<Vec<double, D>> points;
-        if (!tree.root_.empty()) tree.fit(set, tree.root_, margin, points);
+        executor.expect(tree.items_.size());
+        if (!tree.root_.empty()) tree.fit(set, tree.root_, margin, points, executor);
         return tree;
     }
 
@@ -132,14 +133,16 @@ private:
 
     /// Fits the volumes below a node, and adds the points below it to those given.
     template <class P>
-    void fit(const P& set, NodeRef r, double margin, std::vector<Vec<double, D>>& points) {
+    void fit(const P& set, NodeRef r, double margin, std::vector<Vec<double, D>>& points,
+             Executor& executor) {
+        executor.advance(r.count);
         if (r.leaf()) {
             for (std::uint32_t i = r.first; i < r.first + r.count; ++i) add_corners(set, items_[i], points);
             return;
         }
         for (int i = 0; i < 2; ++i) {
             const std::size_t first = points.size();
-            fit(set, child(r, i), margin, points);
+            fit(set, child(r, i), margin, points, executor);
             const auto below = PointSpan<D>(points).subspan(first);
             const std::size_t at = 2 * std::size_t{r.first} + static_cast<std::size_t>(i);
             std::visit([&](auto& list) { list.fit(at, below, margin); }, volumes_);

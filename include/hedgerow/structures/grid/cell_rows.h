@@ -48,11 +48,13 @@ public:
 
     /// Sorts entries into rows: by bricks, then by the cells of each. In a row they keep their order. O(n +
     /// bricks), and `pieces` of entries are read twice in their order.
-    CellRows(const Lattice<D>& lattice, const std::vector<std::vector<CellEntry>>& pieces)
+    CellRows(const Lattice<D>& lattice, const std::vector<std::vector<CellEntry>>& pieces, Executor& executor)
         : lattice_(lattice) {
         std::vector<std::uint32_t> ends(std::size_t(64) * lattice.block_count() + 1, 0);
-        for (const auto& piece : pieces)
+        for (const auto& piece : pieces) {
+            executor.look();
             for (const CellEntry& e : piece) ++ends[e.cell >> 6];
+        }
         std::uint32_t sum = 0, bricks = 0;
         for (auto& end : ends) {
             bricks += end != 0;
@@ -60,13 +62,16 @@ public:
             end = sum - end;  // where its entries begin, until all are there
         }
         BareVector<CellEntry> sorted(sum);
-        for (const auto& piece : pieces)
+        for (const auto& piece : pieces) {
+            executor.look();
             for (const CellEntry& e : piece) sorted[ends[e.cell >> 6]++] = e;
+        }
         items_.resize(sum);
         bricks_.reserve(bricks);
         blocks_.resize(lattice.block_count());
         std::uint32_t begin = 0;
         for (std::uint32_t number = 0; number + 1 < ends.size(); ++number) {
+            if (number % worth_a_task == 0) executor.look();
             if (ends[number] > begin)
                 add_brick(number, std::span(sorted).subspan(begin, ends[number] - begin), begin);
             begin = ends[number];

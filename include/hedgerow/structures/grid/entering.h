@@ -109,6 +109,7 @@ std::optional<EntryPieces> entries_of(const P& set, const CellEntering<P>& enter
     const std::uint64_t stop = std::min(most, entries_within(budget));
     EntryPieces pieces((set.size() + grain - 1) / grain);
     std::atomic<std::uint64_t> entered{0};
+    executor.expect(set.size());
     executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
             auto& piece = pieces[p];
@@ -127,6 +128,7 @@ std::optional<EntryPieces> entries_of(const P& set, const CellEntering<P>& enter
                 });
             }
             few_enough();
+            executor.advance(last - p * grain);
         }
     });
     if (entered <= stop) return pieces;
@@ -162,7 +164,7 @@ CellRows<P::dimension> enter_all(const P& set, const Box<typename P::Scalar, P::
         const CellEntering entering(set, lattice, insert, cell_margin(bounds));
         if (most_asked < all && cells_reached_by_all(set, entering, executor) > most_asked) continue;
         if (const auto pieces = entries_of(set, entering, lattice, most, budget, executor))
-            return CellRows<P::dimension>(lattice, *pieces);
+            return CellRows<P::dimension>(lattice, *pieces, executor);
     }
 }
 

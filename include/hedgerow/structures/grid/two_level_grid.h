@@ -194,10 +194,12 @@ private:
     void divide(const P& set, Executor& executor) {
         const CellEntering entering(set, lattice(), options_.insert, margin_);
         std::vector<Divided> pieces(rows_.block_count());
+        executor.expect(rows_.items().size());
         executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)
                 rows_.for_each_row(p, [&](const Cell& cell, const Leaf& leaf) {
                     divide_row(entering, cell, leaf, pieces[p]);
+                    executor.advance(leaf.count);
                 });
         });
         for (Divided& piece : pieces) {

@@ -29,6 +29,7 @@ public:
         for (const auto& r : references) tree.bounds_.expand(r.box());
         tree.items_.resize(references.size());
         tree.positions_.resize(references.size());
+        executor.expect(references.size());
         tree.grow(references, 0, references.size(), 0, executor);
         return tree;
     }
@@ -106,13 +107,16 @@ private:
         });
         items_[n] = references[middle].id();
         positions_[n] = references[middle].low[axis];
-        const auto grow_low = [&] { grow(references, first, middle, low_child(n), executor); };
-        const auto grow_high = [&] { grow(references, middle + 1, last, high_child(n), executor); };
-        if (last - first > 4096) {
-            executor.both(grow_low, grow_high);
+        const auto grow_task = [&](std::size_t from, std::size_t to, NodeId child) {
+            grow(references, from, to, child, executor);
+            if (to - from <= worth_a_task) executor.advance(to - from);
+        };
+        if (last - first > worth_a_task) {
+            executor.both([&] { grow_task(first, middle, low_child(n)); },
+                          [&] { grow_task(middle + 1, last, high_child(n)); });
         } else {
-            grow_low();
-            grow_high();
+            grow(references, first, middle, low_child(n), executor);
+            grow(references, middle + 1, last, high_child(n), executor);
         }
     }
 

@@ -84,8 +84,10 @@ public:
     OrthantGrowth(const P& set, const OrthtreeLimits<T>& limits, Executor& executor)
         : set_(set), standing_(set), limits_(limits), executor_(executor) {}
 
-    /// The ids are used up. The same tree for any number of threads.
-    OrthantNode grow(Ids& ids, const Cube<T, D>& cell, std::uint64_t room, Store& store) const {
+    /// The ids are used up. The same tree for any number of threads. `work` is what the executor is told of
+    /// when all is done, in primitives: the cell's share, since deeper cells hold more copies.
+    OrthantNode grow(Ids& ids, const Cube<T, D>& cell, std::uint64_t room, Store& store,
+                     double work = 0) const {
         Parts parts;
         if (!divide(ids, cell, room, parts)) return store.make_leaf(ids);
         const bool alone = ids.size() < worth_a_task;
@@ -100,7 +102,7 @@ public:
                 store.group(group).child[i] = child;
             }
         } else {
-            grow_side_by_side(parts, cell, group, store);
+            grow_side_by_side(parts, cell, group, store, work);
         }
         return OrthantNode::inner_over(group, occupied);
     }
@@ -111,17 +113,22 @@ private:
         std::uint64_t room = 0;
     };
     using Parts = std::array<Part, Store::width>;
-    static constexpr std::size_t worth_a_task = 4096;
     static constexpr std::uint64_t group_words = sizeof(typename Store::Group) / 4;
 
     /// Each child in a store of its own; then they are brought together in their order.
-    void grow_side_by_side(Parts& parts, const Cube<T, D>& cell, std::uint32_t group, Store& store) const {
+    void grow_side_by_side(Parts& parts, const Cube<T, D>& cell, std::uint32_t group, Store& store,
+                           double work) const {
+        std::size_t copies = 0;
+        for (const Part& part : parts) copies += part.ids.size();
         std::array<Store, Store::width> grown;
         std::array<OrthantNode, Store::width> roots;
         const auto some = [&](auto& self, unsigned first, unsigned last) -> void {
             if (last - first == 1) {
                 Part& part = parts[first];
-                roots[first] = grow(part.ids, cell.orthant(first), part.room, grown[first]);
+                const std::size_t size = part.ids.size();
+                const double share = work * static_cast<double>(size) / static_cast<double>(copies);
+                roots[first] = grow(part.ids, cell.orthant(first), part.room, grown[first], share);
+                if (size < worth_a_task) executor_.advance(static_cast<std::size_t>(share));
                 return;
             }
             const unsigned middle = (first + last) / 2;

@@ -197,7 +197,9 @@ private:
         if (ids.empty()) return;
         cell_ = root_cube(bounds_);
         limits_ = {options_.leaf_size, std::ldexp(cell_.half, -options_.max_depth)};
-        root_ = OrthantGrowth<P>(set, limits_, executor).grow(ids, cell_, room(), store_);
+        executor.expect(count_);
+        root_ = OrthantGrowth<P>(set, limits_, executor)
+                    .grow(ids, cell_, room(), store_, static_cast<double>(count_));
         store_.shrink_to_fit();
     }
 

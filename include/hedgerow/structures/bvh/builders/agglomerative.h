@@ -130,17 +130,22 @@ private:
         } else {
             const auto [left, right] = curve_.children(part);
             std::vector<Cluster<T>> second;
-            const auto on_left = [&, l = left] { clusters = gather(l); };
-            const auto on_right = [&, r = right] { second = gather(r); };
-            if (size > 4096) {
-                executor_.both(on_left, on_right);
+            if (size > worth_a_task) {
+                executor_.both([&, l = left] { clusters = gather_task(l); },
+                               [&, r = right] { second = gather_task(r); });
             } else {
-                on_left();
-                on_right();
+                clusters = gather(left);
+                second = gather(right);
             }
             clusters.insert(clusters.end(), second.begin(), second.end());
         }
         NearestPairs<T, D>(clusters).reduce(handed_up(size), tree_);
+        return clusters;
+    }
+
+    std::vector<Cluster<T>> gather_task(Part part) {
+        auto clusters = gather(part);
+        if (curve_.size(part) <= worth_a_task) executor_.advance(curve_.size(part));
         return clusters;
     }
 

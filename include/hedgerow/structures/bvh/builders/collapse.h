@@ -105,15 +105,22 @@ private:
         const auto [l, r] = tree.children(n);
         const std::uint32_t on_left = tree.size(l);
         Grown left, right;
-        if (size > 4096) {
+        if (size > worth_a_task) {
             const std::uint32_t right_at = at + 2 * on_left;
-            executor_.both([&, l = l] { left = grow(tree, l, first, at + 1, depth + 1); },
-                           [&, r = r] { right = grow(tree, r, first + on_left, right_at, depth + 1); });
+            executor_.both([&, l = l] { left = grow_task(tree, l, first, at + 1, depth + 1); },
+                           [&, r = r] { right = grow_task(tree, r, first + on_left, right_at, depth + 1); });
             return join(left, right, first, size, at, right_at);
         }
         left = grow(tree, l, first, at + 1, depth + 1);
         right = grow(tree, r, first + on_left, left.end, depth + 1);
         return join(left, right, first, size, at, left.end);
+    }
+    template <class Tree>
+    Grown grow_task(const Tree& tree, typename Tree::Node n, std::uint32_t first, std::uint32_t at,
+                    int depth) {
+        const Grown grown = grow(tree, n, first, at, depth);
+        if (tree.size(n) <= worth_a_task) executor_.advance(tree.size(n));
+        return grown;
     }
     template <class Tree>
     void fill(const Tree& tree, typename Tree::Node n, std::uint32_t first, LaneBox<T>& box) {

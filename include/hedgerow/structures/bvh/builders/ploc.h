@@ -53,6 +53,7 @@ private:
         blocks.each(executor_,
                     [&](std::size_t b, std::size_t begin, std::size_t end) { join(begin, end, before[b]); });
         count_ -= joins;
+        executor_.advance(joins);
         clusters_.swap(next_);
     }
 

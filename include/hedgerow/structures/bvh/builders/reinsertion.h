@@ -14,6 +14,7 @@
 #include <cassert>
 #include <cmath>
 
+#include <hedgerow/parallel/sort.h>
 #include <hedgerow/structures/bvh/builders/collapse.h>
 
 namespace hedgerow {
@@ -110,23 +111,32 @@ public:
     /// At most so many passes; none after one that gained less than `least_gain`.
     void improve(int passes) {
         double cost = inner_area();
-        for (int p = 0; p < passes; ++p) {
+        for (int left = passes; left > 0; --left) {
+            executor_.look();
             pass();
             const double now = inner_area();
-            if (!(now < (1 - least_gain) * cost)) return;
+            if (!(now < (1 - least_gain) * cost)) return executor_.advance(work(left - 1));
             cost = now;
         }
+    }
+    /// What the executor is told of so many passes, in primitives.
+    std::size_t work(int passes) const {
+        return static_cast<std::size_t>(passes) * work_a_search * searches(tree_.node_count());
     }
 
 private:
     using Node = typename MovableTree<T, D>::Node;
     static constexpr double share = 0.3, least_gain = 0.005;  // a pass, of nodes and of cost
+    static constexpr std::size_t work_a_search = 4;           // primitives split in the time of a search
 
     struct Move {
         Node node = 0, to = 0;
         double gain = 0;  // area of inner nodes
     };
 
+    static std::size_t searches(std::size_t nodes) {
+        return static_cast<std::size_t>(std::ceil(share * static_cast<double>(nodes)));
+    }
     double inner_area() const {
         double sum = 0;
         for (Node n = 0; n < tree_.node_count(); ++n)
@@ -138,24 +148,29 @@ private:
         executor_.for_each_piece(moves.size(), 64, [&](std::size_t begin, std::size_t end) {
             std::vector<Open> open;
             for (std::size_t i = begin; i < end; ++i) moves[i] = best_move(moves[i].node, open);
+            executor_.advance(work_a_search * (end - begin));
         });
         std::erase_if(moves, [](const Move& m) { return !(m.gain > 0); });
-        std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) {
+        sort_watched(moves.begin(), moves.end(), executor_, [](const Move& a, const Move& b) {
             return a.gain != b.gain ? a.gain > b.gain : a.node < b.node;
         });
         touched_.assign(tree_.node_count(), std::uint8_t(0));
-        for (const Move& m : moves) apply(m);
+        for (std::size_t i = 0; i < moves.size(); ++i) {
+            if (i % 1024 == 0) executor_.look();
+            apply(moves[i]);
+        }
     }
     /// The nodes of largest area that can be moved, in the order of their numbers.
     std::vector<Move> largest() const {
         std::vector<std::pair<double, Node>> all;
         for (Node n = 0; n < tree_.node_count(); ++n)
             if (n != tree_.root() && tree_.parent(n) != tree_.root()) all.emplace_back(-tree_.area(n), n);
-        const auto count = static_cast<std::size_t>(std::ceil(share * static_cast<double>(all.size())));
+        const std::size_t count = searches(all.size());
         std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
         std::vector<Move> moves(count);
         for (std::size_t i = 0; i < count; ++i) moves[i].node = all[i].second;
-        std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.node < b.node; });
+        sort_watched(moves.begin(), moves.end(), executor_,
+                     [](const Move& a, const Move& b) { return a.node < b.node; });
         return moves;
     }
 
@@ -225,8 +240,10 @@ BuildTree<T, D> reinserted(const BuildTree<T, D>& tree, const SahOptions& option
     MovableTree<T, D> movable(tree);
     const std::uint32_t size = movable.size(movable.root());
     double before = 0, after = 0;
+    Reinsertion<T, D> reinsertion(movable, executor);
+    executor.expect(2 * size + reinsertion.work(passes));
     auto as_it_was = Collapse<T, D>(options, executor).build(movable, size, &before);
-    Reinsertion<T, D>(movable, executor).improve(passes);
+    reinsertion.improve(passes);
     auto improved = Collapse<T, D>(options, executor).build(movable, size, &after);
     return after < before ? std::move(improved) : std::move(as_it_was);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <hedgerow/parallel/sort.h>
 #include <hedgerow/structures/bvh/builders/top_down.h>
 
 namespace hedgerow {
@@ -11,7 +12,7 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class SweepSplitter {
 public:
-    SweepSplitter(ReferenceList<T, D> references, const SahOptions& options)
+    SweepSplitter(ReferenceList<T, D> references, const SahOptions& options, Executor& executor)
         : options_(options),
           references_(std::move(references)),
           right_cost_(references_.size()),
@@ -21,7 +22,7 @@ public:
             auto& order = order_[k];
             order.resize(references_.size());
             for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-            std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            sort_watched(order.begin(), order.end(), executor, [&](std::uint32_t a, std::uint32_t b) {
                 const T x = references_[a].center2(k), y = references_[b].center2(k);
                 return x != y ? x < y : a < b;
             });

@@ -67,17 +67,22 @@ private:
         }
         node.left = at + 1;
         std::uint32_t on_left = 0, on_right = 0;
-        const auto grow_left = [&] { on_left = grow(left, node.left, depth + 1); };
-        const auto grow_right = [&] { on_right = grow(right, node.right, depth + 1); };
-        if (range.size() > 4096) {
+        if (range.size() > worth_a_task) {
             node.right = at + 2 * left.capacity();
-            executor_.both(grow_left, grow_right);
+            executor_.both([&] { on_left = grow_task(left, node.left, depth + 1); },
+                           [&] { on_right = grow_task(right, node.right, depth + 1); });
         } else {
-            grow_left();
+            on_left = grow(left, node.left, depth + 1);
             node.right = at + 2 * on_left;  // so many nodes on the left, and one
-            grow_right();
+            on_right = grow(right, node.right, depth + 1);
         }
         return node.first = on_left + on_right;
+    }
+
+    std::uint32_t grow_task(const Range<T, D>& range, std::uint32_t at, int depth) {
+        const std::uint32_t leaves = grow(range, at, depth);
+        if (range.size() <= worth_a_task) executor_.advance(range.size());
+        return leaves;
     }
 
     bool divide(const Range<T, D>& range, int depth, Range<T, D>& left, Range<T, D>& right) {

@@ -70,13 +70,11 @@ private:
 
     void weigh(Node n) {
         if (leaf(n)) return;
-        const auto weigh_left = [&] { weigh(left(n)); };
-        const auto weigh_right = [&] { weigh(right(n)); };
-        if (at(n).leaves() > 4096) {
-            executor_.both(weigh_left, weigh_right);
+        if (at(n).leaves() > worth_a_task) {
+            executor_.both([&] { weigh_task(left(n)); }, [&] { weigh_task(right(n)); });
         } else {
-            weigh_left();
-            weigh_right();
+            weigh(left(n));
+            weigh(right(n));
         }
         const Subtree on_left = subtree(left(n)), on_right = subtree(right(n));
         Costs least{};  // nothing, where every leaf may be a child
@@ -87,6 +85,10 @@ private:
             least[place] = std::min(least[place - 1], split(on_left, on_right, i).cost);
         }
         std::copy_n(least.begin(), row_, costs_.begin() + static_cast<std::ptrdiff_t>(n.number * row_));
+    }
+    void weigh_task(Node n) {
+        weigh(n);
+        if (at(n).leaves() <= worth_a_task) executor_.advance(at(n).leaves());
     }
     /// In float, as all sums: they are kept in it. A node costs something even where it has no area, so that
     /// there are as few of those as may be.
@@ -124,6 +126,7 @@ private:
 
     void open(Node n, int level) {
         depth_ = std::max(depth_, level + 1);
+        if (opened_.size() % worth_a_task == 0) executor_.look();
         Children below;
         if (leaf(n))
             below.add(n);

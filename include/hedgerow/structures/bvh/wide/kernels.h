@@ -89,7 +89,7 @@ const WideKernels* wide_kernels();
 
 /// What this processor and this build have, best first; "plain" is last and always there.
 std::vector<std::string_view> instruction_sets();
-/// Takes another, from now on and for all threads. Throws InputError for one that is not in the list.
+/// Takes another, from now on and for all threads. Throws UsageError for one that is not in the list.
 void use_instruction_set(std::string_view name);
 
 /// How many children a node of a new index is given: what the kernels in use are best at.

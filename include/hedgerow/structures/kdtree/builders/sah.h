@@ -1,6 +1,7 @@
 /// The SAH over every plane that bounds some part, in O(n log n) (Wald and Havran, RT 2006).
 #pragma once
 
+#include <hedgerow/parallel/sort.h>
 #include <hedgerow/structures/kdtree/builders/sweep.h>
 
 namespace hedgerow {
@@ -22,7 +23,7 @@ public:
             List& list = lists[static_cast<std::size_t>(axis)];
             list.reserve(2 * root.inside.size());
             for (std::uint32_t i = 0; i < root.size(); ++i) add(list, root, i, axis);
-            std::sort(list.begin(), list.end());
+            sort_watched(list.begin(), list.end(), executor);
         };
         executor.both([&] { make(0); },
                       [&] {

@@ -1,0 +1,86 @@
+#include "progress_line.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <exception>
+
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+namespace hedgerow::cli {
+
+std::atomic<bool> interrupted{false};
+
+void listen_to_interrupts() {
+    const auto before = std::signal(SIGINT, [](int) {
+        if (interrupted.exchange(true)) _exit(130);
+    });
+    if (before == SIG_IGN) std::signal(SIGINT, SIG_IGN);
+}
+
+double now() {
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+namespace {
+
+std::string& failed_work() {
+    static std::string work;
+    return work;
+}
+
+/// 1234567 triangles: "1.23 million triangles"; of bytes "1.23 MB".
+std::string amount(double count, const std::string& unit) {
+    if (unit == "bytes") return fmt::format("{:.3g} MB", count * 1e-6);
+    if (count >= 1e6) return fmt::format("{:.3g} million {}", count * 1e-6, unit);
+    return fmt::format("{:.0f} {}", count, unit);
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(std::string what, bool quiet, std::string unit)
+    : what_(std::move(what)),
+      unit_(std::move(unit)),
+      shown_(!quiet && isatty(2)),
+      exceptions_(std::uncaught_exceptions()),
+      start_(now()) {}
+ProgressLine::~ProgressLine() {
+    if (std::uncaught_exceptions() > exceptions_) failed_work() = what_;
+    if (shown_) fmt::print(stderr, "\r\033[K");
+}
+const std::string& ProgressLine::failed() {
+    return failed_work();
+}
+
+Progress ProgressLine::progress() {
+    return {[this](std::uint64_t done, std::uint64_t total) { show(done, total); }, &interrupted};
+}
+void ProgressLine::show(std::uint64_t done, std::uint64_t total) {
+    for (std::uint64_t most = done_; done > most && !done_.compare_exchange_weak(most, done);) {
+    }
+    if (!shown_) return;
+    const std::lock_guard lock(mutex_);
+    if (now() - last_ < 0.1) return;
+    last_ = now();
+    fmt::print(stderr, "\r\033[K{}", progress_text(what_, unit_, done, total, last_ - start_));
+}
+void ProgressLine::say(const std::string& doing) {
+    const std::lock_guard lock(mutex_);
+    if (shown_) fmt::print(stderr, "\r\033[K{} {}", what_, doing);
+}
+
+std::string progress_text(const std::string& what, const std::string& unit, std::uint64_t done,
+                          std::uint64_t total, double seconds) {
+    const double rate = static_cast<double>(done) / std::max(seconds, 1e-9);
+    std::string text = what;
+    if (total > 0) text += fmt::format(" {:.0f}%", 100.0 * double(done) / double(total));
+    if (total == 0 && !unit.empty()) text += " " + amount(double(done), unit);
+    if (!unit.empty()) text += fmt::format(", {} a second", amount(rate, unit));
+    if (total > 0 && done > 0) text += fmt::format(", {:.0f} s left", double(total - done) / rate);
+    return text;
+}
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,23 @@
+/// std::sort that can be stopped.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+
+#include <hedgerow/parallel/executor.h>
+
+namespace hedgerow {
+
+/// Sorts in the calling thread and calls `executor.look()` about every 65,536 comparisons, some milliseconds
+/// apart. Where that throws, the range holds its elements in some order.
+template <class Iterator, class Less = std::less<>>
+void sort_watched(Iterator begin, Iterator end, Executor& executor, Less less = {}) {
+    std::uint32_t compared = 0;
+    std::sort(begin, end, [&](const auto& a, const auto& b) {
+        if ((++compared & 0xFFFFu) == 0) executor.look();
+        return less(a, b);
+    });
+}
+
+}  // namespace hedgerow
