@@ -1,5 +1,6 @@
 /// `hedgerow compare` as its user sees it: tables, JSON, the page, messages and exit codes.
 #include <algorithm>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,10 @@ protected:
             HEDGEROW_TOOL_PATH " compare " + std::string(timed ? "" : "--time 0.002 ") +
             (arguments.find("--queries") != std::string::npos ? "" : "--queries 50 ") + arguments + " 2>" +
             file("errors");
-        return {run_shell(command), bytes_of(file("errors"))};
+        Result r{run_shell(command), bytes_of(file("errors"))};
+        // Lines that were broken for the terminal are one again.
+        r.output = std::regex_replace(r.output, std::regex("\n  "), " ");
+        return r;
     }
     json parsed(const std::string& arguments) const {
         const auto r = run(arguments + " --json");

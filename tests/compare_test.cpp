@@ -108,6 +108,10 @@ TEST(Advice, RestsOnTheFigures) {
     with_engine.structures.push_back(costing("engine", 1, 4e-7, 20'000, 1));
     EXPECT_EQ(advise(with_engine, Ask::closest_hit)[3].ranking[0].structure, "lean");
     EXPECT_NE(all[3].reason.find("absurdly slow: none (1,000 times)"), std::string::npos) << all[3].reason;
+    // Absurdly slow for one set of rays is enough.
+    with_engine.structures.push_back(costing("uneven", 1, 5e-7, 50, 1));
+    with_engine.structures.back().queries[0].seconds = 30 * 2e-7;
+    EXPECT_EQ(advise(with_engine, Ask::closest_hit)[3].ranking[0].structure, "lean");
     EXPECT_NE(all[0].reason.find("that of best"), std::string::npos) << all[0].reason;
     EXPECT_NE(all[2].reason.find("anew"), std::string::npos) << all[2].reason;
     for (const auto& r : all) {

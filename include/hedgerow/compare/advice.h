@@ -7,8 +7,9 @@ namespace hedgerow::compare {
 
 struct AdviceOptions {
     double few = 1000;
-    /// How many times the fastest's time a query may take where memory counts: beyond that a structure is
-    /// absurdly slow. The engine's kernels alone are several times as fast as any other structure.
+    /// How many times the fastest's time a query may take where memory counts, for each set of rays: beyond
+    /// that a structure is absurdly slow. The engine's kernels alone are several times as fast as any other
+    /// structure.
     double slack = 10;
 };
 
