@@ -159,6 +159,26 @@ TEST_F(Cli, WhatIsGeneratedCanBeRead) {
     EXPECT_NE(r.output.find("\"closed\": true"), std::string::npos) << r.output;
 }
 
+TEST_F(Cli, FilesAreConverted) {
+    EXPECT_EQ(run("generate gen:cube -o " + file("a.obj")).code, 0);
+    EXPECT_EQ(run("convert " + file("a.obj") + " -o " + file("b.STL")).code, 0);
+    EXPECT_EQ(run("convert " + file("b.STL") + " -o " + file("c.ply")).code, 0);
+    EXPECT_EQ(run("info " + file("c.ply")).output, run("info " + file("a.obj")).output);
+    EXPECT_EQ(run("generate gen:points:50 -o " + file("p.xyz")).code, 0);
+    EXPECT_EQ(run("convert " + file("p.xyz") + " -o " + file("p.npy")).code, 0);
+    EXPECT_EQ(run("convert " + file("p.npy") + " -o " + file("q.xyz")).code, 0);
+    EXPECT_EQ(bytes_of(file("p.xyz")), bytes_of(file("q.xyz")));
+    expect_bad("convert " + file("a.obj") + " -o " + file("a.csv"), "Known are .ply .stl .obj .off");
+    expect_bad("convert " + file("p.npy") + " -o " + file("p.stl"), "Known are .ply .npy .csv .xyz");
+    expect_usage("generate " + file("a.obj") + " -o " + file("b.ply"), "hedgerow convert");
+}
+
+TEST_F(Cli, ExtensionsAreOfAnyCase) {
+    EXPECT_EQ(run("generate gen:cube -o " + file("A.PLY")).code, 0);
+    EXPECT_EQ(run("render " + file("A.PLY") + " --size 16x16 -o " + file("A.PNG")).code, 0);
+    EXPECT_EQ(run("draw " + file("A.PLY") + " --slice y=0.5 -o " + file("A.SVG")).code, 0);
+}
+
 TEST_F(Cli, PointsAreKnownByWhatTheirFileHoldsAndDrawnAsSpheres) {
     for (const char* name : {"p.ply", "p.npy", "p.csv"}) {
         ASSERT_EQ(run("generate gen:points:100 -o " + file(name)).code, 0);

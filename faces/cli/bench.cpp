@@ -194,7 +194,7 @@ Run add_bench(CLI::App& verb) {
     return [a] {
         if (!a->html.empty()) check_writable(a->html);
         if (!a->output.empty()) {
-            if (std::filesystem::path(a->output).extension() != ".svg")
+            if (ending_of(a->output) != ".svg")
                 throw UsageError(a->output + ": the chart is written as .svg; let the output end so");
             check_writable(a->output);
         }

@@ -34,6 +34,13 @@ std::string precision_of(const Common& c) {
     return names_index_file(c.scene) ? std::string(index_file_info(c.scene).scalar) : c.precision;
 }
 
+std::string ending_of(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending;
+}
+
 double shortest(float number) {
     return std::stod(fmt::format("{}", number));
 }

@@ -75,6 +75,9 @@ void print_json(const nlohmann::ordered_json& results);
 /// A text in lines of at most so many letters, broken at blanks; a longer word has a line of its own.
 std::vector<std::string> wrapped(std::string_view text, std::size_t letters);
 
+/// The extension of a path in lower case, as ".png".
+std::string ending_of(const std::string& path);
+
 /// Where what was finished before an interruption goes: "a.unfinished.png" beside "a.png", which stays as it
 /// was.
 std::string unfinished_name(const std::string& path);

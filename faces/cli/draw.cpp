@@ -34,7 +34,7 @@ int draw(const DrawArguments& a, const Scene<T>& scene) {
 }  // namespace
 
 void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what) {
-    if (std::filesystem::path(a.output).extension() != ending)
+    if (ending_of(a.output) != ending)
         throw UsageError(
             fmt::format("{}: {} is written as {}; let the output end so", a.output, what, ending));
 }

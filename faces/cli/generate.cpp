@@ -1,6 +1,5 @@
-/// hedgerow generate: writes a generated scene.
+/// hedgerow generate and hedgerow convert: scenes into files.
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <hedgerow/error.h>
 #include <hedgerow/io/mesh_file.h>
@@ -26,6 +25,22 @@ void save(const Common& c, const Other&, const Progress&) {
     throw InputError(c.scene + ": no file format here holds these primitives");
 }
 
+int save_scene(const Common& c) {
+    check_writable(c.output);
+    return in_precision(c, [&]<class T>(T) {
+        const Scene<T> scene = load<T>(c);
+        {
+            ProgressLine line("saving " + c.output, c.quiet, "elements");
+            std::visit([&](const auto& set) { save(c, set, line.progress()); }, scene);
+        }
+        if (c.json)
+            print_json({{"output", c.output}});
+        else if (!c.quiet)
+            fmt::print("{}\n", c.output);
+        return 0;
+    });
+}
+
 }  // namespace
 
 Run add_generate(CLI::App& verb) {
@@ -33,21 +48,16 @@ Run add_generate(CLI::App& verb) {
     add_common(verb, *c, true);
     return [c] {
         if (!c->scene.starts_with("gen:"))
-            throw UsageError(c->scene + ": only a gen: scene can be generated, as gen:terrain:200000");
-        check_writable(c->output);
-        return in_precision(*c, [&]<class T>(T) {
-            const Scene<T> scene = load<T>(*c);
-            {
-                ProgressLine line("saving " + c->output, c->quiet, "elements");
-                std::visit([&](const auto& set) { save(*c, set, line.progress()); }, scene);
-            }
-            if (c->json)
-                print_json({{"output", c->output}});
-            else if (!c->quiet)
-                fmt::print("{}\n", c->output);
-            return 0;
-        });
+            throw UsageError(c->scene + ": only a gen: scene can be generated, as gen:terrain:200000. " +
+                             "'hedgerow convert' takes files");
+        return save_scene(*c);
     };
+}
+
+Run add_convert(CLI::App& verb) {
+    auto c = std::make_shared<Common>();
+    add_common(verb, *c, true);
+    return [c] { return save_scene(*c); };
 }
 
 }  // namespace hedgerow::cli

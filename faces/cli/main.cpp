@@ -82,6 +82,11 @@ constexpr Verb verbs[] = {
      "Examples:\n  hedgerow generate gen:teapot:100k -o teapot.stl\n"
      "  hedgerow generate gen:points -o points.npy\n\nwrite a generated scene",
      add_generate},
+    {"convert",
+     "Examples:\n  hedgerow convert dragon.glb -o dragon.ply\n  hedgerow convert scan.xyz.gz -o scan.npy\n"
+     "  hedgerow convert model.obj -o model.stl --drop-bad\n\n"
+     "write what a file holds as another: meshes as .ply .stl .obj .off, points as .ply .npy .csv .xyz",
+     add_convert},
     {"structures",
      "Examples:\n  hedgerow structures\n  hedgerow structures kdtree\n\n"
      "the structures that can be built, and the options of one",

@@ -49,7 +49,7 @@ std::pair<int, int> parse_size(const std::string& text) {
 }
 
 bool asks_for_layers(const std::string& output) {
-    const auto ending = std::filesystem::path(output).extension();
+    const std::string ending = ending_of(output);
     if (ending == ".png") return false;
     if (ending != ".exr")
         throw UsageError(fmt::format(

@@ -202,10 +202,14 @@ std::string_view GltfFile::find_bytes(std::uint64_t i, const Json& description, 
     }
     if (!uri->is_string()) fail("the 'uri' of buffer " + std::to_string(i) + " is no text");
     const auto& text = uri->get_ref<const std::string&>();
-    own = is_data_uri(text) ? bytes_of_data_uri(text, name_)
-                            : first_bytes(file_of_uri(text, path_.parent_path(), name_),
-                                          needed_number(description, "byteLength"));
-    return own;
+    if (is_data_uri(text)) return own = bytes_of_data_uri(text, name_);
+    const auto file = file_of_uri(text, path_.parent_path(), name_);
+    const std::uint64_t size = needed_number(description, "byteLength");
+    try {
+        return own = first_bytes(file, size);
+    } catch (const InputError& error) {
+        throw InputError(name_ + ": its buffer " + shown(text) + " cannot be read: " + error.what());
+    }
 }
 
 void GltfFile::fail(const std::string& what) const {
