@@ -1,5 +1,5 @@
 /// glTF 2.0 scenes (`.gltf`, `.glb`): every instance of every mesh, in the scene's coordinates. Read here and
-/// not by Assimp, which damaged files can kill (docs/design/013-gltf.md).
+/// not by Assimp, which damaged files can kill (docs/design/014-gltf.md).
 #include <algorithm>
 
 #include <hedgerow/error.h>
