@@ -5,7 +5,8 @@ cmake_minimum_required(VERSION 3.25)
 set(allowed error.h spelling.h bare_vector.h stored.h parallel/executor.h parallel/progress.h
             parallel/blocks.h parallel/radix_sort.h primitives/strided.h queries/answer_lists.h io/load_options.h io/exr.h io/image.h io/npy.h io/text_file.h
             render/lettering.h compare/advice.h compare/break_even.h compare/clock.h compare/costs.h compare/fit.h compare/growth.h
-            compare/lists.h compare/quantity.h)
+            compare/lists.h compare/quantity.h
+            compare/reason.h io/writable.h parallel/sort.h parallel/watched_executor.h structures/item_limit.h)
 
 file(GLOB_RECURSE headers RELATIVE ${INCLUDE}/hedgerow ${INCLUDE}/hedgerow/*.h)
 foreach(header ${headers})

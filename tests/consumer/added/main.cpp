@@ -1,5 +1,5 @@
-#include <cstdio>
 #include <hedgerow/hedgerow.h>
+#include <cstdio>
 using namespace hedgerow;
 
 int main() {
