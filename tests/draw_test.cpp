@@ -36,6 +36,21 @@ std::size_t elements_with_class(const std::string& xml, const std::string& begin
     return seen.count;
 }
 
+/// The boxes of the rectangles whose class begins so.
+std::vector<Box2d> rectangles_with_class(const std::string& svg, const std::string& begins) {
+    std::vector<Box2d> all;
+    for (std::size_t at = svg.find("<rect "); at != svg.npos; at = svg.find("<rect ", at + 1)) {
+        const std::string element = svg.substr(at, svg.find('>', at) - at);
+        if (element.find("class=\"" + begins) == element.npos) continue;
+        const auto number = [&](const std::string& name) {
+            return std::stod(element.substr(element.find(" " + name + "=\"") + name.size() + 3));
+        };
+        const Vec2d low(number("x"), number("y"));
+        all.push_back({low, low + Vec2d(number("width"), number("height"))});
+    }
+    return all;
+}
+
 std::size_t cells_of(const std::string& scene, const std::string& spec) {
     return std::visit([&](const auto& set) { return build_any(spec, set)->outline().size(); },
                       generate<float>(parse_scene_spec(scene)));
@@ -141,6 +156,122 @@ TEST_F(Draw, ARaysTableIsItsTrace) {
     EXPECT_GT(elements_with_class(bytes_of(file("space.svg")), "cell visited"), 3u);
 }
 
+TEST_F(Draw, NumbersOfStepsDoNotCollide) {
+    for (const char* scene : {"gen:segments2d:60", "gen:segments2d:400"})
+        for (const char* spec : {"quadtree:leaf_size=2", "kdtree:traversal_cost=1", "grid", "bvh"}) {
+            SCOPED_TRACE(std::string(scene) + " " + spec);
+            ASSERT_EQ(run(std::string("draw ") + scene + " --quiet --structure " + spec +
+                          " --ray=-0.1,0.3,1,0.3 --size 720x560 -o " + file("ray.svg"))
+                          .code,
+                      0);
+            const auto svg = bytes_of(file("ray.svg"));
+            const auto labels = rectangles_with_class(svg, "badge");
+            EXPECT_GT(labels.size(), 3u);
+            for (std::size_t i = 0; i < labels.size(); ++i) {
+                EXPECT_TRUE(labels[i].low[0] >= 0 && labels[i].high[0] <= 720 && labels[i].low[1] >= 0 &&
+                            labels[i].high[1] <= 560);
+                for (std::size_t k = 0; k < i; ++k)
+                    EXPECT_FALSE(overlap(labels[i], labels[k])) << "labels " << k << " and " << i;
+            }
+            for (const char* entry : {"visited, first to last", "tested, missed", "tested, met", "the hit"})
+                EXPECT_NE(svg.find(entry), svg.npos) << "the legend lacks: " << entry;
+        }
+}
+
+TEST_F(Draw, ARayIsDrawnInSeveralStructuresSideBySide) {
+    const std::vector<std::string> specs = {"grid", "kdtree", "quadtree", "bsp"};
+    const auto set = std::get<SegmentSet<float>>(generate<float>(parse_scene_spec("gen:segments2d:60")));
+    std::size_t steps = 0;
+    for (const auto& spec : specs)
+        steps += build_any(spec, set)->trace({{-0.2f, 0.31f}, {1, 0.35f}}).steps.size();
+    const auto r =
+        run("draw gen:segments2d:60 --json --ray=-0.2,0.31,1,0.35 --structure grid --beside kdtree "
+            "--beside quadtree --beside bsp -o " +
+            file("four.svg"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_EQ(elements_with_class(bytes_of(file("four.svg")), "cell visited"), steps);
+    for (const auto& spec : specs) EXPECT_NE(r.output.find("\"structure\": \"" + spec + "\""), r.output.npos);
+}
+
+TEST_F(Draw, FourStructuresStandInOnePicture) {
+    const std::string four = " --quiet --structure grid --beside kdtree --beside octree --beside bsp ";
+    ASSERT_EQ(run("draw gen:cube:48 --slice z=0.5" + four + "-o " + file("four.svg")).code, 0);
+    for (const char* name : {">grid<", ">kdtree<", ">octree<", ">bsp<"})
+        EXPECT_NE(bytes_of(file("four.svg")).find(name), std::string::npos) << name;
+    ASSERT_EQ(run("draw gen:cube:300" + four + "--size 204x154 -o " + file("four.png")).code, 0);
+    EXPECT_EQ(load_png(file("four.png")).width, 204);
+    EXPECT_EQ(load_png(file("four.png")).height, 154);
+}
+
+TEST_F(Draw, ATreeStandsBesideItsCells) {
+    for (const char* spec : {"kdtree", "quadtree:leaf_size=3", "bsp", "bvh", "wide"}) {
+        SCOPED_TRACE(spec);
+        const std::string what = "draw gen:segments2d:30 --quiet --structure " + std::string(spec);
+        ASSERT_EQ(run(what + " --tree -o " + file("tree.svg")).code, 0);
+        const auto svg = bytes_of(file("tree.svg"));
+        const auto cells = cells_of("gen:segments2d:30", spec);
+        EXPECT_EQ(elements_with_class(svg, "cell"), cells);
+        EXPECT_EQ(elements_with_class(svg, "node") - elements_with_class(svg, "nodeid"), cells);
+        EXPECT_EQ(elements_with_class(svg, "link"), cells - 1);
+        // The page highlights the node of each step.
+        ASSERT_EQ(run(what + " --ray=-0.1,0.3,1,0.3 --frames -o " + file("ray.html")).code, 0);
+        const auto page = bytes_of(file("ray.html"));
+        const auto begin = page.find("<svg"), end = page.find("</svg>") + 6;
+        const auto frames = page.substr(begin, end - begin);
+        const auto steps = elements_with_class(frames, "step");
+        EXPECT_EQ(elements_with_class(frames, "interval"), steps);
+        EXPECT_EQ(elements_with_class(frames, "node") - elements_with_class(frames, "node off") -
+                      elements_with_class(frames, "nodeid"),
+                  steps);
+    }
+    expect_bad("draw gen:segments2d:30 --structure grid --tree -o " + file("x.svg"), "no tree");
+    expect_bad("draw gen:cube --tree -o " + file("x.png"), "--slice");
+}
+
+TEST_F(Draw, EmptyCellsOfAGridAreMarkedAsPruned) {
+    ASSERT_EQ(run("draw gen:segments2d:60 --quiet --structure grid -o " + file("grid.svg")).code, 0);
+    const auto set = std::get<SegmentSet<float>>(generate<float>(parse_scene_spec("gen:segments2d:60")));
+    std::size_t empty = 0;
+    for (const auto& c : build_any("grid", set)->outline()) empty += c.items.empty();
+    EXPECT_EQ(elements_with_class(bytes_of(file("grid.svg")), "cell leaf void"), empty);
+    EXPECT_NE(bytes_of(file("grid.svg")).find("empty: " + std::to_string(empty) + ", pruned"),
+              std::string::npos);
+}
+
+TEST_F(Draw, StoppingAtTheFirstHitShowsTheWrongOne) {
+    const std::string what =
+        "draw gen:segments2d:24 --seed 1 --structure grid:resolution=4 --ray=-0.1,0.3,1,0.1 --json ";
+    const auto right = run(what + "-o " + file("ray.svg"));
+    const auto wrong = run(what + "--stop-at-first -o " + file("ray.svg"));
+    ASSERT_EQ(wrong.code, 0) << wrong.output;
+    const auto nearest = right.output.substr(right.output.find("\"hit\""), 60);
+    EXPECT_NE(wrong.output.substr(wrong.output.find("\"hit\""), 60), nearest);
+    EXPECT_NE(bytes_of(file("ray.svg")).find("WRONG"), std::string::npos);
+    EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "nearest"), 1u);
+}
+
+TEST_F(Draw, HeightShowsATreeFromItsLeaves) {
+    const auto cells = [&](const std::string& more) {
+        EXPECT_EQ(
+            run("draw gen:segments2d:16 --quiet --structure bvh:builder=agglomerative,max_leaf_size=1 " +
+                more + " -o " + file("h.svg"))
+                .code,
+            0);
+        return elements_with_class(bytes_of(file("h.svg")), "cell");
+    };
+    EXPECT_EQ(cells("--height 0"), 16u) << "the leaves";
+    EXPECT_LT(cells("--height 1"), cells("--height 2"));
+    EXPECT_EQ(cells("--height 20"), 31u);
+}
+
+TEST_F(Draw, ASliceOfManyTrianglesMakesASmallFile) {
+    ASSERT_EQ(run("draw gen:terrain:200k --quiet --slice z=0.5 -o " + file("s.svg")).code, 0);
+    const auto svg = bytes_of(file("s.svg"));
+    EXPECT_LT(svg.size(), 400'000u);
+    EXPECT_GT(elements_with_class(svg, "cell"), 3u);
+    EXPECT_GT(elements_with_class(svg, "line"), 0u);
+}
+
 TEST_F(Draw, BoxesAreDrawnOverAPictureOfTheMesh) {
     std::vector<Image> pictures;
     for (const char* depth : {"1", "2", "5"}) {
@@ -181,6 +312,18 @@ TEST_F(Draw, HeatMapsCompareByAFixedScale) {
     EXPECT_EQ(bar(one), bar(other));
     EXPECT_NE(one, other);
     EXPECT_NE(bar(one), bar(wider));
+    // A long title does not lie on it.
+    const auto right = [](const Image& i) {
+        std::vector<Image::Pixel> strip;
+        for (int y = i.height / 8; y < i.height / 3; ++y)
+            for (int x = i.width - 16; x < i.width; ++x) strip.push_back(i.at(x, y));
+        return strip;
+    };
+    EXPECT_EQ(
+        right(map("--heat tests --structure bvh:traversal_cost=2.00,intersection_cost=1.0,builder=binned")),
+        right(one));
+    EXPECT_NE(bar(map("--heat tests --log")), bar(one)) << "other labels";
+    EXPECT_NE(map("--heat tests --log"), one);
     EXPECT_EQ(map("--heat steps --scale 100").width, 320);
     EXPECT_EQ(map("--heat time").width, 320);
     EXPECT_NE(run("draw gen:teapot:500 --size 64x48 --heat tests --scale 1 --json -o " + file("h.png"))
@@ -196,6 +339,10 @@ TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {
     EXPECT_EQ(run("draw gen:cube --scale 5" + png).code, 2);
     EXPECT_EQ(run("draw gen:cube --heat steps --slice z=0.5" + png).code, 2);
     EXPECT_EQ(run("draw gen:cube --depth -1" + png).code, 2);
+    EXPECT_EQ(run("draw gen:cube --log" + png).code, 2);
+    EXPECT_EQ(run("draw gen:points2d:20 --stop-at-first" + svg).code, 2);
+    expect_bad("draw gen:points2d:20 --beside bvh --beside grid --beside bsp --beside kdtree" + svg,
+               "--beside");
     expect_usage("draw gen:points2d:20" + png, ".svg");
     expect_usage("draw gen:cube" + svg, ".png");
     expect_usage("draw gen:cube --slice z=0.5" + png, ".svg");

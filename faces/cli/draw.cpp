@@ -46,15 +46,25 @@ nlohmann::ordered_json facts_of(const NamedStructure& s, std::size_t leaves, int
     return facts;
 }
 
+std::vector<std::string> structures_of(const DrawArguments& a) {
+    std::vector<std::string> all = {a.structure};
+    all.insert(all.end(), a.beside.begin(), a.beside.end());
+    return all;
+}
+
 int letter_scale(const Image& image) {
     return std::max(1, image.height / 600);
 }
-std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts) {
-    const int letters = image.width / (letter_width * letter_scale(image)) - 2;
+std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts, int width) {
+    const auto letters = static_cast<std::size_t>(
+        std::max(8, (width > 0 ? width : image.width) / (letter_width * letter_scale(image)) - 2));
     std::vector<std::string> lines;
     for (const auto& text : texts)
-        for (auto& line : wrapped(text, static_cast<std::size_t>(std::max(8, letters))))
+        for (auto& line : wrapped(text, letters)) {
+            // The options of a structure are one long word.
+            for (; line.size() > letters; line.erase(0, letters)) lines.push_back(line.substr(0, letters));
             lines.push_back(std::move(line));
+        }
     return lines;
 }
 
@@ -62,8 +72,13 @@ Run add_draw(CLI::App& verb) {
     auto a = std::make_shared<DrawArguments>();
     add_common(verb, *a, true);
     verb.add_option("--structure", a->structure, "NAME[:OPTION=VALUE,...]")->capture_default_str();
-    auto* const beside = verb.add_option(
-        "--beside", a->beside, "a second structure, drawn beside the first; shows what siblings share");
+    auto* const beside =
+        verb.add_option(
+                "--beside", a->beside,
+                "another structure, drawn beside the first; up to three times. Shows what siblings share")
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    auto* const tree = verb.add_flag("--tree", a->tree, "flat pictures: the tree too, beside its cells");
     auto* const slice = verb.add_option(
         "--slice", a->slice,
         "x, y or z=FRACTION of the scene, or =@POSITION: the cells that a plane cuts, as SVG");
@@ -75,21 +90,32 @@ Run add_draw(CLI::App& verb) {
                           ->delimiter(',')
                           ->expected(4, 6);
     verb.add_flag("--frames", a->frames, "with --ray: a page, .html, that goes through it step by step")
+        ->needs(ray)
+        ->excludes(beside);
+    verb.add_flag("--stop-at-first", a->stop_at_first,
+                  "with --ray: stop at the first hit, wherever it lies: often not the nearest")
         ->needs(ray);
+    verb.add_option("--height", a->height,
+                    "only cells with at most so many levels below them: how a tree grows from its leaves")
+        ->check(CLI::Range(0, 128))
+        ->excludes(ray)
+        ->excludes(tree);
     auto* const heat =
         verb.add_option("--heat", a->heat,
                         "steps, tests or time (in nanoseconds) of a view's rays, as .png or .exr")
             ->check(CLI::IsMember({"steps", "tests", "time"}));
     verb.add_option("--scale", a->scale, "where the heat's scale ends; 0: steps 200, tests 60, time 4000")
         ->needs(heat);
-    ray->excludes(slice)->excludes(heat)->excludes(beside);
-    heat->excludes(slice)->excludes(beside);
+    verb.add_flag("--log", a->log, "the heat's scale is logarithmic")->needs(heat);
+    ray->excludes(slice)->excludes(heat);
+    heat->excludes(slice)->excludes(beside)->excludes(tree);
     verb.add_option("--threads", a->threads, "that build and cast rays; 0: all cores")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     return [a] {
         check_picture_memory(a->view.size, false);
+        if (a->beside.size() > 3) throw InputError("--beside: one picture has room for four structures");
         check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) { return draw(*a, load<T>(*a)); });
     };

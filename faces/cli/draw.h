@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,22 +19,27 @@
 namespace hedgerow::cli {
 
 struct DrawArguments : Common {
-    std::string structure = "bvh", beside, slice, heat;
+    std::string structure = "bvh", slice, heat;
+    std::vector<std::string> beside;
     ViewArguments view;
     std::vector<double> ray;
-    bool frames = false;
+    bool frames = false, tree = false, log = false, stop_at_first = false;
     int levels = 0;
+    std::optional<int> height;
     unsigned threads = 0;
     std::uint64_t scale = 0;
 };
 
-/// The cells of one or two structures: of a flat scene, or in a slice.
+/// All structures that are drawn: the first and those beside it.
+std::vector<std::string> structures_of(const DrawArguments& a);
+
+/// The cells of some structures: of a flat scene, or in a slice.
 template <class T>
 int draw_cells(const DrawArguments& a, const Scene<T>& scene);
-/// What one ray visits.
+/// What one ray visits in some structures.
 template <class T>
 int draw_ray(const DrawArguments& a, const Scene<T>& scene);
-/// The boxes of one or two structures, as lines over a view of a scene in space.
+/// The boxes of some structures, as lines over a view of a scene in space.
 template <class T>
 int draw_wireframe(const DrawArguments& a, const Scene<T>& scene);
 /// What the rays of a view of a scene in space cost.
@@ -77,7 +83,17 @@ int in_space(const DrawArguments& a, const Scene<T>& scene, F f) {
 
 /// Pixels a dot of the letters on a picture.
 int letter_scale(const Image& image);
-/// As `draw_note` can hold them in the picture's width.
-std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts);
+/// As `draw_note` can hold them in so many pixels of the picture's width; 0: all.
+std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts, int width = 0);
+
+/// The tree of an outline for the picture, if there is one; throws InputError, where the user asked for it,
+/// if the structure has none.
+template <int D>
+TreeShape tree_for(const std::string& structure, const std::vector<OutlineCell<D>>& cells, bool asked) {
+    TreeShape tree = tree_of(cells);
+    if (asked && tree.nodes.empty())
+        throw InputError(structure + " is no tree, or is empty: draw it without --tree");
+    return tree;
+}
 
 }  // namespace hedgerow::cli

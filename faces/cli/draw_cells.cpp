@@ -1,6 +1,7 @@
 /// Flat pictures of cells, as SVG: of a flat scene, or in a slice.
 #include <charconv>
 #include <cmath>
+#include <unordered_map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -53,12 +54,25 @@ Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright
     return section;
 }
 
+/// Those with at most so many levels of cells below them.
+template <int D>
+std::vector<OutlineCell<D>> of_height(std::vector<OutlineCell<D>> cells, int most) {
+    std::unordered_map<NodeId, int> height;
+    for (auto c = cells.rbegin(); c != cells.rend(); ++c) {  // children come before their parents
+        const int own = height[c->id];
+        if (c->level > 1) height[c->parent] = std::max(height[c->parent], own + 1);
+    }
+    std::erase_if(cells, [&](const auto& c) { return height[c.id] > most; });
+    return cells;
+}
+
 template <class P>
 int draw_cells_of(const DrawArguments& a, const P& set) {
     constexpr int D = P::dimension;
     expect_ending(a, ".svg", D == 2 ? "a flat scene" : "a slice");
-    std::vector<std::string> specs = {a.structure};
-    if (!a.beside.empty()) specs.push_back(a.beside);
+    const auto specs = structures_of(a);
+    if (a.tree && specs.size() > 2)
+        throw InputError("--tree: one picture has room for the trees of two structures");
     std::vector<NamedStructure> structures;
     FlatScene scene;
     ordered_json report = ordered_json::array();
@@ -67,8 +81,10 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
         const auto bounds = bounds_of(*index);
         const auto section = section_of(a, bounds, upright_of(a.view, a, set));
         const auto limits = section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels);
-        const auto cells = few(index->outline(limits));
+        auto cells = few(index->outline(limits));
+        if (a.height) cells = of_height(std::move(cells), *a.height);
         NamedStructure s{spec, {}, flat_structure(cells, section)};
+        if (a.tree) s.tree = cropped(tree_for(spec, D == 2 ? cells : index->outline(), true));
         if (!a.beside.empty()) {
             // The figure is of the whole tree, whatever the picture shows of it.
             FlatStructure whole;

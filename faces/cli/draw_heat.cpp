@@ -28,6 +28,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.seed = a.seed;
     options.shading = parse_shading(a.heat);
+    options.log_scale = a.log;
     options.steps_max = a.scale > 0 ? a.scale : usual_scale(options.shading);
     const auto index = build_shown(a, a.structure, set);
     const Upright upright = upright_of(a.view, a, set);
@@ -42,12 +43,13 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     }
     const std::string unit =
         a.heat == "time" ? "nanoseconds" : (a.heat == "tests" ? "primitives tested" : a.heat);
-    draw_note(
-        picture.image, 0, 0,
-        note_lines(picture.image, {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
-                                   fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit,
-                                               picture.mean, picture.most)}),
-        letter_scale(picture.image));
+    draw_note(picture.image, 0, 0,
+              note_lines(picture.image,
+                         {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
+                          fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit, picture.mean,
+                                      picture.most)},
+                         colour_bar_left(picture.image, options.steps_max)),
+              letter_scale(picture.image));
     save(finished.output, picture);
     const double pixels = double(options.width) * double(options.height);
     if (a.json)
@@ -55,6 +57,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
                                         {"structure", a.structure},
                                         {"heat", a.heat},
                                         {"scale", options.steps_max},
+                                        {"logarithmic", a.log},
                                         {"mean", picture.mean},
                                         {"most", picture.most},
                                         {"share_beyond_scale", double(picture.beyond) / pixels},

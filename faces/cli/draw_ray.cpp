@@ -1,6 +1,7 @@
 /// One ray's walk, as SVG or as a page that steps through it.
 #include <cmath>
 #include <optional>
+#include <unordered_map>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -108,37 +109,62 @@ ordered_json json_of(const TraceTable& table) {
     }
     ordered_json hit;
     if (table.hit) hit = {{"primitive", table.hit->first}, {"t", table.hit->second}};
-    return {{"structure", table.structure},
-            {"origin", table.origin},
-            {"direction", table.direction},
-            {"hit", hit},
-            {"nodes", table.visits.nodes},
-            {"leaves", table.visits.leaves},
-            {"primitives", table.visits.primitives},
-            {"skipped", table.visits.skipped},
-            {"steps", steps}};
+    ordered_json all = {{"structure", table.structure},
+                        {"origin", table.origin},
+                        {"direction", table.direction},
+                        {"hit", hit},
+                        {"nodes", table.visits.nodes},
+                        {"leaves", table.visits.leaves},
+                        {"primitives", table.visits.primitives},
+                        {"skipped", table.visits.skipped},
+                        {"steps", steps}};
+    if (table.nearest) all["nearest"] = {{"primitive", table.nearest->first}, {"t", table.nearest->second}};
+    return all;
+}
+
+/// A tree of more leaves is drawn where the ray is.
+constexpr std::size_t most_leaves = 48;
+
+template <class P, int D>
+RayView view_of(const DrawArguments& a, const std::string& spec, const P& set,
+                const Ray<typename P::Scalar, D>& ray, const Section<D>& section, Box<double, D>& bounds) {
+    const auto index = build_shown(a, spec, set);
+    bounds = bounds_of(*index);
+    RayView view{{spec, {}, {}}, table_of(spec, ray, index->trace(ray), section)};
+    if (a.stop_at_first) view.table.stop_at_first_hit();
+    const auto cells = index->outline(section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels));
+    if (cells.size() <= most_behind) view.structure.flat = flat_structure(cells, section);
+    if (!a.tree && !a.frames) return view;
+    TreeShape tree = tree_for(spec, cells, a.tree);
+    if (tree.end_count() > most_leaves) {
+        std::unordered_map<NodeId, bool> visited;
+        for (const auto& row : view.table.rows) visited[row.node] = true;
+        tree = around(tree, visited);
+    }
+    view.structure.tree = cropped(std::move(tree));
+    return view;
 }
 
 template <class P>
 int draw_ray_in(const DrawArguments& a, const P& set) {
-    using T = typename P::Scalar;
     constexpr int D = P::dimension;
     expect_ending(a, a.frames ? ".html" : ".svg", a.frames ? "a page of frames" : "a ray's way");
-    const auto ray = ray_of<T, D>(a);
-    const auto index = build_shown(a, a.structure, set);
-    const auto bounds = bounds_of(*index);
+    const auto ray = ray_of<typename P::Scalar, D>(a);
     const auto section = section_along(ray, upright_of(a.view, a, set));
-    const auto table = table_of(a.structure, ray, index->trace(ray), section);
+    std::vector<RayView> views;
+    Box<double, D> bounds;
+    for (const auto& spec : structures_of(a)) views.push_back(view_of(a, spec, set, ray, section, bounds));
     FlatScene scene = flat_scene(a, set, section, bounds);
     scene.title += D == 2 ? ": what a ray visits" : ": what a ray visits, in a plane along it";
-    FlatStructure all;
-    auto cells = index->outline(section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels));
-    if (cells.size() <= most_behind) all = flat_structure(cells, section);
-    save_text(a.output, a.frames ? ray_page(scene, all, table) : ray_picture(scene, all, table));
-    if (a.json)
-        print_json(json_of(table));
-    else if (!a.quiet)
-        fmt::print("{}", text_of(table));
+    save_text(a.output, a.frames ? ray_page(scene, views.front()) : ray_picture(scene, views));
+    if (a.json) {
+        ordered_json all = ordered_json::array();
+        for (const auto& v : views) all.push_back(json_of(v.table));
+        print_json(all.size() == 1 ? all[0] : ordered_json{{"output", a.output}, {"structures", all}});
+    } else if (!a.quiet) {
+        for (const auto& v : views)
+            fmt::print("{}{}", views.size() > 1 ? v.structure.name + ":\n" : "", text_of(v.table));
+    }
     return 0;
 }
 

@@ -1,7 +1,6 @@
 /// Wireframes: the cells of a structure as lines over a view of the scene, as PNG.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -103,13 +102,20 @@ Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, c
     draw_level_legend(picture.image, {std::string(index.structure()), facts}, levels);
     return picture.image;
 }
-Image joined(const Image& left, const Image& right) {
-    Image both(left.width + right.width + 4, left.height, {255, 255, 255});
-    for (int y = 0; y < left.height; ++y) {
-        for (int x = 0; x < left.width; ++x) both.at(x, y) = left.at(x, y);
-        for (int x = 0; x < right.width; ++x) both.at(left.width + 4 + x, y) = right.at(x, y);
+constexpr int gap = 4;  // pixels between pictures
+
+/// Pictures of one size, two in a row.
+Image joined(const std::vector<Image>& parts) {
+    const int columns = parts.size() > 1 ? 2 : 1,
+              rows = (static_cast<int>(parts.size()) + columns - 1) / columns;
+    const int wide = parts[0].width + gap, high = parts[0].height + gap;
+    Image all(columns * wide - gap, rows * high - gap, {255, 255, 255});
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        const int left = static_cast<int>(i) % columns * wide, top = static_cast<int>(i) / columns * high;
+        for (int y = 0; y < parts[i].height; ++y)
+            for (int x = 0; x < parts[i].width; ++x) all.at(left + x, top + y) = parts[i].at(x, y);
     }
-    return both;
+    return all;
 }
 
 /// `seen`: what the picture is of, and `set` what the structure holds; of points they differ.
@@ -119,23 +125,22 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = 4, options.seed = a.seed;
-    std::vector<std::string> specs = {a.structure};
-    if (!a.beside.empty()) {
-        specs.push_back(a.beside);
-        options.width = std::max(1, (options.width - 4) / 2);
-    }
+    if (a.tree)
+        throw InputError("--tree: trees stand beside flat pictures; add --slice, or draw a flat scene");
+    const auto specs = structures_of(a);
+    if (specs.size() > 1) options.width = std::max(1, (options.width - gap) / 2);
+    if (specs.size() > 2) options.height = std::max(1, (options.height - gap) / 2);
     const auto seen_index = build_shown(a, "bvh", seen);
     const Upright upright = upright_of(a.view, a, set);
     options.camera = camera_of(
         a.view, a, Box3f{Vec3f(seen_index->bounds().low), Vec3f(seen_index->bounds().high)}, upright);
-    std::optional<Image> image;
+    std::vector<Image> images;
     ordered_json report = ordered_json::array();
     std::string text;
     for (const auto& spec : specs) {
         const auto index = build_shown(a, spec, set);
         std::string facts;
-        const Image one = wireframe(*index, *seen_index, seen, options, a.levels, facts);
-        image = image ? joined(*image, one) : one;
+        images.push_back(wireframe(*index, *seen_index, seen, options, a.levels, facts));
         NamedStructure s{spec, {facts}, {}};
         if (!a.beside.empty()) {
             add_shared(index->outline(), Section<3>{{}, {1, 0, 0}, {0, 1, 0}}, s.flat);
@@ -146,7 +151,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
         report.push_back(facts_of(s, index->leaf_count(), index->depth()));
         text += fmt::format("{}: {}\n", spec, facts);
     }
-    save_png(a.output, *image);
+    save_png(a.output, joined(images));
     if (a.json)
         print_json({{"output", a.output}, {"structures", report}});
     else if (!a.quiet)

@@ -27,6 +27,40 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
+namespace {
+
+/// In halves of a pixel.
+long halves(double x) {
+    return std::lround(2 * x);
+}
+std::string half(long x) {
+    return fmt::format("{}", static_cast<double>(x) / 2);
+}
+
+}  // namespace
+
+void Path::polygon(const std::vector<Vec2d>& points) {
+    std::string shape;
+    long x = 0, y = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const long px = halves(points[i][0]), py = halves(points[i][1]);
+        const bool first = i == 0;
+        if (!first && py == y)
+            shape += "h" + half(px - x);
+        else if (!first && px == x)
+            shape += "v" + half(py - y);
+        else
+            shape += fmt::format("{}{},{}", first ? "M" : "l", half(px - x), half(py - y));
+        x = px, y = py;
+    }
+    add(points.size() > 2 ? shape + "z" : shape);
+}
+void Path::circle(const Vec2d& center, double radius) {
+    const auto r = half(std::max(1L, halves(radius))), across = half(2 * std::max(1L, halves(radius)));
+    add(fmt::format("M{},{}a{r},{r} 0 1,0 {w},0a{r},{r} 0 1,0 -{w},0", half(halves(center[0] - radius)),
+                    half(halves(center[1])), fmt::arg("r", r), fmt::arg("w", across)));
+}
+
 Svg::Svg(int width, int height, std::string_view style) {
     put("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n",
         width, height);
@@ -52,6 +86,12 @@ void Svg::rect(const Box2d& box, std::string_view attributes) {
     const Vec2d e = box.extent();
     put("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" {}/>\n", box.low[0], box.low[1],
         e[0], e[1], attributes);
+}
+void Svg::rounded(const Box2d& box, double radius, std::string_view attributes) {
+    rect(box, fmt::format("rx=\"{:.1f}\" {}", radius, attributes));
+}
+void Svg::path(const Path& path, std::string_view attributes) {
+    if (!path.data().empty()) put("<path d=\"{}\" {}/>\n", path.data(), attributes);
 }
 void Svg::text(const Vec2d& at, std::string_view text, std::string_view attributes) {
     put("<text x=\"{:.2f}\" y=\"{:.2f}\" {}>{}</text>\n", at[0], at[1], attributes, escaped(text));

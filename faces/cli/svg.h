@@ -4,6 +4,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +15,26 @@ namespace hedgerow::cli {
 
 /// With &, <, > and quotes as entities.
 std::string escaped(std::string_view text);
+
+/// Many shapes as the data of one path, at half a pixel. A shape that looks like one before is left out, so
+/// that a path is no longer than its pixels. O(1) a shape.
+class Path {
+public:
+    /// Two points are a line.
+    void polygon(const std::vector<Vec2d>& points);
+    void circle(const Vec2d& center, double radius);
+    /// A line without length, which round ends make a dot.
+    void dot(const Vec2d& at) { polygon({at, at}); }
+
+    const std::string& data() const { return data_; }
+
+private:
+    void add(std::string shape) {
+        if (const auto [at, is_new] = seen_.insert(std::move(shape)); is_new) data_ += *at;
+    }
+    std::unordered_set<std::string> seen_;
+    std::string data_;
+};
 
 /// Attributes are written as they are given; texts are escaped. Lengths are in pixels.
 class Svg {
@@ -29,6 +50,10 @@ public:
     void line(const Vec2d& a, const Vec2d& b, std::string_view attributes);
     void circle(const Vec2d& center, double radius, std::string_view attributes);
     void rect(const Box2d& box, std::string_view attributes);
+    /// A rectangle with round corners.
+    void rounded(const Box2d& box, double radius, std::string_view attributes);
+    /// Nothing for a path without shapes.
+    void path(const Path& path, std::string_view attributes);
     void text(const Vec2d& at, std::string_view text, std::string_view attributes = {});
     /// Definitions and the like: well formed already.
     void raw(std::string_view xml) { put("{}", xml); }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <hedgerow/geometry/vec.h>
 #include <hedgerow/io/image.h>
@@ -54,21 +55,57 @@ inline void draw_number(Image& image, int x, int y, std::uint64_t number, int sc
     }
 }
 
-/// A bar along the right edge, from 0 at its foot to `most` at its head, labelled at quarters.
-inline void draw_colour_bar(Image& image, std::uint64_t most) {
-    const int scale = std::max(1, image.height / 256), wide = 6 * scale;
-    const int label = (static_cast<int>(std::to_string(most).size()) * 4 + 1) * scale;
-    if (image.width < 3 * (wide + label) || image.height < 40) return;
-    const int left = image.width - label - wide - 2 * scale, top = image.height / 8,
-              bottom = image.height - top;
-    for (int y = top - 6 * scale; y < bottom + 6 * scale; ++y)
-        for (int x = left - 2 * scale; x < image.width; ++x) image.at(x, y) = {12, 12, 16};
+/// From 0 to `most`, by the number or by the logarithm of 1 + the number.
+struct ColourScale {
+    std::uint64_t most;
+    bool logarithmic = false;
+
+    /// 0 to 1, and more beyond the scale.
+    float at(float number) const {
+        const float end = static_cast<float>(most);
+        if (!(end > 0)) return 0;
+        return logarithmic ? std::log1p(number) / std::log1p(end) : number / end;
+    }
+    /// The numbers that label it: its quarters, or the powers of ten with both ends.
+    std::vector<std::uint64_t> labels() const {
+        if (!logarithmic) return {0, most / 4, most / 2, most * 3 / 4, most};
+        std::vector<std::uint64_t> all = {0};
+        for (std::uint64_t ten = 1; ten < most; ten *= 10) {
+            if (at(static_cast<float>(ten)) < 0.95f) all.push_back(ten);
+            if (ten > most / 10) break;
+        }
+        all.push_back(most);
+        return all;
+    }
+};
+
+namespace detail {
+inline int bar_unit(const Image& image) {
+    return std::max(1, image.height / 256);
+}
+}  // namespace detail
+
+/// Where the ground of the bar begins in a picture; its width, if that has no room for a bar.
+inline int colour_bar_left(const Image& image, std::uint64_t most) {
+    const int unit = detail::bar_unit(image);
+    const int label = (static_cast<int>(std::to_string(most).size()) * 4 + 1) * unit, wide = 6 * unit;
+    if (image.width < 3 * (wide + label) || image.height < 40) return image.width;
+    return image.width - label - wide - 4 * unit;
+}
+/// A bar along the right edge, from 0 at its foot to the most at its head, with its labels.
+inline void draw_colour_bar(Image& image, const ColourScale& scale) {
+    const int unit = detail::bar_unit(image), ground = colour_bar_left(image, scale.most);
+    if (ground == image.width) return;
+    const int left = ground + 2 * unit, wide = 6 * unit, top = image.height / 8, bottom = image.height - top;
+    for (int y = top - 6 * unit; y < bottom + 6 * unit; ++y)
+        for (int x = ground; x < image.width; ++x) image.at(x, y) = {12, 12, 16};
     for (int y = top; y < bottom; ++y)
         for (int x = left; x < left + wide; ++x)
             image.at(x, y) = heat(static_cast<float>(bottom - 1 - y) / static_cast<float>(bottom - top - 1));
-    for (int q = 0; q <= 4; ++q)
-        draw_number(image, left + wide + scale, bottom - (bottom - top) * q / 4 - 2 * scale,
-                    most * static_cast<std::uint64_t>(q) / 4, scale);
+    for (const std::uint64_t number : scale.labels()) {
+        const float high = scale.at(static_cast<float>(number)) * static_cast<float>(bottom - top);
+        draw_number(image, left + wide + unit, bottom - static_cast<int>(high) - 2 * unit, number, unit);
+    }
 }
 
 }  // namespace hedgerow

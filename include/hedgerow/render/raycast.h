@@ -37,6 +37,8 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     /// Top of the scale of what is counted; 0: the most that was seen.
     std::uint64_t steps_max = 0;
+    /// Whether that scale is logarithmic: of 1 + the count.
+    bool log_scale = false;
     /// Whether the picture keeps what its rays met, for `Picture::layers`.
     bool layers = false;
     /// Whether what rays visit is counted, which no kernel does. Layers and what shows counts ask for it by
@@ -282,15 +284,16 @@ private:
             picture.mean += double(v[0]) / double(values_.size());
             picture.beyond += o_.steps_max > 0 && v[0] > static_cast<float>(o_.steps_max);
         }
-        const float most = static_cast<float>(o_.steps_max > 0 ? double(o_.steps_max) : picture.most);
+        const ColourScale scale{o_.steps_max > 0 ? o_.steps_max : static_cast<std::uint64_t>(picture.most),
+                                o_.log_scale};
         for (int y = 0; y < o_.height; ++y) {
             if (!done_[static_cast<std::size_t>(y)]) continue;
             for (int x = 0; x < o_.width; ++x) {
                 const Vec3f& v = values_[pixel(x, y)];
-                picture.image.at(x, y) = counted(o_.shading) ? heat(most > 0 ? v[0] / most : 0) : srgb(v);
+                picture.image.at(x, y) = counted(o_.shading) ? heat(scale.at(v[0])) : srgb(v);
             }
         }
-        if (counted(o_.shading)) draw_colour_bar(picture.image, static_cast<std::uint64_t>(most));
+        if (counted(o_.shading)) draw_colour_bar(picture.image, scale);
         if (o_.layers) picture.light = std::move(values_), picture.seen = std::move(seen_);
         return picture;
     }

@@ -1,0 +1,126 @@
+/// Structures side by side, as cells and as trees.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "picture_parts.h"
+#include "tree_picture.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+std::string class_of(const FlatCell& c) {
+    return fmt::format("class=\"cell{} l{}\"", c.leaf ? (c.items > 0 ? " leaf" : " leaf void") : "", c.level);
+}
+
+/// From the leaves up, so that the lines of the first levels lie on top.
+void draw_cells(Svg& svg, const Panel& panel, const FlatStructure& flat) {
+    std::vector<const FlatCell*> order;
+    for (const auto& c : flat.cells) order.push_back(&c);
+    std::stable_sort(order.begin(), order.end(), [](auto* a, auto* b) { return a->level > b->level; });
+    if (order.size() <= most_with_hints) {
+        for (const auto* c : order) svg.polygon(panel(c->corners), class_of(*c), hint_of(*c));
+    } else {
+        std::map<std::pair<int, std::string>, Path> paths;  // by the level, the deepest first
+        for (const auto* c : order) paths[{-c->level, class_of(*c)}].polygon(panel(c->corners));
+        for (const auto& [key, path] : paths) svg.path(path, key.second);
+    }
+    for (const auto& s : flat.shared) svg.polygon(panel(s), "class=\"shared\"");
+}
+
+/// How far the frame reaches, so that sizes can be read off.
+void draw_corners(Svg& svg, const Panel& panel, const Box2d& shown) {
+    const Box2d f = panel.frame();
+    svg.rect(f, "fill=\"none\" stroke=\"#c8ccd4\" stroke-width=\"1\"");
+    const auto at = [](const Vec2d& p) { return fmt::format("{:.4g}, {:.4g}", p[0], p[1]); };
+    svg.text({f.low[0], f.high[1] + 13}, at(shown.low), "class=\"quiet\"");
+    svg.text({f.high[0], f.low[1] - 5}, at(shown.high), "class=\"quiet\" text-anchor=\"end\"");
+}
+
+/// A swatch a level with the number of its cells, of one structure or two, and what is hatched.
+void draw_legend(Svg& svg, const Layout& layout, const std::vector<NamedStructure>& structures, int levels) {
+    std::vector<std::vector<std::size_t>> counts(static_cast<std::size_t>(levels),
+                                                 std::vector<std::size_t>(structures.size()));
+    std::size_t empty = 0;
+    bool shared = false;
+    for (std::size_t s = 0; s < structures.size(); ++s) {
+        for (const auto& c : structures[s].flat.cells) {
+            ++counts[static_cast<std::size_t>(c.level - 1)][s];
+            empty += c.leaf && c.items == 0;
+        }
+        shared = shared || !structures[s].flat.shared.empty();
+    }
+    const bool counted = structures.size() <= 2;
+    const Vec2d at = layout.legend();
+    const double room = layout.legend_height() - 60, step = std::clamp(room / levels, 1.0, 18.0);
+    const int every = static_cast<int>(std::ceil(13 / step));
+    svg.text(at + Vec2d(0, 2), counted ? "level: cells" : "level", "class=\"quiet\"");
+    for (int k = 0; k < levels; ++k) {
+        const double y = at[1] + 12 + step * k, high = std::max(1.0, step - 3);
+        svg.rect({{at[0], y}, {at[0] + 22, y + high}},
+                 fmt::format("fill=\"{0}\" fill-opacity=\".55\" stroke=\"{0}\"", level_colour(k, levels)));
+        if (k % every != 0) continue;
+        std::string text = fmt::format("{}", k + 1);
+        for (std::size_t s = 0; s < structures.size() && counted; ++s)
+            text += fmt::format("{} {}", s > 0 ? " |" : ":", counts[static_cast<std::size_t>(k)][s]);
+        svg.text({at[0] + 30, y + high / 2 + 4}, text, "class=\"legend\"");
+    }
+    Legend rest(svg, at + Vec2d(0, 24 + step * levels));
+    const auto swatch = [&](const char* look) {
+        return [&svg, look](const Box2d& box) { svg.rect(box, look); };
+    };
+    if (empty > 0)
+        rest.line(
+            counted && structures.size() == 1 ? fmt::format("empty: {}, pruned", empty) : "empty: pruned",
+            swatch("fill=\"url(#void)\" stroke=\"#c8ccd4\""));
+    if (shared) rest.line("siblings share", swatch("class=\"shared\""));
+}
+
+}  // namespace
+
+std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructure>& structures) {
+    int levels = 1;
+    std::size_t cells = 0;
+    std::vector<const FlatStructure*> flats;
+    bool trees = false;
+    for (const auto& s : structures) {
+        flats.push_back(&s.flat);
+        cells = std::max(cells, s.flat.cells.size());
+        for (const auto& c : s.flat.cells) levels = std::max(levels, c.level);
+        trees = trees || !s.tree.nodes.empty();
+    }
+    const Box2d shown = frame_of(scene, flats);
+    const Layout layout(scene.width, scene.height, structures, trees ? 1 : 0);
+    const auto cells_area = [&](std::size_t s) {
+        Box2d area = layout.area(s);
+        if (trees) area.high[0] = area.low[0] + 0.46 * area.extent()[0];
+        return area;
+    };
+    const Panel first(shown, cells_area(0));
+    Svg svg(scene.width, scene.height,
+            std::string(plain_style()) + level_style(levels, crowding(cells, first)) +
+                std::string(trees ? tree_style() : ""));
+    add_definitions(svg);
+    svg.text({picture_margin, 32}, scene.title, "class=\"title\"");
+    const double size = crowding(scene.primitives.size(), first);
+    for (std::size_t s = 0; s < structures.size(); ++s) {
+        const Panel panel(shown, cells_area(s));
+        draw_corners(svg, panel, shown);
+        draw_cells(svg, panel, structures[s].flat);
+        draw_primitives(svg, panel, scene.primitives, size, "");
+        layout.draw_caption(svg, s);
+        if (structures[s].tree.nodes.empty()) continue;
+        number_leaves(svg, panel, structures[s].flat);
+        Box2d area = layout.area(s);
+        area.low[0] = cells_area(s).high[0] + picture_margin;
+        const TreePanel tree(structures[s].tree, area);
+        tree.draw_links(svg);
+        for (std::size_t i = 0; i < structures[s].tree.nodes.size(); ++i) tree.draw_node(svg, i);
+        tree.draw_note(svg);
+    }
+    draw_legend(svg, layout, structures, levels);
+    return svg.finished();
+}
+
+}  // namespace hedgerow::cli
