@@ -58,7 +58,7 @@ private:
     ExactSum& add_product(double a, double b, double c, bool subtracted) {
         const Parts p = parts(a), q = parts(b), r = parts(c);
         if (p.significand == 0 || q.significand == 0 || r.significand == 0) return *this;
-        const auto exponent = static_cast<std::size_t>(p.exponent + q.exponent + r.exponent);
+        const auto exponent = static_cast<unsigned>(p.exponent + q.exponent + r.exponent);
         Product x{static_cast<std::uint32_t>(p.significand), static_cast<std::uint32_t>(p.significand >> 32)};
         multiply(x, q.significand);
         multiply(x, r.significand);
