@@ -120,29 +120,24 @@ void write(std::ostream& out, const Ray<T, D>& r) {
 
 template <class T>
 constexpr const char* scalar_name = std::is_same_v<T, float> ? "float" : "double";
-template <class T, int D>
-std::string name_of(const Triangle<T, D>&) {
-    return std::string("Triangle<") + scalar_name<T> + ", " + std::to_string(D) + ">";
-}
-template <class T, int D>
-std::string name_of(const Segment<T, D>&) {
-    return std::string("Segment<") + scalar_name<T> + ", " + std::to_string(D) + ">";
-}
-template <class T, int D>
-std::string name_of(const Sphere<T, D>&) {
-    return std::string("Sphere<") + scalar_name<T> + ", " + std::to_string(D) + ">";
-}
-template <class T, int D>
-std::string name_of(const Vec<T, D>&) {
-    return std::string("Vec<") + scalar_name<T> + ", " + std::to_string(D) + ">";
-}
-template <class T, int D>
-std::string name_of(const Box<T, D>&) {
-    return std::string("Box<") + scalar_name<T> + ", " + std::to_string(D) + ">";
-}
-template <class T, int D>
-std::string name_of(const Ray<T, D>&) {
-    return std::string("Ray<") + scalar_name<T> + ", " + std::to_string(D) + ">";
+template <template <class, int> class Shape>
+inline constexpr const char* word_for = nullptr;
+template <>
+inline constexpr const char* word_for<Triangle> = "Triangle";
+template <>
+inline constexpr const char* word_for<Segment> = "Segment";
+template <>
+inline constexpr const char* word_for<Sphere> = "Sphere";
+template <>
+inline constexpr const char* word_for<Vec> = "Vec";
+template <>
+inline constexpr const char* word_for<Box> = "Box";
+template <>
+inline constexpr const char* word_for<Ray> = "Ray";
+
+template <template <class, int> class Shape, class T, int D>
+std::string name_of(const Shape<T, D>&) {
+    return word_for<Shape> + std::string("<") + scalar_name<T> + ", " + std::to_string(D) + ">";
 }
 
 }  // namespace hedgerow::hunter
