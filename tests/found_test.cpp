@@ -70,4 +70,26 @@ TEST(Found, Round1x1) {
     EXPECT_TRUE(is_exact(shapes[0], question));
 }
 
+// ---- Triangles in double that are 10^300 times as long as wide: products underflowed in the exact pass
+
+TEST(Found, Round99x621) {
+    const std::vector<Triangle<double, 3>> shapes = {
+        {{0, 0, 0}, {0, 0x0.0000000000001p-1022, 0}, {0, 0, -3}},
+    };
+    const Ray<double, 3> question = {{0, 0, -0x1.bp+1}, {1, 0, 0}, 0, INFINITY};
+    EXPECT_TRUE(as_brute_force("grid:resolution=33,skip_empty=on", shapes, question));
+    EXPECT_TRUE(as_brute_force("bsp:max_depth=4,intersection_cost=20", shapes, question));
+    EXPECT_TRUE(is_exact(shapes[0], question));
+}
+TEST(Found, Round99x621ByExactArithmetic) {
+    const Triangle<double, 3> shape = {{-4, 0x0.0000000000002p-1022, -4},
+                                       {1, 0, 4},
+                                       {0x1.0000000000004p+0, 0x0.0000000000001p-1022, 0x1.ffffffffffffp+1}};
+    const Ray<double, 3> question = {{0x1.fa34f0cbe4a2p-1, 0x0.0000000000001p-1022, 0x1.428df34673008p+1},
+                                     {0, 0, 0x1.7ae4197319ff4p+0},
+                                     0,
+                                     INFINITY};
+    EXPECT_TRUE(is_exact(shape, question));
+}
+
 }  // namespace

@@ -1,8 +1,11 @@
 /// Ray meets shape: triangle (in the three ways of the field), sphere, segment, box.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 
+#include <hedgerow/geometry/exact_sum.h>
 #include <hedgerow/geometry/ray.h>
 #include <hedgerow/geometry/shapes.h>
 
@@ -117,19 +120,36 @@ constexpr ShearedCorner<T> shear(const WatertightRay<T>& ray, const Vec<T, 3>& c
 }
 
 namespace detail {
-/// The scaling that brings the corners to about 1, so that no product under- or overflows. A power of two.
-inline double scale_of(const ShearedCorner<double>& a, const ShearedCorner<double>& b,
-                       const ShearedCorner<double>& c) {
-    double m = 0;
-    for (const double x : {a.x, a.y, b.x, b.y, c.x, c.y}) m = std::fabs(x) > m ? std::fabs(x) : m;
-    return scale_to_one(m);
+/// Powers of two that bring the corners to about 1, each axis by itself: a triangle may be 10³⁰⁰ times as
+/// long as it is wide.
+struct ShearedScale {
+    double x = 1, y = 1;
+};
+constexpr ShearedScale scale_of(const ShearedCorner<float>&, const ShearedCorner<float>&,
+                                const ShearedCorner<float>&) {
+    return {};  // products of floats are exact in double as they are
 }
-/// x1·y2 − x2·y1, exact in sign. Products of floats are exact in double.
-constexpr double edge(const ShearedCorner<float>& p, const ShearedCorner<float>& q, double) {
+inline ShearedScale scale_of(const ShearedCorner<double>& a, const ShearedCorner<double>& b,
+                             const ShearedCorner<double>& c) {
+    const auto largest = [](double p, double q, double r) {
+        return std::max({std::fabs(p), std::fabs(q), std::fabs(r)});
+    };
+    return {scale_to_one(largest(a.x, b.x, c.x)), scale_to_one(largest(a.y, b.y, c.y))};
+}
+
+/// x1·y2 − x2·y1, exact in sign.
+constexpr double edge(const ShearedCorner<float>& p, const ShearedCorner<float>& q, const ShearedScale&) {
     return product(double(p.x), double(q.y)) - product(double(p.y), double(q.x));
 }
-inline double edge(const ShearedCorner<double>& p, const ShearedCorner<double>& q, double scale) {
-    return difference_of_products(p.x * scale, q.y * scale, p.y * scale, q.x * scale);
+/// The same where the scaled products may underflow: the sign of the exact value, and the least magnitude.
+[[gnu::noinline]] inline double tiny_edge(const ShearedCorner<double>& p, const ShearedCorner<double>& q,
+                                          double value) {
+    const int sign = ExactSum().add(p.x, q.y).subtract(p.y, q.x).sign();
+    return sign * std::max(std::fabs(value), std::numeric_limits<double>::denorm_min());
+}
+inline double edge(const ShearedCorner<double>& p, const ShearedCorner<double>& q, const ShearedScale& s) {
+    const double value = difference_of_products(p.x * s.x, q.y * s.y, p.y * s.y, q.x * s.x);
+    return std::fabs(value) > 0x1p-900 ? value : tiny_edge(p, q, value);
 }
 }  // namespace detail
 
@@ -139,8 +159,7 @@ inline double edge(const ShearedCorner<double>& p, const ShearedCorner<double>& 
 template <class T>
 std::optional<Meeting<T>> meet_exactly(const WatertightRay<T>& ray, const ShearedCorner<T>& a,
                                        const ShearedCorner<T>& b, const ShearedCorner<T>& c) {
-    double scale = 1;
-    if constexpr (std::is_same_v<T, double>) scale = detail::scale_of(a, b, c);
+    const auto scale = detail::scale_of(a, b, c);
     const double u = detail::edge(c, b, scale);
     const double v = detail::edge(a, c, scale);
     const double w = detail::edge(b, a, scale);
