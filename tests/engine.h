@@ -22,6 +22,22 @@ private:
     std::string_view before_;
 };
 
+/// Calls f(index, instruction set) for the index of each width, with each instruction set in use.
+template <class F>
+void for_each_kernel(const TriangleMesh<float>& mesh, F f) {
+    for (const int width : wide_widths) {
+        WideOptions options;
+        options.width = width;
+        const auto index = build<WideBvh>(mesh, options);
+        for (const auto set : instruction_sets()) {
+            SCOPED_TRACE(std::string(set) + ", width " + std::to_string(width));
+            const Using use(set);
+            f(index, set);
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    }
+}
+
 /// What the engine answers to rays: in a batch, and one at a time.
 struct Answers {
     std::vector<Hit<float>> batch, one;

@@ -35,25 +35,14 @@ void expect_by_every_kernel(const TriangleMesh<float>& mesh) {
     const Box3f box = brute.bounds();
     const Expected<float> separate(brute, apart(box, targets_of(mesh), 700)),
         coherent(brute, together(box, 700));
-    for (const int width : wide_widths) {
-        WideOptions options;
-        options.width = width;
-        const auto index = build<WideBvh>(mesh, options);
-        for (const auto set : instruction_sets()) {
-            SCOPED_TRACE(std::string(set) + ", width " + std::to_string(width));
-            const Using use(set);
-            expect_all_filters(index, separate);
-            expect_all_filters(index, coherent);
-            std::vector<Hit<float>> hits(coherent.rays.size());
-            EXPECT_EQ(closest_hits(
-                          index, coherent.rays, hits, serial_executor(),
-                          [](const Hit<float>&) {
-                              return false;
-                          }).packets > 0,
-                      set != "plain");
-            if (testing::Test::HasFatalFailure()) return;
-        }
-    }
+    for_each_kernel(mesh, [&](const auto& index, std::string_view set) {
+        expect_all_filters(index, separate);
+        expect_all_filters(index, coherent);
+        std::vector<Hit<float>> hits(coherent.rays.size());
+        const auto use = closest_hits(index, coherent.rays, hits, serial_executor(),
+                                      [](const Hit<float>&) { return false; });
+        EXPECT_EQ(use.packets > 0, set != "plain");
+    });
 }
 
 TEST(Filters, GiveTheBitsOfBruteForceByEveryKernel) {

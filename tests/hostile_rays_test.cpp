@@ -88,17 +88,8 @@ TEST(HostileRays, ByEveryKernel) {
           with_hostile_among(coherent, hostile, 7)}) {
         const auto want = closest_of(brute, std::span(rays));
         ASSERT_GT(hits_among(want), rays.size() / 16);
-        for (const int width : wide_widths) {
-            WideOptions options;
-            options.width = width;
-            const auto index = build<WideBvh>(mesh, options);
-            for (const auto set : instruction_sets()) {
-                SCOPED_TRACE(std::string(set) + ", width " + std::to_string(width));
-                const Using use(set);
-                expect_hits(want, Answers(index, rays));
-                if (HasFatalFailure()) return;
-            }
-        }
+        for_each_kernel(
+            mesh, [&](const auto& index, std::string_view) { expect_hits(want, Answers(index, rays)); });
     }
 }
 

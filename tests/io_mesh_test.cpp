@@ -149,6 +149,20 @@ TEST(Polygons, ConvexOnesBecomeFansThatKnowTheirFace) {
     }
 }
 
+TEST(Off, HeadersAreReadAsTheyAreWritten) {
+    TempFolder folder;
+    const std::string rest = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    int n = 0;
+    for (const std::string header : {"OFF\n3 1 0\n", "off\n3 1 0\n", "  \n\t OFF\r\n\n 3 1 0\n",
+                                     "OFF 3\n# faces, edges\n1 0\n", "3 1 0\n", "OFF\n3 1\n"}) {
+        const auto path = folder.file(std::to_string(n++) + ".off", header + rest);
+        EXPECT_EQ(load_mesh(path).triangles, (std::vector<TriangleIndices>{{0, 1, 2}})) << header;
+    }
+    for (const std::string header :
+         {"OOF\n3 1 0\n", "4OFF\n3 1 0\n", "OFF BINARY\n3 1 0\n", "OFF\nthree 1 0\n"})
+        expect_input_error([&] { load_mesh(folder.file("bad.off", header + rest)); }, {"bad.off"});
+}
+
 TEST(Obj, AgreesWithTinyobjloader) {
     TempFolder folder;
     std::mt19937_64 random(3);

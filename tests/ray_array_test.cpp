@@ -91,24 +91,17 @@ void expect_same_in_every_layout(const Index& index, std::span<const Ray<T, 3>> 
 TEST(RayArrays, EveryLayoutGivesTheSameBits) {
     const auto mesh = teapot_in_stadium<float>(1000);
     const auto targets = targets_of(mesh);
-    for (const int width : wide_widths) {
-        WideOptions options;
-        options.width = width;
-        const auto index = build<WideBvh>(mesh, options);
-        const auto go_apart = apart(index.bounds(), targets, 5000);
-        const auto go_together = together(index.bounds(), 5000);
-        std::vector<std::size_t> counts = {0, 1, 2, 3, 5000};
-        for (std::size_t n = 4; n <= 200; n += in_long_runs(1, 5)) counts.push_back(n);
-        for (const auto set : instruction_sets())
-            for (const std::size_t count : counts) {
-                SCOPED_TRACE(std::string(set) + ", width " + std::to_string(width));
-                const Using use(set);
-                expect_same_in_every_layout<decltype(index), float>(index, std::span(go_apart).first(count));
-                expect_same_in_every_layout<decltype(index), float>(index,
-                                                                    std::span(go_together).first(count));
-                if (testing::Test::HasFatalFailure()) return;
-            }
-    }
+    const Box3f box = build<BruteForce>(mesh).bounds();
+    const auto go_apart = apart(box, targets, 5000), go_together = together(box, 5000);
+    std::vector<std::size_t> counts = {0, 1, 2, 3, 5000};
+    for (std::size_t n = 4; n <= 200; n += in_long_runs(1, 5)) counts.push_back(n);
+    for_each_kernel(mesh, [&](const auto& index, std::string_view) {
+        for (const std::size_t count : counts) {
+            expect_same_in_every_layout<decltype(index), float>(index, std::span(go_apart).first(count));
+            expect_same_in_every_layout<decltype(index), float>(index, std::span(go_together).first(count));
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    });
 }
 
 /// Packets are taken of rays that go together, however they lie.

@@ -40,6 +40,12 @@ double error_of(const Vec<T, D>& a, const Vec<double, D>& b) {
     return length(Vec<double, D>(a) - b);
 }
 
+/// ray.at(t) without its roundings.
+template <class T, int D>
+Vec<double, D> exactly_at(const Ray<T, D>& ray, T t) {
+    return Vec<double, D>(ray.origin) + Vec<double, D>(ray.direction) * double(t);
+}
+
 TYPED_TEST(Surface, OfTriangles) {
     using T = TypeParam;
     const auto mesh = teapot<T>(500);
@@ -50,9 +56,7 @@ TYPED_TEST(Surface, OfTriangles) {
                                const auto t = mesh.view().triangle(hit.element);
                                const Vec3d a(t.a), b(t.b), c(t.c);
                                const auto p = position(index, hit), n = normal(mesh, hit);
-                               EXPECT_LT(
-                                   error_of(p, Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t)),
-                                   512 * u);
+                               EXPECT_LT(error_of(p, exactly_at(ray, hit.t)), 512 * u);
                                EXPECT_EQ(p, position(mesh, ray, hit));
                                EXPECT_EQ(n, normal(index, ray, hit));
                                EXPECT_NEAR(length(Vec3d(n)), 1, 4 * u);
@@ -108,9 +112,7 @@ TYPED_TEST(Surface, OfSpheres) {
                                const auto p = position(index, ray, hit), n = normal(index, ray, hit);
                                const double radius = static_cast<double>(ball.radius);
                                EXPECT_NEAR(length(Vec3d(p) - center), radius, 4 * u);
-                               EXPECT_LT(
-                                   error_of(p, Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t)),
-                                   512 * u);
+                               EXPECT_LT(error_of(p, exactly_at(ray, hit.t)), 512 * u);
                                EXPECT_LT(error_of(n, (Vec3d(p) - center) / radius), 512 * u);
                            }),
               100u);
@@ -129,9 +131,7 @@ TYPED_TEST(Surface, OfSegments) {
                                const auto s = set.view().segment(hit.element);
                                const Vec2d along = normalized(Vec2d(s.b) - Vec2d(s.a));
                                const auto p = position(index, hit), n = normal(index, hit);
-                               EXPECT_LT(
-                                   error_of(p, Vec2d(ray.origin) + Vec2d(ray.direction) * double(hit.t)),
-                                   512 * u);
+                               EXPECT_LT(error_of(p, exactly_at(ray, hit.t)), 512 * u);
                                EXPECT_LT(error_of(n, Vec2d(-along[1], along[0])), 4 * u);
                            }),
               100u);
@@ -158,9 +158,7 @@ TYPED_TEST(Surface, OfInstances) {
                                            c = there.point(Vec3d(own.c));
                                const auto p = position(index, hit), n = normal(set, hit);
                                EXPECT_EQ(p, position(index, ray, hit));
-                               EXPECT_LT(
-                                   error_of(p, Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t)),
-                                   4096 * u);
+                               EXPECT_LT(error_of(p, exactly_at(ray, hit.t)), 4096 * u);
                                EXPECT_NEAR(dot(Vec3d(n), normalized(b - a)), 0, 64 * u);
                                EXPECT_NEAR(dot(Vec3d(n), normalized(c - a)), 0, 64 * u);
                                EXPECT_NEAR(length(Vec3d(n)), 1, 4 * u);

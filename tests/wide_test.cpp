@@ -92,24 +92,16 @@ TEST(Wide, DegenerateMeshesAsBruteForce) {
 TEST(Wide, BatchesOfAnySize) {
     const auto mesh = teapot_in_stadium<float>(1000);
     const auto targets = targets_of(mesh);
-    for (const int width : wide_widths) {
-        WideOptions options;
-        options.width = width;
-        const auto index = build<WideBvh>(mesh, options);
-        for (const auto set : instruction_sets())
-            for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 17u, 31u, 33u, 64u, 65u, 257u, 5000u}) {
-                SCOPED_TRACE(std::string(set) + " " + std::to_string(count));
-                std::vector<Ray3f> rays(count);
-                for (std::size_t i = 0; i < count; ++i) rays[i] = ray_of(index.bounds(), targets, 7 * i);
-                const auto want = hits_of_the_walk(index, rays);
-                const Using use(set);
-                expect_hits(want, Answers(index, rays));
-                if (testing::Test::HasFatalFailure()) return;
-            }
-    }
+    for_each_kernel(mesh, [&](const auto& index, std::string_view) {
+        for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 17u, 31u, 33u, 64u, 65u, 257u, 5000u}) {
+            std::vector<Ray3f> rays(count);
+            for (std::size_t i = 0; i < count; ++i) rays[i] = ray_of(index.bounds(), targets, 7 * i);
+            expect_hits(hits_of_the_walk(index, rays), Answers(index, rays));
+            if (testing::Test::HasFatalFailure()) return;
+        }
+    });
 }
 
-/// Rays that go together: by a camera, from a light, and parallel ones.
 TEST(Wide, CoherentRays) {
     const auto mesh = teapot_in_stadium<float>(3000);
     const auto index = build<WideBvh>(mesh);

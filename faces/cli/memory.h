@@ -11,10 +11,6 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Bytes that this process may take: what the machine has, swap included, or less where a limit is set
-/// (ulimit -v, a control group).
-double memory_at_hand();
-
 /// Throws MemoryShort, with both figures, if `what` takes more bytes than there are. `instead` says what to
 /// ask for, as "ask for a smaller picture".
 void expect_memory(const std::string& what, double bytes, const std::string& instead);

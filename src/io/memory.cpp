@@ -15,7 +15,7 @@
 #define HEDGEROW_HAS_RLIMIT 0
 #endif
 
-namespace hedgerow::detail {
+namespace hedgerow {
 
 namespace {
 
@@ -54,14 +54,17 @@ std::uint64_t soft_limit(Resource resource) {
 std::uint64_t memory_left() {
     constexpr const char* status = "/proc/self/status";
     std::uint64_t left = kilobytes("/proc/meminfo", "MemAvailable:", unlimited);
-    left =
-        std::min(left, difference(first_number("/sys/fs/cgroup/memory.max"), kilobytes(status, "VmRSS:", 0)));
+    if (left != unlimited) left += kilobytes("/proc/meminfo", "SwapFree:", 0);
+    for (const char* group : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
+        left = std::min(left, difference(first_number(group), kilobytes(status, "VmRSS:", 0)));
 #if HEDGEROW_HAS_RLIMIT
     left = std::min(left, difference(soft_limit(RLIMIT_AS), kilobytes(status, "VmSize:", 0)));
     left = std::min(left, difference(soft_limit(RLIMIT_DATA), kilobytes(status, "VmData:", 0)));
 #endif
     return left;
 }
+
+namespace detail {
 
 std::string bytes_text(std::uint64_t bytes) {
     char text[32];
@@ -80,4 +83,6 @@ void expect_memory(const std::string& name, const std::string& what, std::uint64
                      bytes_text(left) + " can be had. Split the file, or read it where there is more");
 }
 
-}  // namespace hedgerow::detail
+}  // namespace detail
+
+}  // namespace hedgerow

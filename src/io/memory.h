@@ -1,4 +1,4 @@
-/// How much memory there is, so that what does not fit is refused before it is taken.
+/// Files that need more memory than there is are refused before it is taken.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,9 @@
 #include <string>
 
 #include <hedgerow/error.h>
+#include <hedgerow/io/memory.h>
 
 namespace hedgerow::detail {
-
-/// Bytes that this process may still take: what the machine has free, or less where the process is limited
-/// (RLIMIT_AS, RLIMIT_DATA, its control group). The largest number where the system does not say.
-std::uint64_t memory_left();
 
 /// "1.5 GB": a number of bytes as a person reads it.
 std::string bytes_text(std::uint64_t bytes);

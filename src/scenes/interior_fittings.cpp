@@ -6,11 +6,6 @@
 namespace hedgerow::detail {
 namespace {
 
-Outline square_bar(double width) {
-    const double h = width / 2;
-    return {{{h, h}, {-h, h}, {-h, -h}, {h, -h}}};
-}
-
 /// A moulding whose profile in (y, z) goes along x.
 void moulding(Model& m, const Place& p, const std::vector<Vec2d>& profile, double length) {
     m.loft(p, {}, Axis::x, {profile, false}, {{1, 0}, {1, length}});
@@ -49,8 +44,7 @@ void door(Model& m, const Place& p, const Vec2d& size, const Vec2d& ajar) {
         for (const double side : {0.0, -thick}) {
             // A frame of a raised panel: across y the outline is in (z, x); on the back it is turned over.
             const double a = (high[row] - low[row]) / 2, b = width / 2 - 0.1, out = side == 0 ? 1 : -1;
-            m.loft(leaf, {width / 2, side, (low[row] + high[row]) / 2}, Axis::y,
-                   {{{a, b * out}, {-a, b * out}, {-a, -b * out}, {a, -b * out}}},
+            m.loft(leaf, {width / 2, side, (low[row] + high[row]) / 2}, Axis::y, rectangle(a, b * out),
                    {{1, 0}, {0.98, 0.009 * out}, {0.96, 0.009 * out}, {0.94, 0.003 * out}, {0, 0.003 * out}});
         }
     for (const double out : {1.0, -1.0}) {
@@ -74,9 +68,9 @@ void window(Model& m, const Place& p, const Vec2d& size) {
     m.box(p, {0, -0.03, frame}, {frame, 0.03, size[1] - frame});
     m.box(p, {size[0] - frame, -0.03, frame}, {size[0], 0.03, size[1] - frame});
     for (int i = 1; i < 4; ++i)
-        m.bar(p, {size[0] * i / 4, 0, frame}, Axis::z, square_bar(bar), size[1] - 2 * frame);
+        m.bar(p, {size[0] * i / 4, 0, frame}, Axis::z, rectangle(bar / 2, bar / 2), size[1] - 2 * frame);
     for (int i = 1; i < 4; ++i)
-        m.bar(p, {frame, 0, size[1] * i / 4}, Axis::x, square_bar(bar), size[0] - 2 * frame);
+        m.bar(p, {frame, 0, size[1] * i / 4}, Axis::x, rectangle(bar / 2, bar / 2), size[0] - 2 * frame);
     m.loft(p, {-0.06, 0.18, -0.015}, Axis::x, m.rounded(0.14, 0.015, 0.01),
            {{0, 0}, {1, 0}, {1, size[0] + 0.12}, {0, size[0] + 0.12}});
 }
@@ -106,7 +100,7 @@ void blind(Model& m, const Place& p, const Vec2d& size) {
     for (int i = 0; i < slats; ++i)
         m.loft(p, {0.01, 0, spacing * (i + 0.5)}, Axis::x, {slat, false}, {{1, 0}, {1, size[0] - 0.02}});
     for (int i = 1; i < 4; ++i)  // cords
-        m.bar(p, {size[0] * i / 4, 0, 0}, Axis::z, square_bar(0.001), size[1]);
+        m.bar(p, {size[0] * i / 4, 0, 0}, Axis::z, rectangle(0.0005, 0.0005), size[1]);
     m.box(p, {0, -0.02, size[1]}, {size[0], 0.02, size[1] + 0.03});
 }
 
@@ -175,8 +169,7 @@ void tiles(Model& m, const Place& p, int columns, int rows) {
     const double pitch = 0.1, half = (pitch - 0.003) / 2;
     for (int i = 0; i < columns; ++i)
         for (int k = 0; k < rows; ++k)
-            m.loft(p, {(i + 0.5) * pitch, 0, (k + 0.5) * pitch}, Axis::y,
-                   {{{half, half}, {-half, half}, {-half, -half}, {half, -half}}},
+            m.loft(p, {(i + 0.5) * pitch, 0, (k + 0.5) * pitch}, Axis::y, rectangle(half, half),
                    {{1, 0}, {1, 0.005}, {0.97, 0.007}, {0, 0.007}});
 }
 

@@ -22,7 +22,7 @@ void cushion(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
 /// A board with edges that are broken by 2 mm.
 void board(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
     const double a = size[0] / 2, b = size[1] / 2, edge = 0.002, inner = 1 - edge / (a < b ? b : a);
-    m.loft(p, foot, Axis::z, {{{a, b}, {-a, b}, {-a, -b}, {a, -b}}},
+    m.loft(p, foot, Axis::z, rectangle(a, b),
            {{0, 0}, {inner, 0}, {1, edge}, {1, size[2] - edge}, {inner, size[2]}, {0, size[2]}});
 }
 
@@ -143,7 +143,7 @@ void cupboard(Model& m, const Place& p, const Vec3d& size, int doors) {
         // Across y the outline is in (z, x).
         const double a = (height - gap) / 2, b = (width - gap) / 2;
         const Vec3d middle(x, size[1] - leaf, plinth + height / 2);
-        m.loft(p, middle, Axis::y, {{{a, b}, {-a, b}, {-a, -b}, {a, -b}}},
+        m.loft(p, middle, Axis::y, rectangle(a, b),
                {{0, 0},
                 {1, 0},
                 {1, leaf - 0.001},

@@ -35,6 +35,10 @@ struct Outline {
     std::vector<Vec2d> points;
     bool closed = true;
 };
+/// A rectangle around 0, by half of its sizes.
+inline Outline rectangle(double a, double b) {
+    return {{{a, b}, {-a, b}, {-a, -b}, {a, -b}}};
+}
 /// How large the outline is, and where along the axis it is that large. No size: the outline is a point.
 using Section = std::vector<Vec2d>;
 

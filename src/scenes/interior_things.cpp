@@ -178,7 +178,7 @@ void pens(Model& m, const Place& p, Random random) {
 
 void picture(Model& m, const Place& p, const Vec2d& size) {
     const double a = size[1] / 2, b = size[0] / 2;  // across y the outline is in (z, x)
-    m.loft(p, {}, Axis::y, {{{a, b}, {-a, b}, {-a, -b}, {a, -b}}},
+    m.loft(p, {}, Axis::y, rectangle(a, b),
            m.curve({{1, 0},
                     {1, 0.02},
                     {1, 0.02},

@@ -1,0 +1,13 @@
+/// How much memory there is.
+#pragma once
+
+#include <cstdint>
+
+namespace hedgerow {
+
+/// Bytes that this process may still take: what the machine has free, swap included, or less where the
+/// process is limited (RLIMIT_AS, RLIMIT_DATA, its control group). The largest number where the system does
+/// not say. Reads a few of the system's files: some 50 µs.
+std::uint64_t memory_left();
+
+}  // namespace hedgerow
