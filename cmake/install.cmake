@@ -22,15 +22,17 @@ function(hedgerow_install_headers component)
           FILES_MATCHING PATTERN "*.h")
 endfunction()
 
-# hedgerow_pkg_config(COMPONENT PACKAGES...): its pkg-config file, hedgerow-COMPONENT.pc. What a static library is made
-# with, its users have to link too.
+# hedgerow_pkg_config(COMPONENT COMPONENTS PACKAGES...): its pkg-config file, hedgerow-COMPONENT.pc, with what its
+# headers need of hedgerow's own and the packages that it is made with. Users of a static library link those too.
 file(RELATIVE_PATH hedgerow_prefix_from_pc /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
-function(hedgerow_pkg_config component)
-  list(JOIN ARGN " " requires)
-  set(requires_keyword Requires)
-  if(BUILD_SHARED_LIBS AND component STREQUAL "core")
-    set(requires_keyword Requires.private)
+function(hedgerow_pkg_config component requires)
+  set(requires_private ${ARGN})
+  if(NOT BUILD_SHARED_LIBS)
+    list(APPEND requires ${ARGN})
+    set(requires_private)
   endif()
+  list(JOIN requires " " requires)
+  list(JOIN requires_private " " requires_private)
   configure_file(cmake/hedgerow.pc.in hedgerow-${component}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/hedgerow-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
           COMPONENT ${component})
@@ -44,7 +46,7 @@ endif()
 if(HEDGEROW_QHULL)
   list(APPEND core_packages qhull_r)
 endif()
-hedgerow_pkg_config(core ${core_packages})
+hedgerow_pkg_config(core "" ${core_packages})
 install(DIRECTORY include/hedgerow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT core
         FILES_MATCHING PATTERN "*.h"
         PATTERN include/hedgerow/compare EXCLUDE PATTERN include/hedgerow/io EXCLUDE

@@ -134,12 +134,12 @@ TEST(Crowded, AResolutionByHandIsKept) {
 TEST(Crowded, LessThanAnItemAPrimitiveIsRefused) {
     const auto mesh = cube<float>(12);
     for (const double bad : {0.0, 0.5, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
-        EXPECT_THROW(build<Grid>(mesh, {.items_per_primitive = bad}), InputError) << bad;
-        EXPECT_THROW(build<TwoLevelGrid>(mesh, {.items_per_primitive = bad}), InputError) << bad;
-        EXPECT_THROW(build<Orthtree>(mesh, {.items_per_primitive = bad}), InputError) << bad;
-        EXPECT_THROW(build<BspTree>(mesh, {.items_per_primitive = bad}), InputError) << bad;
+        EXPECT_THROW(build<Grid>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
+        EXPECT_THROW(build<TwoLevelGrid>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
+        EXPECT_THROW(build<Orthtree>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
+        EXPECT_THROW(build<BspTree>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
         if (bad == 0) continue;  // by the builder
-        EXPECT_THROW(build<KdTree>(mesh, {.items_per_primitive = bad}), InputError) << bad;
+        EXPECT_THROW(build<KdTree>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
     }
 }
 

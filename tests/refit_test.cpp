@@ -90,6 +90,51 @@ TYPED_TEST(Refit, TellsHowFarTheQualityDrifts) {
     EXPECT_EQ(index.refit(still.view()), 1);
 }
 
+/// Throws when work is split for the k-th time.
+class Failing final : public Executor {
+public:
+    explicit Failing(int k) : k_(k) {}
+    void for_each_piece(std::size_t count, std::size_t,
+                        FunctionRef<void(std::size_t, std::size_t)> body) override {
+        split();
+        for (std::size_t i = 0; i < count; i += worth_a_task) body(i, std::min(count, i + worth_a_task));
+    }
+    void both(FunctionRef<void()> first, FunctionRef<void()> second) override {
+        first();
+        split();
+        second();
+    }
+
+private:
+    void split() {
+        if (--k_ == 0) throw Cancelled("the k-th split");
+    }
+    int k_;
+};
+
+TYPED_TEST(Refit, ThatIsStoppedAnywhereLeavesAnIndexThatIsRight) {
+    const auto still = soup<float>(20000), moved = swayed(still, 0.3f);
+    const auto then = build<BruteForce>(still), now = build<BruteForce>(moved);
+    const Questions questions(now, 20);
+    const auto of_still = answers(then, questions), of_moved = answers(now, questions);
+    int finished = 0, stopped = 0;
+    for (int k = 1; k < 100; ++k) {
+        auto index = TypeParam::over(still);
+        Failing failing(k);
+        try {
+            index.refit(moved.view(), failing);
+            break;
+        } catch (const Cancelled&) {
+            ++stopped;
+        }
+        const auto got = answers(index, questions);
+        finished += got == of_moved;
+        EXPECT_TRUE(got == of_moved || got == of_still) << "split " << k;
+    }
+    EXPECT_GT(finished, 0);
+    EXPECT_GT(stopped, finished);
+}
+
 TYPED_TEST(Refit, ThatIsRefusedLeavesTheIndexAsItWas) {
     const auto still = teapot<float>(2000);
     auto mesh = still;

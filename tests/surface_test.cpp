@@ -87,6 +87,34 @@ TEST(Surface, IsMetAsExactlyFromAfar) {
     EXPECT_GT(off_the_plane, 20);
 }
 
+/// A sphere's, too: t is rounded by as much as the way is long, and the ball is smaller than that.
+TEST(Surface, OfSpheresIsMetAsExactlyFromAfar) {
+    const SphereSet<float, 3> set{{{{0, 0, 0}, 0.01f}}};
+    const auto index = build<Bvh>(set);
+    int hits = 0;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+        Random random(43, i);
+        const Vec3f from = Vec3f(random.direction<3>()) * 1e4f;
+        const Ray3f ray{from, -from * 0.3f};
+        const auto hit = closest_hit(index, ray);
+        if (!hit) continue;
+        ++hits;
+        const Vec3d along = normalized(Vec3d(ray.direction)), p(position(index, ray, *hit));
+        EXPECT_LT(length(cross(along, p - Vec3d(from))), 1e-8) << "from the ray's line";
+    }
+    EXPECT_GT(hits, 100);
+}
+
+/// The rounded product of this triangle's edges is 0, and still rays hit it.
+TEST(Surface, OfASliverHasADirection) {
+    const double u = 0x1p-53;
+    const TriangleMesh<double> mesh{{{0, 0, 0}, {1, 1 - u, 0}, {1 - u, 1 - 2 * u, 0}}, {{0, 1, 2}}, {}};
+    const Ray<double, 3> ray{{0, 0, 5}, {0, 0, -1}};
+    const auto hit = closest_hit(build<BruteForce>(mesh), ray);
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(std::abs(normal(mesh, ray, *hit)[2]), 1);
+}
+
 /// Triangles at both ends of the range have normals, though their areas' squares are beyond it.
 TYPED_TEST(Surface, OfTinyAndHugeTriangles) {
     using T = TypeParam;

@@ -191,8 +191,10 @@ void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scal
     });
 }
 
-/// A list for each of many questions: `found[i]` is what the function of the same name finds for question i.
-/// Takes the memory of all answers, twice while it runs.
+/// A list for each of many questions: `found[i]` is what the function of the same name finds for question i,
+/// with the same limits (`max_distance2` is squared) and filters, which may take the ray's number too. What a
+/// filter throws comes out. Takes the memory of all answers, up to three times while it runs. O(of each
+/// question).
 ///
 ///   const auto hits = all_hits(index, rays);
 ///   for (const Hit<float>& hit : hits[7]) ...

@@ -13,8 +13,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// A request that no input could satisfy: a structure, scene or option that does not exist, or a value out of
-/// its range. The tool answers it with exit code 2.
+/// The request is at fault, not the input: a structure, scene or option that does not exist, a value out of
+/// its range, or a structure that does not suit the primitives. The tool answers it with exit code 2.
 class UsageError : public InputError {
 public:
     using InputError::InputError;

@@ -139,7 +139,7 @@ public:
     /// After borrowed primitives moved where they lie: fits the structure to them, and returns how far its
     /// quality has drifted, as a multiple of its cost when it was built. O(n). No query may run meanwhile.
     /// Throws InputError as `build` does, and then the index is as it was, valid for the primitives of
-    /// before. (Only an executor that throws on its own may leave boxes of both.)
+    /// before. What an executor throws comes out too, from half way on after the refit was finished.
     double refit(Executor& executor = serial_executor()) requires(Refittable<S, P>) {
         return refit(primitives_, executor);
     }
@@ -152,9 +152,18 @@ public:
             IeeeExecutor threads(executor);
             const auto references = references_of(moved, threads);
             auto leaves = pack(moved, structure_, threads);
-            structure_.refit(references, threads);
-            leaves_ = std::move(leaves);
-            primitives_ = moved;
+            const auto take = [&](Executor& by) {
+                structure_.refit(references, by);
+                leaves_ = std::move(leaves);
+                primitives_ = moved;
+            };
+            threads.look();
+            try {
+                take(threads);
+            } catch (...) {
+                take(serial_executor());
+                throw;
+            }
             return structure_.drift();
         });
     }

@@ -2,6 +2,8 @@
 /// rounded once.
 #pragma once
 
+#include <hedgerow/geometry/entry.h>
+#include <hedgerow/geometry/exact_sum.h>
 #include <hedgerow/primitives/instance_set.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/hit.h>
@@ -33,10 +35,17 @@ template <int D>
 Vec<double, D> unit(const Vec<double, D>& a) {  // by way of the largest component, whose square fits
     return normalized(a / max_component(abs(a)));
 }
+/// Of any triangle that rays can hit: on slivers, whose product cancels to 0, by its exact signs.
 inline Vec3d unit_normal(const Triangle<double, 3>& t) {
-    const Vec3d e1 = t.b - t.a, e2 = t.c - t.a;
-    const double size = max_component(max(abs(e1), abs(e2)));
-    return unit(cross(e1 / size, e2 / size));
+    Vec3d e1 = t.b - t.a, e2 = t.c - t.a, n;
+    const double scale = scale_to_one(max_component(max(abs(e1), abs(e2))));
+    e1 = e1 * scale, e2 = e2 * scale;
+    const auto across = [&](auto component) {
+        for (int k = 0; k < 3; ++k) n[k] = component((k + 1) % 3, (k + 2) % 3);
+    };
+    across([&](int i, int j) { return difference_of_products(e1[i], e2[j], e1[j], e2[i]); });
+    if (max_component(abs(n)) == 0) across([&](int i, int j) { return exact_turn(t.a, t.b, t.c, i, j); });
+    return unit(n);
 }
 /// The ray in the space of an instance.
 template <class I, int D>
@@ -65,7 +74,12 @@ Vec<double, D> normal_on(const P& set, const Ray<double, D>& ray, const Hit<T>& 
         return unit(V(-along[1], along[0]));
     } else {
         static_assert(OfSpheres<P>, "the normal of a type of your own is for you to say");
-        const V outward = ray.at(static_cast<double>(hit.t)) - V(set.sphere(hit.element).center);
+        const auto s = set.sphere(hit.element);
+        const Sphere<double, D> ball{V(s.center), static_cast<double>(s.radius)};
+        double t = static_cast<double>(hit.t);  // rounded by as much as the way is long: met again in double
+        if (const auto both = meet_line(ray.origin, ray.direction, ball))
+            t = std::abs(both->entry - t) < std::abs(both->exit - t) ? both->entry : both->exit;
+        const V outward = ray.at(t) - ball.center;
         return unit(max_component(abs(outward)) > 0 ? outward : -ray.direction);  // a ball may be a point
     }
 }
@@ -112,8 +126,9 @@ Ray<double, D> line_of(const Ray<T, D>& ray) {
 }  // namespace detail
 
 /// The hit point for the ray that was asked: from u and v on triangles and segments, on the surface of a
-/// sphere, and at ray.at(t) on a type of your own. The first three err by some roundings of the primitive's
-/// coordinates, however far the ray came; ray.at(t) errs by some of the way. `of` is the index that was
+/// sphere, and at ray.at(t) on a type of your own. The first two err by some roundings of the primitive's
+/// coordinates, however far the ray came; a sphere's lies on it to as many, and is the place that doubles
+/// find; ray.at(t) errs by some roundings of the way. `of` is the index that was
 /// asked, or its primitives. O(1).
 template <class Of, class T, int D>
 Vec<T, D> position(const Of& of, const Ray<T, D>& ray, const Hit<T>& hit) {

@@ -9,7 +9,7 @@ CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>& references, Cor
                                       const BspOptions& options, double margin, Executor& executor) {
     const int deepest =
         std::min(bsp_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(references.size()));
-    const BspCutter<T, D> cutter(corners, options, margin);
+    const BspCutter<T, D> cutter(corners, options, margin, executor);
     const std::uint64_t most = most_items(options.items_per_primitive, references.size());
     return CutTreeGrowth<BspNode<T, D>, BspCutter<T, D>>(cutter, deepest, most, executor).grow([&] {
         return cutter.root(references);

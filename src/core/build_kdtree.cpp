@@ -8,19 +8,23 @@
 namespace hedgerow {
 
 template <std::floating_point T, int D>
-CutTree<KdNode<T>> build_kd_tree(KdCell<T, D> root, PartIn<T, D> part_in, const KdOptions& options,
-                                 Executor& executor) {
+CutTree<KdNode<T>> build_kd_tree(FunctionRef<KdCell<T, D>()> root, PartIn<T, D> part_in,
+                                 const KdOptions& options, Executor& executor) {
+    auto first = std::optional(root());
+    const std::size_t count = first->inside.size();
+    if (count == 0) return {};
     const int deepest =
-        std::min(kd_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(root.inside.size()));
+        std::min(kd_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(count));
     const bool by_cost = options.builder == KdBuilder::sah || options.builder == KdBuilder::binned;
     const std::uint32_t leaf_size = options.leaf_size > 0 ? options.leaf_size : (by_cost ? 1 : 4);
     const double items_per_primitive =
         options.items_per_primitive != 0 ? options.items_per_primitive : (by_cost ? 16 : 64);
-    const std::uint64_t most = most_items(items_per_primitive, root.inside.size());
+    const std::uint64_t most = most_items(items_per_primitive, count);
     const auto grow = [&]<class Planes>(const Planes& planes) {
-        const KdCutter<T, D, Planes> cutter(part_in, planes, cell_margin(root.box));
+        const KdCutter<T, D, Planes> cutter(part_in, planes, cell_margin(first->box));
         return CutTreeGrowth<KdNode<T>, KdCutter<T, D, Planes>>(cutter, deepest, most, executor).grow([&] {
-            return cutter.root(root, executor);
+            auto cell = first ? *std::exchange(first, std::nullopt) : root();
+            return cutter.root(std::move(cell), executor);
         });
     };
     switch (options.builder) {
@@ -36,8 +40,9 @@ CutTree<KdNode<T>> build_kd_tree(KdCell<T, D> root, PartIn<T, D> part_in, const 
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): T and D are arguments of templates
-#define HEDGEROW_BUILD_KD_TREE(T, D) \
-    template CutTree<KdNode<T>> build_kd_tree(KdCell<T, D>, PartIn<T, D>, const KdOptions&, Executor&);
+#define HEDGEROW_BUILD_KD_TREE(T, D)                                                                       \
+    template CutTree<KdNode<T>> build_kd_tree(FunctionRef<KdCell<T, D>()>, PartIn<T, D>, const KdOptions&, \
+                                              Executor&);
 HEDGEROW_BUILD_KD_TREE(float, 2)
 HEDGEROW_BUILD_KD_TREE(float, 3)
 HEDGEROW_BUILD_KD_TREE(double, 2)

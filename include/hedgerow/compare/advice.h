@@ -8,8 +8,8 @@ namespace hedgerow::compare {
 struct AdviceOptions {
     double few = 1000;
     /// How many times the fastest's time a query may take where memory counts, for each set of rays: beyond
-    /// that a structure is absurdly slow. The engine's kernels alone are several times as fast as any other
-    /// structure.
+    /// that a structure is absurdly slow. Where every structure is, for one set or another, the least slow
+    /// ones count. The engine's kernels alone are several times as fast as any other structure.
     double slack = 10;
 };
 

@@ -10,6 +10,7 @@
 #include <hedgerow/compare/costs.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/parallel/progress.h>
+#include <hedgerow/primitives/concepts.h>
 #include <hedgerow/render/camera.h>
 
 namespace hedgerow::compare {
@@ -19,7 +20,7 @@ struct MeasureOptions {
     std::size_t queries = 10'000;
     /// Time for each structure and kind of query, over all rounds. At least one query is asked a round.
     double seconds = 0.1;
-    /// 0: counts alone. Everything is built once, asked everything once, and not timed.
+    /// 0: counts alone. Everything is built once, asked everything once, and not timed: seconds are 0.
     int rounds = 5;
     /// A structure is built `rounds` times, or as often as begins within this time.
     double build_seconds = 1;
@@ -31,6 +32,12 @@ struct MeasureOptions {
     /// Where coherent rays come from; none: from outside, as a picture is taken of what nobody knows.
     std::optional<Camera> camera;
 };
+
+/// Whether primitives can be asked this: rays pass between points.
+template <class P>
+constexpr bool can_be_asked(Ask ask) {
+    return ask >= Ask::closest_point || !PointSet<ViewOf<P>>;
+}
 
 /// Two structures answered differently, which none may: a fault of the library.
 class Disagreement : public std::runtime_error {

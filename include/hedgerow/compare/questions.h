@@ -1,6 +1,7 @@
 /// What all structures of a comparison are asked: one kind of query, many times.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/compare/costs.h>
+#include <hedgerow/parallel/progress.h>
 
 namespace hedgerow::compare {
 
@@ -81,55 +83,68 @@ public:
 
     /// Asks them all and lets the answers go: what is timed.
     void put_to(const AnyIndex<T, D>& index) {
-        each_answer(index, {}, [](const auto&) {});
+        each_answer(index, 0, size(), {}, [](const auto&) {});
     }
-    /// A fingerprint of each answer, and what was visited in all.
-    std::vector<std::uint64_t> answers(const AnyIndex<T, D>& index, Visits& visits) {
+    /// A fingerprint of each answer, and what was visited in all. Throws Cancelled if `progress` is
+    /// cancelled, which is looked at every 16 queries.
+    std::vector<std::uint64_t> answers(const AnyIndex<T, D>& index, Visits& visits,
+                                       const Progress& progress = {}) {
         std::vector<std::uint64_t> prints;
         std::vector<Visits> each(size());
-        each_answer(index, each, [&](const auto& answer) {
-            Fingerprint print;
-            print.add(answer);
-            prints.push_back(print.value());
-        });
+        constexpr std::size_t some = 16;
+        for (std::size_t first = 0; first < size(); first += some) {
+            progress.look();
+            const std::size_t count = std::min(some, size() - first);
+            each_answer(index, first, count, std::span(each).subspan(first, count), [&](const auto& answer) {
+                Fingerprint print;
+                print.add(answer);
+                prints.push_back(print.value());
+            });
+        }
         for (const Visits& v : each) visits += v;
         return prints;
     }
 
 private:
-    /// f(answer) for each question in turn.
+    /// f(answer) for `count` questions in turn, from the first on. `visits`: one for each of them, or none.
     template <class F>
-    void each_answer(const AnyIndex<T, D>& index, std::span<Visits> visits, F f) {
-        const auto count = [&](std::size_t i) { return visits.empty() ? nullptr : &visits[i]; };
+    void each_answer(const AnyIndex<T, D>& index, std::size_t first, std::size_t count,
+                     std::span<Visits> visits, F f) {
+        const auto part = [&]<class E>(std::vector<E>& all) { return std::span(all).subspan(first, count); };
+        const auto batch = [&](const auto& found, auto ask) {
+            ask();
+            for (const auto& answer : found) f(answer);
+        };
         const auto one_by_one = [&](const auto& all, const auto& found, auto ask) {
-            for (std::size_t i = 0; i < all.size(); ++i) {
-                ask(all[i], count(i));
+            for (std::size_t i = 0; i < count; ++i) {
+                ask(all[i], visits.empty() ? nullptr : &visits[i]);
                 f(found);
             }
         };
         switch (ask_) {
             case Ask::closest_hit:
-                index.closest_hits(std::get<Rays>(list_), hits_, visits);
-                for (const auto& h : hits_) f(h);
+                batch(part(hits_),
+                      [&] { index.closest_hits(part(std::get<Rays>(list_)), part(hits_), visits); });
                 break;
-            case Ask::any_hit:
-                index.any_hits(std::get<Rays>(list_), {any_.get(), size()}, visits);
-                for (std::size_t i = 0; i < size(); ++i) f(any_[i]);
+            case Ask::any_hit: {
+                const std::span<bool> found(any_.get() + first, count);
+                batch(found, [&] { index.any_hits(part(std::get<Rays>(list_)), found, visits); });
                 break;
+            }
             case Ask::all_hits:
-                one_by_one(std::get<Rays>(list_), hits_,
+                one_by_one(part(std::get<Rays>(list_)), hits_,
                            [&](const auto& ray, Visits* v) { index.all_hits(ray, hits_, v); });
                 break;
             case Ask::closest_point:
-                index.closest_points(std::get<Points>(list_), near_, visits);
-                for (const auto& n : near_) f(n);
+                batch(part(near_),
+                      [&] { index.closest_points(part(std::get<Points>(list_)), part(near_), visits); });
                 break;
             case Ask::nearest:
-                one_by_one(std::get<Points>(list_), near_,
+                one_by_one(part(std::get<Points>(list_)), near_,
                            [&](const auto& point, Visits* v) { index.nearest(point, k, near_, v); });
                 break;
             case Ask::overlap:
-                one_by_one(std::get<Boxes>(list_), ids_,
+                one_by_one(part(std::get<Boxes>(list_)), ids_,
                            [&](const auto& box, Visits* v) { index.overlapping(box, ids_, v); });
                 break;
         }

@@ -144,6 +144,7 @@ constexpr double edge(const ShearedCorner<float>& p, const ShearedCorner<float>&
 /// The same where the scaled products may underflow: the sign of the exact value, and the least magnitude.
 [[gnu::noinline]] inline double tiny_edge(const ShearedCorner<double>& p, const ShearedCorner<double>& q,
                                           double value) {
+    if ((p.x == 0 || q.y == 0) && (p.y == 0 || q.x == 0)) return 0;  // common, and plain
     const int sign = ExactSum().add(p.x, q.y).subtract(p.y, q.x).sign();
     return sign * std::max(std::fabs(value), std::numeric_limits<double>::denorm_min());
 }

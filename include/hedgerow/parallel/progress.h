@@ -15,8 +15,9 @@ public:
 };
 
 /// Given to long work (loading, generating, building, rendering, saving). `report(done, total)` may be called
-/// from any thread, with `total` 0 while it is unknown. Work looks at `cancelled()` now and then. It ends
-/// early with what it has, or throws Cancelled where that is of no use.
+/// from any thread and by several at once, with `total` 0 while it is unknown; `total` grows where a next
+/// step begins, and the last `done` may be less. Work looks at `cancelled()` now and then. It ends early with
+/// what it has, or throws Cancelled where that is of no use.
 struct Progress {
     std::function<void(std::uint64_t done, std::uint64_t total)> report;
     const std::atomic<bool>* cancel = nullptr;

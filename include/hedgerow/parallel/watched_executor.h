@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/parallel/progress.h>

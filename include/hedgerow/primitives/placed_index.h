@@ -36,17 +36,18 @@ inline constexpr T shortest_direction = std::numeric_limits<T>::min() * (16 / un
 /// roundoff of T.
 ///
 /// *Regions.* A corner of a primitive in the world, computed in double and rounded to T, errs by u·W and by 8
-/// roundings (of doubles) of ‖A‖L + |a|; a shape's closest point or its overlap adds 16u·W (cells.h), and
-/// what is fitted around the object's own box, like a ball, u‖A‖L. `margin` = u(64W + 32(‖A‖L + |a|)) covers
-/// all, and the world box is enlarged by it. A triangle's world corners are in it anyway (Affine::box).
+/// roundings (of doubles) of ‖A‖L + |a|; a shape's closest point adds 8u·W, its overlap nothing (cells.h),
+/// and what is fitted around the object's own box, like a ball, u‖A‖L. `margin` = u(64W + 32(‖A‖L + |a|))
+/// covers all, and the world box is enlarged by it. A triangle's world corners are in it anyway
+/// (Affine::box).
 ///
 /// *Rays.* The origin o goes to o' = N o + n, with an error of 2u|o'| + 8u(‖N‖|o| + |n|), and so does the
 /// direction, if it is not shorter than `shortest_direction`: at a place in the object's box that makes
-/// 3u(L + |o'|) and 8u‖N‖ times the way. A hit lies
-/// within e' of its primitive's box there, 16u(L + |o'|) + 4u|o'| (RayProbe). With |o'| <= ‖N‖|o| + |n| all
-/// of it is less than 32u(L + |n|) + 64u‖N‖|o|; the world sees it ‖A‖ times as large, and R(W + |a|) more,
-/// since N is rounded. That is added to the error of the world's ray, which is then as good as any: t is the
-/// same number in both spaces, since the direction is not normalised.
+/// 3u(L + |o'|) and 8u‖N‖ times the way. A hit lies within e' of its primitive's box there, 16u(L + |o'|) +
+/// 4u|o'| (RayProbe). With |o'| <= ‖N‖|o| + |n| all of it is less than 32u(L + |n|) + 64u‖N‖|o|; the world
+/// sees it ‖A‖ times as large, and R(W + |a|) more, since N is rounded. That is added to the error of the
+/// world's ray, which is then as good as any: t is the same number in both spaces, since the direction is not
+/// normalised.
 template <class I>
 class PlacedIndex {
 public:

@@ -7,11 +7,14 @@
 
 namespace hedgerow {
 
+namespace detail {
+template <class F, class... Args>
+concept Asks = std::invocable<const F&, const Args&...>;
+}  // namespace detail
+
 /// What may refuse hits (queries/hit.h): callable with a hit, or with a ray's number and its hit.
 template <class F, class T>
-concept FilterOf = std::invocable < const F&,
-        const Hit<T>
-& > || std::invocable<const F&, std::size_t, const Hit<T>&>;
+concept FilterOf = detail::Asks<F, Hit<T>> || detail::Asks<F, std::size_t, Hit<T>>;
 
 /// Whether a filter keeps a hit of ray number `ray` of a batch (0 for a ray alone). It is called with both if
 /// it takes both, else with the hit.

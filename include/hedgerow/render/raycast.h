@@ -269,10 +269,7 @@ private:
         return dot(n, Vec3f(ray.direction)) > 0 ? -n : n;
     }
     Vec3f normal(const Hit<T>& hit, const Ray<T, 3>& ray) const {
-        if constexpr (requires { primitives_.normal(hit.element); })
-            return normalized(Vec3f(normalized(Vec3d(primitives_.normal(hit.element)))));
-        else
-            return Vec3f(normalized(Vec3d(ray.at(hit.t)) - Vec3d(primitives_.sphere(hit.element).center)));
+        return Vec3f(hedgerow::normal(primitives_, ray, hit));
     }
 
     Picture develop() {
@@ -284,8 +281,9 @@ private:
             picture.mean += double(v[0]) / double(values_.size());
             picture.beyond += o_.steps_max > 0 && v[0] > static_cast<float>(o_.steps_max);
         }
-        const ColourScale scale{o_.steps_max > 0 ? o_.steps_max : static_cast<std::uint64_t>(picture.most),
-                                o_.log_scale};
+        const ColourScale scale{
+            o_.steps_max > 0 ? o_.steps_max : static_cast<std::uint64_t>(std::ceil(picture.most)),
+            o_.log_scale};
         for (int y = 0; y < o_.height; ++y) {
             if (!done_[static_cast<std::size_t>(y)]) continue;
             for (int x = 0; x < o_.width; ++x) {

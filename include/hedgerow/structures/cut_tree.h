@@ -134,7 +134,10 @@ private:
         if (large) executor_.look();
         auto [low, high] = cutter_.cut(cell, *plane);
         const std::uint64_t items = std::uint64_t(low.size()) + high.size();
-        if (rationed_ && items > ration) return add_leaf(cell, tree);
+        if (rationed_ && items > ration) {
+            if (large) executor_.advance(static_cast<std::size_t>(work));
+            return add_leaf(cell, tree);
+        }
         const double each =
             static_cast<double>(ration) / static_cast<double>(std::max<std::uint64_t>(items, 1));
         const auto low_ration = static_cast<std::uint64_t>(each * low.size());

@@ -1,7 +1,7 @@
 /// How many items a structure that holds primitives in several cells may have.
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -9,12 +9,13 @@
 
 namespace hedgerow {
 
-/// The limit over `count` primitives. Throws InputError for less than one item a primitive.
+/// The limit over `count` primitives. Throws UsageError for less than one item a primitive.
 inline std::uint64_t most_items(double items_per_primitive, std::size_t count) {
     if (!(items_per_primitive >= 1))
-        throw InputError("items_per_primitive=" + std::to_string(items_per_primitive) +
+        throw UsageError("items_per_primitive=" + std::to_string(items_per_primitive) +
                          " is not at least 1: each primitive is an item of some cell");
-    return static_cast<std::uint64_t>(std::min(items_per_primitive * static_cast<double>(count), 0x1p63));
+    if (!(items_per_primitive < 0x1p31)) return std::uint64_t{1} << 63;
+    return static_cast<std::uint64_t>(items_per_primitive * static_cast<double>(count));
 }
 
 }  // namespace hedgerow

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <hedgerow/geometry/polytope.h>
+#include <hedgerow/parallel/sort.h>
 #include <hedgerow/structures/bsp/build.h>
 #include <hedgerow/structures/cells.h>
 #include <hedgerow/structures/kdtree/builders/sweep.h>
@@ -69,8 +70,9 @@ public:
         }
     };
 
-    BspCutter(CornersOf<T, D> corners, const BspOptions& options, double margin)
-        : corners_(corners),
+    BspCutter(CornersOf<T, D> corners, const BspOptions& options, double margin, Executor& executor)
+        : executor_(executor),
+          corners_(corners),
           costs_(options.costs),
           leaf_size_(options.leaf_size),
           samples_(std::max(1u, options.samples)),
@@ -150,6 +152,7 @@ private:
     }
 
     void weigh(const Cell& cell, double whole, const Plane& candidate, Best& best) const {
+        if (cell.size() > worth_a_task) executor_.look();
         const CutPlane<D> plane = candidate.in_double(margin_);
         std::uint32_t on_low = 0, on_high = 0;
         for (const auto& part : cell.inside) {
@@ -175,7 +178,7 @@ private:
     /// Places across an axis just outside of a part, so that it is on one side of a plane there.
     std::pair<T, T> beside(const BspPart<D>& part, int axis) const {
         const auto [low, high] = part.reach(axis);
-        return {static_cast<T>(low - 1.5 * margin_), static_cast<T>(high + 1.5 * margin_)};
+        return {rounded_to<T>(low - 1.5 * margin_), rounded_to<T>(high + 1.5 * margin_)};
     }
     /// Of each axis the plane that the kd-tree would choose. O(n log n).
     template <class Offer>
@@ -192,7 +195,7 @@ private:
                 events.emplace_back(low, i, true);
                 events.emplace_back(high, i, false);
             }
-            std::sort(events.begin(), events.end());
+            sort_watched(events.begin(), events.end(), executor_);
             KdBest<T> best;
             sweep_events(events, cell.size(), KdAxisCosts<T, D>(costs, box, axis), best);
             if (best.cost < std::numeric_limits<double>::infinity())
@@ -233,11 +236,12 @@ private:
     static void offer_plane(const Vec<double, D>& normal, const Vec<double, D>& through, Offer offer) {
         for (int axis = 0; axis < D; ++axis)
             if (std::abs(normal[axis]) > 1 - 1e-9)
-                return offer(Plane::across(axis, static_cast<T>(through[axis])));
+                return offer(Plane::across(axis, rounded_to<T>(through[axis])));
         const Vec<T, D> stored(normal);
-        offer(Plane{stored, static_cast<T>(dot(Vec<double, D>(stored), through)), -1});
+        offer(Plane{stored, rounded_to<T>(dot(Vec<double, D>(stored), through)), -1});
     }
 
+    Executor& executor_;
     CornersOf<T, D> corners_;
     BspCosts costs_;
     std::uint32_t leaf_size_, samples_;

@@ -203,7 +203,7 @@ private:
         const auto pack_right = [&] {
             right = pack(tree, n.right, at + tree.nodes[n.left].leaves(), node.child[1], executor);
         };
-        if (n.leaves() > 4096) {
+        if (n.leaves() > worth_a_task) {
             executor.both(pack_left, pack_right);
         } else {
             pack_left();
@@ -226,7 +226,7 @@ private:
         LaneBox<T> left, right;
         const auto fit_left = [&] { left = refitted(node.child[0], right_at, references, executor); };
         const auto fit_right = [&] { right = refitted(node.child[1], end, references, executor); };
-        if (end > ref.first + std::size_t(4096)) {
+        if (end > ref.first + worth_a_task) {
             executor.both(fit_left, fit_right);
         } else {
             fit_left();

@@ -196,11 +196,15 @@ private:
         std::vector<Divided> pieces(rows_.block_count());
         executor.expect(rows_.items().size());
         executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p)
+            for (std::size_t p = begin; p < end; ++p) {
+                std::size_t done = 0;
                 rows_.for_each_row(p, [&](const Cell& cell, const Leaf& leaf) {
                     divide_row(entering, cell, leaf, pieces[p]);
-                    executor.advance(leaf.count);
+                    done += leaf.count;
+                    if (done >= worth_a_task) executor.advance(std::exchange(done, 0));
                 });
+                executor.advance(done);
+            }
         });
         for (Divided& piece : pieces) {
             refuse_beyond(options_.budget, items_.size() + piece.items.size());

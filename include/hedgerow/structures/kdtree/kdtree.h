@@ -21,14 +21,16 @@ public:
     static KdTree build(const P& set, const Options& options, Executor& executor) {
         KdTree tree;
         tree.mailbox_ = options.mailbox;
-        KdCell<T, D> root;
-        root.inside = references_of(set, executor);
-        tree.count_ = root.inside.size();
-        if (root.inside.empty()) return tree;
-        for (const auto& r : root.inside) root.box.expand(r.box());
-        tree.bounds_ = root.box;
+        const auto root = [&] {
+            KdCell<T, D> cell;
+            cell.inside = references_of(set, executor);
+            for (const auto& r : cell.inside) cell.box.expand(r.box());
+            tree.count_ = cell.inside.size();
+            tree.bounds_ = cell.box;
+            return cell;
+        };
         const auto part = [&](PrimitiveId id, const Box<T, D>& box) { return part_in(set, id, box); };
-        tree.tree_ = build_kd_tree<T, D>(std::move(root), part, options, executor);
+        tree.tree_ = build_kd_tree<T, D>(root, part, options, executor);
         return tree;
     }
 

@@ -52,12 +52,12 @@ public:
     static constexpr int max_depth = 48;
     static constexpr int deepest_option = 32;
 
-    /// Throws InputError for options out of range and bad primitives.
+    /// Throws UsageError for options out of range, InputError for bad primitives.
     template <PrimitiveSet P>
     static Orthtree build(const P& set, const Options& options, Executor& executor) {
-        if (options.leaf_size < 1) throw InputError("octree, quadtree: leaf_size=0 is not at least 1");
+        if (options.leaf_size < 1) throw UsageError("octree, quadtree: leaf_size=0 is not at least 1");
         if (options.max_depth < 0 || options.max_depth > deepest_option)
-            throw InputError("octree, quadtree: max_depth=" + std::to_string(options.max_depth) +
+            throw UsageError("octree, quadtree: max_depth=" + std::to_string(options.max_depth) +
                              " is not from 0 to " + std::to_string(deepest_option));
         most_items(options.items_per_primitive, set.size());  // refuses what is no limit
         if (set.size() >= OrthantNode::inner_bit)

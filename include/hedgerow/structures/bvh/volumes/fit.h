@@ -25,14 +25,6 @@ Slab<D> slab_around(PointSpan<D> points, const Vec<double, D>& normal, double ma
     return s;
 }
 
-template <int D>
-Vec<double, D> farthest(PointSpan<D> points, const Vec<double, D>& from) {
-    Vec<double, D> best = from;
-    double most = -1;
-    for (const auto& p : points)
-        if (const double d2 = distance2(p, from); d2 > most) most = d2, best = p;
-    return best;
-}
 /// A center from which the points reach about as little as may be: towards the farthest point in ever shorter
 /// steps (Bădoiu and Clarkson 2003), from the middle of two points that lie far apart (Ritter 1990). With 32
 /// steps the radius is within some percent of the least.

@@ -116,23 +116,24 @@ Points<D> extreme(const Points<D>& points, Rows<D> frame) {
 
 /// The first of the points for which f is greatest.
 template <int D, class F>
-Vec<double, D> greatest(const Points<D>& points, F f) {
+Vec<double, D> greatest(PointSpan<D> points, F f) {
     const Vec<double, D>* best = &points[0];
     double most = f(points[0]);
     for (const auto& p : points)
         if (const double x = f(p); x > most) most = x, best = &p;
     return *best;
 }
+template <int D>
+Vec<double, D> farthest(PointSpan<D> points, const Vec<double, D>& from) {
+    return greatest<D>(points, [&](const Vec<double, D>& p) { return distance2(p, from); });
+}
 /// An axis along two points that lie far apart, and one across it and across two points that lie far apart as
 /// seen along it. The box of least volume often lies so: of a regular tetrahedron it has two opposite edges
 /// as diagonals of faces.
 inline Rows<3> spanning_axes(const Points<3>& points) {
-    const auto far_from = [&](const Vec3d& a) {
-        return greatest(points, [&](const Vec3d& p) { return length2(p - a); });
-    };
-    const Vec3d a = far_from(points[0]), b = far_from(a), along = normalized(b - a);
+    const Vec3d a = farthest<3>(points, points[0]), b = farthest<3>(points, a), along = normalized(b - a);
     const auto far_across = [&](const Vec3d& c) {
-        return greatest(points, [&](const Vec3d& p) { return length2(cross(along, p - c)); });
+        return greatest<3>(points, [&](const Vec3d& p) { return length2(cross(along, p - c)); });
     };
     const Vec3d c = far_across(a), d = far_across(c), across = cross(along, d - c);
     if (!(length2(across) > 0x1p-80)) return coordinate_axes<3>();  // all lie on a line

@@ -109,7 +109,7 @@ AnyVolumeList<T, D> list_of(Volume kind) {
     if (!found)
         for (const auto& [name, known] : volume_names)
             if (known == kind)
-                throw InputError("in " + std::string(D == 3 ? "space" : "the plane") +
+                throw UsageError("in " + std::string(D == 3 ? "space" : "the plane") +
                                  " no nodes are bounded by '" + std::string(name) + "' volumes: use one of " +
                                  there_are);
     return lists;

@@ -26,10 +26,11 @@ struct KdOptions {
 /// No tree is deeper.
 inline constexpr int kd_max_depth = 64;
 
-/// The tree below a root that holds every reference. Compiled in core (src/core/build_kdtree.cpp), for float
-/// and double, in 2D and 3D.
+/// The tree below a root that holds every reference; `root` is called again where the limit of items is
+/// passed, so that nobody keeps a second list meanwhile. Empty, if the root is. Compiled in core
+/// (src/core/build_kdtree.cpp), for float and double, in 2D and 3D.
 template <std::floating_point T, int D>
-CutTree<KdNode<T>> build_kd_tree(KdCell<T, D> root, PartIn<T, D> part_in, const KdOptions& options,
-                                 Executor& executor);
+CutTree<KdNode<T>> build_kd_tree(FunctionRef<KdCell<T, D>()> root, PartIn<T, D> part_in,
+                                 const KdOptions& options, Executor& executor);
 
 }  // namespace hedgerow
