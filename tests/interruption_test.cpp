@@ -60,7 +60,7 @@ const char* const structures[] = {"bvh",
                                   "bsp",
                                   "grid",
                                   "two-level-grid"};
-constexpr std::size_t count = 20'000;
+constexpr std::size_t count = 12'000;
 
 const TriangleMesh<float>& mesh() {
     static const auto made = soup<float>(count);

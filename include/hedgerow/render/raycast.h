@@ -11,6 +11,7 @@
 #include <hedgerow/render/colour.h>
 #include <hedgerow/render/seen.h>
 #include <hedgerow/scenes/random.h>
+#include <hedgerow/surface.h>
 
 namespace hedgerow {
 
@@ -265,11 +266,8 @@ private:
     }
 
     Vec3f facing_normal(const Hit<T>& hit, const Ray<T, 3>& ray) const {
-        const Vec3f n = normal(hit, ray);
+        const Vec3f n(hedgerow::normal(primitives_, ray, hit));
         return dot(n, Vec3f(ray.direction)) > 0 ? -n : n;
-    }
-    Vec3f normal(const Hit<T>& hit, const Ray<T, 3>& ray) const {
-        return Vec3f(hedgerow::normal(primitives_, ray, hit));
     }
 
     Picture develop() {
