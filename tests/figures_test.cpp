@@ -70,17 +70,18 @@ Figure figure_of(const std::string& text) {
 const json& result_of(std::string command, const std::string& ask) {
     static std::map<std::string, json> known;
     command = std::regex_replace(command, std::regex("(^hedgerow |\\s+#.*$| --time [0-9.]+| --json)"), "");
+    const auto picture =
+        std::filesystem::temp_directory_path() / ("figures." + std::to_string(getpid()) + ".png");
     if (command.starts_with("compare ")) {
         if (command.find(" --for ") == command.npos) command += " --for " + ask;
         command += " --counts";
     } else {
-        command = std::regex_replace(command, std::regex(" -o [^ ]+"), "") + " -o " +
-                  (std::filesystem::temp_directory_path() / ("figures." + std::to_string(getpid()) + ".png"))
-                      .string();
+        command = std::regex_replace(command, std::regex(" -o [^ ]+"), "") + " -o " + picture.string();
     }
     const auto found = known.find(command);
     if (found != known.end()) return found->second;
     const auto result = run_shell(HEDGEROW_TOOL_PATH " " + command + " --json");
+    std::filesystem::remove(picture);
     EXPECT_EQ(result.code, 0) << command;
     return known[command] = result.code == 0 ? json::parse(result.output) : json();
 }

@@ -1,6 +1,4 @@
 /// Indexes that were moved: what is left is empty and may be asked anything, changed, saved or assigned to.
-#include <filesystem>
-
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
@@ -9,6 +7,7 @@
 
 #include "contract.h"
 #include "engine.h"
+#include "io_support.h"
 
 using namespace hedgerow;
 
@@ -150,14 +149,14 @@ TEST(Moved, InstancesOfItAreEmpty) {
 }
 
 TEST(Moved, IsSavedAsEmpty) {
-    const auto path = std::filesystem::temp_directory_path() / "hedgerow-moved.hedgerow";
+    const testing_io::TempFolder folder;
+    const auto path = folder / "moved.hedgerow";
     auto index = build(teapot<float>(100));
     const auto gone = std::move(index);
     save_index(path.string(), index);
     const auto loaded = load_index<float>(path.string());
     EXPECT_EQ(loaded.size(), 0u);
     EXPECT_FALSE(closest_hit(loaded, Ray3f{{0, 0, 9}, {0, 0, -1}}));
-    std::filesystem::remove(path);
 }
 
 }  // namespace

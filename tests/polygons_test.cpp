@@ -1,6 +1,9 @@
 /// Polygons of files: what lies in the polygon is covered once, and the face's id is kept.
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "io_support.h"
 
@@ -26,21 +29,34 @@ std::string vertex_list(const Polygon& polygon, const std::string& word) {
     return text;
 }
 
-/// The polygon behind a triangle of its own (face 0), in a file of every format that has polygons.
-std::vector<std::filesystem::path> files_of(const TempFolder& folder, const Polygon& polygon) {
+/// A triangle of its own stands before the polygon, which is face 1.
+Polygon behind_a_triangle(const Polygon& polygon) {
     Polygon all{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     all.insert(all.end(), polygon.begin(), polygon.end());
-    const std::string n = std::to_string(polygon.size()), vertices = std::to_string(all.size());
-    const std::string faces = "3 0 1 2\n" + n + corner_list(polygon.size(), 3);
-    return {folder.file("a.obj", vertex_list(all, "v ") + "f 1 2 3\nf" + corner_list(polygon.size(), 4)),
-            folder.file("a.off", "OFF\n" + vertices + " 2 0\n" + vertex_list(all, "") + faces),
+    return all;
+}
+std::string face_list(const Polygon& polygon) {
+    return "3 0 1 2\n" + std::to_string(polygon.size()) + corner_list(polygon.size(), 3);
+}
+
+std::filesystem::path off_of(const TempFolder& folder, const Polygon& polygon) {
+    const Polygon all = behind_a_triangle(polygon);
+    return folder.file(
+        "a.off", "OFF\n" + std::to_string(all.size()) + " 2 0\n" + vertex_list(all, "") + face_list(polygon));
+}
+
+/// A file of every format that has polygons.
+std::vector<std::filesystem::path> files_of(const TempFolder& folder, const Polygon& polygon) {
+    const Polygon all = behind_a_triangle(polygon);
+    return {off_of(folder, polygon),
+            folder.file("a.obj", vertex_list(all, "v ") + "f 1 2 3\nf" + corner_list(polygon.size(), 4)),
             folder.file("a.ply",
                         "ply\nformat ascii 1.0\nelement face 2\nproperty list uint uint vertex_index\n"
                         "element vertex " +
-                            vertices +
+                            std::to_string(all.size()) +
                             "\nproperty double x\nproperty double y\n"
                             "property double z\nend_header\n" +
-                            faces + vertex_list(all, ""))};
+                            face_list(polygon) + vertex_list(all, ""))};
 }
 
 /// Twice the area with its direction.
@@ -164,14 +180,21 @@ TEST(Polygons, OfAHundredThousandCorners) {
     TempFolder folder;
     for (const Polygon& polygon : {star, comb, spiral, arcs}) {
         const double area = std::sqrt(length2(area_of(polygon)));
-        const Filled f = filled(files_of(folder, polygon)[1], polygon);
+        const Filled f = filled(off_of(folder, polygon), polygon);
         EXPECT_NEAR(f.area, area, 1e-6 * area);
     }
 }
 
+/// One that crosses itself and touches itself everywhere.
+Polygon lattice(int corners) {
+    std::mt19937_64 random(13);
+    Polygon polygon;
+    for (int i = 0; i < corners; ++i) polygon.push_back({double(random() % 50), double(random() % 50), 0});
+    return polygon;
+}
+
 TEST(Polygons, ThatCrossThemselvesOrHaveNoInsideStillEnd) {
     TempFolder folder;
-    std::mt19937_64 random(13);
     const auto count = [&](const Polygon& polygon) {
         for (const auto& path : files_of(folder, polygon))
             EXPECT_EQ(load_mesh(path).size(), polygon.size() - 1);
@@ -179,11 +202,25 @@ TEST(Polygons, ThatCrossThemselvesOrHaveNoInsideStillEnd) {
     count({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}});  // a figure of eight, with no normal
     count({{0, 0, 0}, {2, 3, 0}, {2, 0, 0}, {0, 2, 0}});
     count(Polygon(100, {1, 2, 3}));
-    Polygon line, lattice;
+    Polygon line;
     for (int i = 0; i < 2000; ++i) line.push_back({double(i), 2.0 * i, 0});
     count(line);
-    for (int i = 0; i < 20000; ++i) lattice.push_back({double(random() % 50), double(random() % 50), 0});
-    count(lattice);
+    count(lattice(20000));
+}
+
+TEST(Polygons, AreNotFilledOnceReadingIsCancelled) {
+    TempFolder folder;
+    const auto path = off_of(folder, lattice(200000));  // takes many seconds to fill
+    std::atomic<bool> read = false, cancel = false;
+    std::thread user([&] {
+        while (!read) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        cancel = true;
+    });
+    const Progress progress{[&](std::uint64_t done, std::uint64_t total) { read = done == total; }, &cancel};
+    EXPECT_THROW(load_mesh(path, {}, progress), Cancelled);
+    read = true;
+    user.join();
 }
 
 /// The last place decides: one corner is moved by one unit in it, across the line between its neighbours.

@@ -13,6 +13,8 @@ namespace {
 constexpr int deepest = 64;
 /// Bytes that a value takes at most, as a member of an object with a short key.
 constexpr std::uint64_t bytes_a_value = 128;
+/// Bytes that a letter of a string takes at most: the string, and the parser's buffer, which doubles.
+constexpr std::uint64_t bytes_a_letter = 3;
 
 /// Counts values by what ends or opens them, outside of strings; throws where they are nested too deep.
 std::uint64_t count_values(std::string_view text, const std::string& name) {
@@ -54,7 +56,8 @@ std::string reason(std::string_view what) {
 
 nlohmann::json parse_json(std::string_view text, const std::string& name) {
     const std::uint64_t values = count_values(text, name);
-    expect_memory(name, "its " + std::to_string(values) + " JSON values", values * bytes_a_value);
+    expect_memory(name, "its " + std::to_string(values) + " JSON values",
+                  values * bytes_a_value + text.size() * bytes_a_letter);
     try {
         return nlohmann::json::parse(text.begin(), text.end());
     } catch (const nlohmann::json::exception& error) {

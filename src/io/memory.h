@@ -12,6 +12,11 @@
 
 namespace hedgerow::detail {
 
+/// Bytes that the process's control group, or one around it, leaves it. `groups` lists the process's groups
+/// (/proc/self/cgroup), and `mounted` is where their folders are (/sys/fs/cgroup). The largest number where
+/// there is no limit.
+std::uint64_t memory_left_to_group(const std::filesystem::path& groups, const std::filesystem::path& mounted);
+
 /// "1.5 GB": a number of bytes as a person reads it.
 std::string bytes_text(std::uint64_t bytes);
 

@@ -64,6 +64,8 @@ public:
 
     void add(std::span<const std::uint32_t> corners) {
         if (corners.size() != 3 && !numbered_) {
+            expect_memory(file_.name(), "the face numbers of its triangles",
+                          triangles_.size() * sizeof(faces_[0]));
             faces_.resize(triangles_.size());
             std::iota(faces_.begin(), faces_.end(), 0u);
             numbered_ = true;
@@ -81,7 +83,7 @@ public:
             for (end = begin + 1; end < faces_.size() && faces_[end] == faces_[begin];) ++end;
             if (end - begin < 2) continue;
             file_.expect_not_cancelled();
-            fill_polygon<T>(std::span(triangles_).subspan(begin, end - begin), mesh.vertices);
+            fill_polygon<T>(file_, std::span(triangles_).subspan(begin, end - begin), mesh.vertices);
         }
         mesh.triangles = std::move(triangles_);
         mesh.faces = std::move(faces_);

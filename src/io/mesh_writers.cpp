@@ -48,6 +48,7 @@ template <class T>
 void write_stl(OutputFile& file, const TriangleMesh<T>& mesh) {
     if (mesh.size() > 0xFFFFFFFFu)
         throw InputError("a mesh of more than 4294967295 triangles does not fit STL. Save it as .ply");
+    file.expect(mesh.size());  // vertices are written with the triangles
     std::string header = "binary STL";
     header.resize(80, ' ');
     file.write(header);

@@ -107,7 +107,7 @@ void save_npy(const std::filesystem::path& path, std::span<const T> values,
         fits = fits && (n == 0 || size <= std::numeric_limits<std::size_t>::max() / n);
         size *= n;
     }
-    if (!fits || size != values.size() || shape.size() > 64)
+    if (!fits || size != values.size() || shape.size() > detail::most_axes)
         throw InputError(path.string() + ": the shape does not hold the " + std::to_string(values.size()) +
                          " values that are to be saved. Make its sizes multiply to that number");
     detail::OutputFile file(path);

@@ -8,6 +8,9 @@
 
 namespace hedgerow::detail {
 
+/// Axes that an array may have, as in NumPy.
+inline constexpr std::size_t most_axes = 64;
+
 NpyArray read_npy(ByteSource& file);
 /// Only the header's elements along each axis.
 std::vector<std::size_t> read_npy_shape(ByteSource& file);

@@ -98,6 +98,8 @@ private:
             const std::size_t digits = std::min(rest_.find_first_not_of("0123456789"), rest_.size());
             const auto n = parse_integer<std::size_t>(rest_.substr(0, digits));
             if (!n) fail("has a shape that is no list of sizes");
+            if (header_.shape.size() == most_axes)
+                fail("has more than " + std::to_string(most_axes) + " axes");
             rest_.remove_prefix(digits);
             header_.shape.push_back(*n);
             if (!accept(',') && !looking_at(')')) fail("has a shape without commas");
@@ -146,6 +148,7 @@ std::size_t size_in_bytes(const ByteSource& file, const Header& header) {
 
 std::vector<std::byte> read_elements(ByteSource& file, std::size_t size) {
     std::vector<std::byte> bytes;
+    bytes.reserve(size);
     while (bytes.size() < size) {
         const std::size_t begin = bytes.size(), n = std::min(size - begin, std::size_t(1) << 20);
         bytes.resize(begin + n);
@@ -157,13 +160,15 @@ std::vector<std::byte> read_elements(ByteSource& file, std::size_t size) {
 }
 
 /// From first index fastest to last index fastest.
-std::vector<std::byte> transposed(const std::vector<std::byte>& from, const Header& header) {
+std::vector<std::byte> transposed(const ByteSource& file, const std::vector<std::byte>& from,
+                                  const Header& header) {
     const std::size_t axes = header.shape.size(), item = header.item;
     std::vector<std::byte> to(from.size());
     std::vector<std::size_t> index(axes), stride(axes);
     for (std::size_t a = 0, s = item; a < axes; s *= header.shape[a++]) stride[a] = s;
     std::size_t at = 0;
     for (std::size_t i = 0; i < to.size(); i += item) {
+        if (i % (item << 16) == 0) file.expect_not_cancelled();
         std::memcpy(&to[i], &from[at], item);
         for (std::size_t a = axes; a-- > 0;) {
             at += stride[a];
@@ -196,7 +201,7 @@ NpyArray read_npy(ByteSource& file) {
     if (header.order != std::endian::native && header.item > 1)
         for (std::size_t i = 0; i < array.bytes.size(); i += header.item)
             std::reverse(&array.bytes[i], &array.bytes[i] + header.item);
-    if (header.fortran && header.shape.size() > 1) array.bytes = transposed(array.bytes, header);
+    if (header.fortran && header.shape.size() > 1) array.bytes = transposed(file, array.bytes, header);
     return array;
 }
 

@@ -2,20 +2,26 @@
 #include "triangulate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <queue>
 #include <tuple>
 #include <vector>
 
-#include <hedgerow/geometry/box.h>
+#include <hedgerow/geometry/overlap.h>
 
 #include "corner_tree.h"
-#include "orientation.h"
+#include "memory.h"
 
 namespace hedgerow::detail {
 
 namespace {
+
+/// 1 if a, b, c turn to the left, −1 to the right, 0 on one line. Exact.
+int turn(const Point& a, const Point& b, const Point& c) {
+    return Edge<2>(a, b).turn(c, 0, 1);
+}
 
 bool before(const Point& p, const Point& q) {
     return p[0] < q[0] || (p[0] == q[0] && p[1] < q[1]);
@@ -36,8 +42,13 @@ private:
 /// Cuts the ears of a polygon that lies counterclockwise.
 class EarClipper {
 public:
-    explicit EarClipper(const std::vector<Point>& points)
-        : points_(points),
+    /// About what a corner takes at most: links, the tree, and candidates and queues that grow.
+    static constexpr std::uint64_t bytes_a_corner = 192;
+
+    /// Looks now and then whether the reading of `file` was cancelled.
+    EarClipper(const ByteSource& file, const std::vector<Point>& points)
+        : file_(file),
+          points_(points),
           size_(points.size()),
           next_(size_),
           previous_(size_),
@@ -57,6 +68,7 @@ public:
         std::size_t left = size_;
         Corner last = 0;
         for (; left > 3; --left) {
+            look();
             const auto i = choose();
             if (!i) break;
             triangle(previous_[*i], *i, next_[*i]);
@@ -71,6 +83,8 @@ private:
     /// A corner on the line between its neighbours is flat; one where the boundary turns back, or does not
     /// move, is a spike.
     enum class Kind : std::uint8_t { inward, blocked, flat, spike, outward, gone };
+    /// The sides of a corner's triangle: from the corner before it, from itself, from the corner after it.
+    using Sides = std::array<Edge<2>, 3>;
     /// A corner that turns inwards, with its neighbours then: what it leaves is an edge between them. The
     /// shortest goes first, and whether it is an ear is only asked then: slivers that reach across the
     /// polygon are held against much of its boundary.
@@ -81,6 +95,10 @@ private:
             return std::tie(other.length2, other.corner) < std::tie(length2, corner);
         }
     };
+
+    void look() {
+        if (++looks_ % 4096 == 0) file_.expect_not_cancelled();
+    }
 
     int turn_at(Corner i) const { return turn(points_[previous_[i]], points_[i], points_[next_[i]]); }
 
@@ -148,40 +166,37 @@ private:
         return found ? found : front(blocked_, Kind::blocked);
     }
 
-    bool is_blocked(Corner b) const {
+    bool is_blocked(Corner b) {
         const Corner a = previous_[b], c = next_[b];
-        const Point &pa = points_[a], &pb = points_[b], &pc = points_[c];
+        const Sides sides{{{points_[a], points_[b]}, {points_[b], points_[c]}, {points_[c], points_[a]}}};
         Box<double, 2> around;
-        around.expand(pa).expand(pb).expand(pc);
+        around.expand(points_[a]).expand(points_[b]).expand(points_[c]);
         const auto enters = [&](const Box<double, 2>& box) {
-            for (int k = 0; k < 2; ++k)
-                if (box.low[k] > around.high[k] || box.high[k] < around.low[k]) return false;
-            return reaches(box, pa, pb) && reaches(box, pb, pc) && reaches(box, pc, pa);
+            look();
+            return overlap(box, around) && std::none_of(sides.begin(), sides.end(), [&](const auto& side) {
+                       return side.beyond(box, 0, 1, 1);
+                   });
         };
-        return tree_.any(enters,
-                         [&](Corner q) { return q != a && q != b && q != c && blocks(q, pa, pb, pc); });
+        return tree_.any(enters, [&](Corner q) { return q != a && q != b && q != c && blocks(q, sides); });
     }
-    /// Whether a part of a box is not to the right of the line from a to b.
-    static bool reaches(const Box<double, 2>& box, const Point& a, const Point& b) {
-        const Point farthest(b[1] > a[1] ? box.low[0] : box.high[0], b[0] > a[0] ? box.high[1] : box.low[1]);
-        return turn(a, b, farthest) >= 0;
-    }
-    /// Whether the boundary comes into the triangle at q. On the triangle's own edges it may pass by; the
-    /// third side, which is to become an edge, must be free.
-    bool blocks(Corner q, const Point& a, const Point& b, const Point& c) const {
-        const Point& p = points_[q];
-        const int ab = turn(a, b, p), bc = turn(b, c, p), ca = turn(c, a, p);
-        if (ab < 0 || bc < 0 || ca < 0) return false;
-        if (ab > 0 && bc > 0) return true;
+    /// Whether the boundary comes into the triangle at q. On the triangle's first two sides, which are edges
+    /// of the polygon, it may pass by; the third side, which is to become an edge, must be free.
+    bool blocks(Corner q, const Sides& sides) const {
+        std::array<int, 3> at{};
+        for (std::size_t k = 0; k < 3; ++k)
+            if ((at[k] = sides[k].turn(points_[q], 0, 1)) < 0) return false;
+        if (at[0] > 0 && at[1] > 0) return true;
         const auto comes_in = [&](const Point& neighbour) {
-            return (ab > 0 || turn(a, b, neighbour) > 0) && (bc > 0 || turn(b, c, neighbour) > 0) &&
-                   (ca > 0 || turn(c, a, neighbour) > 0);
+            for (std::size_t k = 0; k < 3; ++k)
+                if (at[k] == 0 && sides[k].turn(neighbour, 0, 1) <= 0) return false;
+            return true;
         };
         return comes_in(points_[previous_[q]]) || comes_in(points_[next_[q]]);
     }
 
+    const ByteSource& file_;
     const std::vector<Point>& points_;
-    std::size_t size_, looked_again_ = 0;
+    std::size_t size_, looks_ = 0, looked_again_ = 0;
     std::vector<Corner> next_, previous_;
     std::vector<Kind> kind_;
     CornerTree tree_;
@@ -235,22 +250,35 @@ std::optional<std::vector<Point>> projected(std::vector<Vec3d>& corners) {
 }  // namespace
 
 template <class T>
-void fill_polygon(std::span<TriangleIndices> fan, std::span<const Vec<T, 3>> vertices) {
+void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
+                  std::span<const Vec<T, 3>> vertices) {
+    const std::size_t size = fan.size() + 2;
+    const auto expect_room = [&](std::uint64_t bytes_a_corner) {
+        constexpr std::size_t unasked = 1u << 16;  // corners, for which a few MB are taken without asking
+        if (size >= unasked)
+            expect_memory(file.name(), "the " + std::to_string(size) + " corners of one of its faces",
+                          size * bytes_a_corner);
+    };
+    expect_room(sizeof(std::uint32_t) + sizeof(Vec3d) + sizeof(Point));
     std::vector<std::uint32_t> names{fan[0][0], fan[0][1]};
+    names.reserve(size);
     for (const TriangleIndices& t : fan) names.push_back(t[2]);
     std::vector<Vec3d> corners;
-    corners.reserve(names.size());
+    corners.reserve(size);
     for (const std::uint32_t v : names) {
         if (v >= vertices.size()) return;
         corners.push_back(Vec3d(vertices[v]));
     }
     const auto points = projected(corners);
     if (!points || is_convex(*points)) return;
+    expect_room(EarClipper::bytes_a_corner);
     auto next = fan.begin();
-    EarClipper(*points).run([&](Corner a, Corner b, Corner c) { *next++ = {names[a], names[b], names[c]}; });
+    EarClipper(file, *points).run([&](Corner a, Corner b, Corner c) {
+        *next++ = {names[a], names[b], names[c]};
+    });
 }
 
-template void fill_polygon(std::span<TriangleIndices>, std::span<const Vec3f>);
-template void fill_polygon(std::span<TriangleIndices>, std::span<const Vec3d>);
+template void fill_polygon(const ByteSource&, std::span<TriangleIndices>, std::span<const Vec3f>);
+template void fill_polygon(const ByteSource&, std::span<TriangleIndices>, std::span<const Vec3d>);
 
 }  // namespace hedgerow::detail

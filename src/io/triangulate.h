@@ -6,6 +6,8 @@
 
 #include <hedgerow/primitives/triangle_mesh.h>
 
+#include "byte_source.h"
+
 namespace hedgerow::detail {
 
 /// Replaces a fan of n − 2 triangles from a polygon's first corner by as many that fill the polygon.
@@ -24,7 +26,11 @@ namespace hedgerow::detail {
 /// for a convex polygon. Else each of the at most 11n ears that are looked at is held against the corners
 /// that do not turn inwards, through a tree of boxes over the boundary: O(n log n) for outlines as they are
 /// drawn, O(n²) at worst.
+///
+/// Throws InputError, naming `file`, before a large polygon takes more memory than there is, and Cancelled
+/// soon after the reading of the file was cancelled.
 template <class T>
-void fill_polygon(std::span<TriangleIndices> fan, std::span<const Vec<T, 3>> vertices);
+void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
+                  std::span<const Vec<T, 3>> vertices);
 
 }  // namespace hedgerow::detail

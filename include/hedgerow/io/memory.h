@@ -6,8 +6,8 @@
 namespace hedgerow {
 
 /// Bytes that this process may still take: what the machine has free, swap included, or less where the
-/// process is limited (RLIMIT_AS, RLIMIT_DATA, its control group). The largest number where the system does
-/// not say. Reads a few of the system's files: some 50 µs.
+/// process is limited (RLIMIT_AS, RLIMIT_DATA, its control group or one around that). The largest number
+/// where the system does not say. Reads a few of the system's files: less than a millisecond.
 std::uint64_t memory_left();
 
 }  // namespace hedgerow
