@@ -4,6 +4,7 @@
 
 #include <zlib.h>
 
+#include "gltf_text.h"
 #include "tool.h"
 
 namespace {
@@ -50,21 +51,22 @@ std::string repeated(const std::string& part, int times) {
 }
 
 std::string little(std::uint32_t value) {
-    std::string bytes;
-    for (int k = 0; k < 4; ++k) bytes.push_back(static_cast<char>(value >> (8 * k)));
-    return bytes;
+    return testing_gltf::packed<std::uint32_t>({value});
 }
 
-/// A triangle with a buffer at `uri`; `nodes` and `more` are put into the JSON as they are.
-std::string gltf(const std::string& uri, const std::string& nodes = R"({"mesh":0})",
-                 const std::string& more = "", const std::string& count = "3") {
-    return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[)" + nodes +
-           R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":")" +
-           uri + R"("}],"bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,)" +
-           R"("componentType":5126,"type":"VEC3","count":)" + count + "}]" + more + "}";
+/// A triangle on `nodes`, with `more` behind the other members of the root.
+testing_gltf::Gltf gltf(const std::string& nodes = R"({"mesh":0})", const std::string& more = "",
+                        const std::string& count = "3") {
+    auto file = testing_gltf::triangle(count);
+    file.nodes = nodes, file.more = more;
+    return file;
 }
-const std::string data_uri =
-    "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+/// A triangle with a buffer elsewhere.
+std::string gltf_at(const std::string& uri) {
+    auto file = gltf();
+    file.uri = uri;
+    return file.text();
+}
 
 const char* const extensions[] = {"ply", "stl", "obj", "off", "gltf", "glb", "npy", "csv", "xyz", "hedgerow"};
 
@@ -88,13 +90,10 @@ TEST_F(HostileFiles, FormatsThatAreNotRead) {
 }
 
 TEST_F(HostileFiles, CutShort) {
-    write("whole.gltf", gltf(data_uri));
-    ASSERT_EQ(run("info " + file("whole.gltf")).code, 0) << "the corpus is made of what can be read";
-    const std::string json = gltf(data_uri);
-    std::string glb = "glTF" + little(2) + little(static_cast<std::uint32_t>(20 + json.size()));
-    glb += little(static_cast<std::uint32_t>(json.size())) + "JSON" + json;
-    write("whole.glb", glb);
-    ASSERT_EQ(run("info " + file("whole.glb")).code, 0);
+    write("whole.gltf", gltf().text());
+    write("whole.glb", gltf().container());
+    for (const char* name : {"whole.gltf", "whole.glb"})
+        ASSERT_EQ(run("info " + file(name)).code, 0) << "the corpus is made of what can be read";
     for (const std::string name : {"whole.gltf", "whole.glb"}) {
         const std::string whole = bytes_of(file(name));
         for (std::size_t n = 1; n < whole.size(); n += 1 + whole.size() / 12) {
@@ -110,8 +109,8 @@ TEST_F(HostileFiles, NestedDeeply) {
     refuse("closed.gltf", repeated("[", 500000) + repeated("]", 500000), "nested more than 64 deep");
     std::string chain;  // of nodes, each in the one before
     for (int i = 1; i < 100000; ++i) chain += "{\"children\":[" + std::to_string(i) + "]},";
-    refuse("chain.gltf", gltf(data_uri, chain + R"({"children":[0],"mesh":0})"), "reached twice");
-    write("long.gltf", gltf(data_uri, chain + R"({"mesh":0})"));
+    refuse("chain.gltf", gltf(chain + R"({"children":[0],"mesh":0})").text(), "reached twice");
+    write("long.gltf", gltf(chain + R"({"mesh":0})").text());
     EXPECT_EQ(run("info " + file("long.gltf")).code, 0) << "a chain of nodes is no crime";
 }
 
@@ -121,50 +120,75 @@ TEST_F(HostileFiles, PathsThatLeaveTheFolder) {
     for (const std::string uri :
          {"../secret.bin", "%2e%2e/secret.bin", "x/../../secret.bin", "/etc/passwd", "file:///etc/passwd",
           "http://127.0.0.1/a", "C:/a.bin", "..\\\\secret.bin", "%00", "a%", "", "\\u0000"}) {
-        write("scene/a.gltf", gltf(uri));
+        write("scene/a.gltf", gltf_at(uri));
         expect_refused("scene/a.gltf", "folder");
     }
     std::filesystem::create_symlink(folder / "secret.bin", folder / "scene" / "link.bin");
-    write("scene/a.gltf", gltf("link.bin"));
+    write("scene/a.gltf", gltf_at("link.bin"));
     expect_refused("scene/a.gltf", "leaves the folder");
+    const auto here = run_shell("cd '" + file("scene") + "' && " HEDGEROW_TOOL_PATH " info a.gltf 2>&1");
+    EXPECT_EQ(here.code, 3) << here.output;
+    EXPECT_NE(here.output.find("leaves the folder"), std::string::npos) << here.output;
     write("scene/here it is.bin", std::string(36, '\1'));
-    write("scene/a.gltf", gltf("./here%20it%20is.bin"));
+    write("scene/a.gltf", gltf_at("./here%20it%20is.bin"));
     EXPECT_EQ(run("info " + file("scene/a.gltf")).code, 0);
-    write("scene/a.gltf", gltf("missing.bin"));
+    EXPECT_EQ(run_shell("cd '" + file("scene") + "' && " HEDGEROW_TOOL_PATH " info a.gltf 2>&1").code, 0);
+    write("scene/a.gltf", gltf_at("missing.bin"));
     expect_refused("scene/a.gltf", "missing.bin");
 }
 
 TEST_F(HostileFiles, GltfThatLies) {
-    refuse("count.gltf", gltf(data_uri, R"({"mesh":0})", "", "4"), "needs 48 bytes");
-    refuse("huge.gltf", gltf(data_uri, R"({"mesh":0})", "", "3000000000"), "");
-    refuse("minus.gltf", gltf(data_uri, R"({"mesh":0})", "", "-1"), "no whole number");
-    refuse("mesh.gltf", gltf(data_uri, R"({"mesh":7})"), "number 7 of its meshes");
-    refuse("draco.gltf",
-           gltf(data_uri, R"({"mesh":0})", R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"),
+    const std::string node = R"({"mesh":0})";
+    refuse("count.gltf", gltf(node, "", "4").text(), "needs 48 bytes");
+    refuse("huge.gltf", gltf(node, "", "3000000000").text(), "needs 36000000000 bytes");
+    refuse("minus.gltf", gltf(node, "", "-1").text(), "no whole number");
+    refuse("mesh.gltf", gltf(R"({"mesh":7})").text(), "number 7 of its meshes");
+    refuse("draco.gltf", gltf(node, R"(,"extensionsRequired":["KHR_draco_mesh_compression"])").text(),
            "KHR_draco_mesh_compression");
     refuse("old.gltf", R"({"asset":{"version":"1.0"}})", "only 2.0");
-    refuse("self.gltf", gltf(data_uri, R"({"mesh":0,"children":[0]})"), "reached twice");
-    std::string children = "0";
-    for (int i = 0; i < 9; ++i) children += ",0";
-    refuse("many.gltf", gltf(data_uri, R"({"children":[)" + children + "]}"), "more nodes");
-    refuse("nan.gltf", gltf(data_uri, R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1e999,0,0,0,0,1]})"),
-           "JSON");
+    refuse("self.gltf", gltf(R"({"mesh":0,"children":[0]})").text(), "reached twice");
+    refuse("many.gltf", gltf(R"({"children":[0)" + repeated(",0", 9) + "]}").text(), "more nodes");
+    refuse("nan.gltf", gltf(R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1e999,0,0,0,0,1]})").text(), "JSON");
+}
+
+/// As many nodes with the same mesh.
+testing_gltf::Gltf with_instances(testing_gltf::Gltf file, int count) {
+    file.nodes += repeated("," + file.nodes, count - 1);
+    for (int i = 1; i < count; ++i) file.roots += "," + std::to_string(i);
+    return file;
 }
 
 TEST_F(HostileFiles, BombsOfInstances) {
+    if (*limits == '\0') GTEST_SKIP() << "without a limit of memory the triangles may fit";
     // 100 KB name a mesh of 10^6 triangles three thousand times.
-    std::string nodes, roots;
-    for (int i = 0; i < 3000; ++i) {
-        nodes += std::string(i == 0 ? "" : ",") + R"({"mesh":0})";
-        roots += (i == 0 ? "" : ",") + std::to_string(i);
-    }
-    write("zeros.bin", std::string(12000000, '\0'));
-    const std::string bomb =
-        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes +
-        R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":5}]}],"buffers":[{"byteLength":)" +
-        R"(12000000,"uri":"zeros.bin"}],"bufferViews":[{"buffer":0,"byteLength":12000000}],"accessors":)" +
-        R"([{"bufferView":0,"componentType":5126,"type":"VEC3","count":1000000}]})";
-    refuse("bomb.gltf", bomb, *limits == '\0' ? "" : "triangles, all instances written out");
+    auto mesh = testing_gltf::Gltf().array(std::string(12000000, '\0'), "VEC3", testing_gltf::f4, 1000000);
+    mesh.primitive += R"(,"mode":5)";
+    mesh.uri = "zeros.bin";
+    write("zeros.bin", mesh.buffer);
+    refuse("bomb.gltf", with_instances(mesh, 3000).text(), "triangles, all instances written out");
+}
+
+/// Nodes and primitives that make no triangle, but 9 · 10^8 pairs.
+TEST_F(HostileFiles, BombsOfPrimitives) {
+    auto empty = testing_gltf::triangle("0");
+    empty.primitive += repeated("},{" + empty.primitive, 29999);
+    refuse("bomb.gltf", with_instances(empty, 30000).text(), "neither faces nor points");
+}
+
+TEST_F(HostileFiles, FacesOfMillions) {
+    if (*limits == '\0') GTEST_SKIP() << "without a limit of memory the face may fit";
+    const std::string square = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    refuse("face.off", square + "12000000" + repeated(" 0 1 2 3", 3000000) + "\n",
+           "the 12000000 corners of one of its faces");
+}
+
+TEST_F(HostileFiles, ArraysOfManyAxes) {
+    std::string header =
+        "{'descr': '|u1', 'fortran_order': True, 'shape': (1000000" + repeated(",1", 500000) + "), }";
+    refuse("axes.npy",
+           std::string("\x93NUMPY\x02\0", 8) + little(static_cast<std::uint32_t>(header.size())) + header +
+               std::string(1000000, '\0'),
+           "more than 64 axes");
 }
 
 TEST_F(HostileFiles, AbsurdCounts) {

@@ -4,7 +4,7 @@
 #include <hedgerow/io/point_file.h>
 #include <hedgerow/io/validate.h>
 
-#include "io_support.h"
+#include "gltf_text.h"
 
 namespace hedgerow {
 namespace {
@@ -110,17 +110,17 @@ TEST(Fuzz, Meshes) {
 
 TEST(Fuzz, Gltf) {
     TempFolder folder;
-    const std::string gltf =
-        R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
-"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":
-"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
-"bufferViews":[{"buffer":0,"byteLength":36}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}]})";
     const auto read = [](const std::filesystem::path& path) {
         validate_mesh(load_mesh<float>(path), "the result");
         validate_mesh(load_mesh<double>(path, {.drop_bad = true}), "the result");
     };
-    EXPECT_GT(survivors(folder, "a.gltf", gltf, 3000, read), 30);
+    int well = 0;
+    for (const testing_gltf::GltfCase& c : testing_gltf::gltf_cases()) {
+        write_buffer(folder, c.file);
+        well += survivors(folder, "a.gltf", c.file.text(), 200, read);
+        well += survivors(folder, "a.glb", c.file.container(), 100, read);
+    }
+    EXPECT_GT(well, 100);
 }
 
 TEST(Fuzz, PointsArraysAndImages) {

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "io_support.h"
+#include "gltf_text.h"
 
 #define TINYOBJLOADER_USE_DOUBLE
 #define TINYOBJLOADER_IMPLEMENTATION
@@ -226,30 +226,6 @@ TEST(Obj, AgreesWithTinyobjloader) {
     }
 }
 
-/// A triangle of glTF, used by two nodes: one moved, one mirrored.
-std::string gltf() {
-    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-"nodes":[{"translation":[10,0,0],"children":[1,2]},{"mesh":0},{"mesh":0,"scale":[-2,1,1]}],
-"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-"buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}],
-"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
-{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}]})";
-}
-
-TEST(Gltf, AppliesTransformsAndInstances) {
-    TempFolder folder;
-    const auto mesh = load_mesh<double>(folder.file("a.gltf", gltf()));
-    ASSERT_EQ(mesh.size(), 2u);
-    EXPECT_EQ(mesh.vertices.size(), 4u) << "the instances share two corners";
-    const auto first = mesh.view().triangle(0), second = mesh.view().triangle(1);
-    EXPECT_EQ(first.a, Vec3d(10, 0, 0));
-    EXPECT_EQ(first.b, Vec3d(11, 0, 0));
-    EXPECT_EQ(first.normal()[2], 1);
-    EXPECT_EQ(second.normal()[2], 2) << "a mirrored face still shows its front";
-    EXPECT_EQ(second.bounds().low[0], 8);
-}
-
 TEST(DropBad, LeavesOutWholeFacesAndKeepsTheirIds) {
     TempFolder folder;
     const auto path = folder.file("a.obj",
@@ -281,7 +257,22 @@ TEST(Progress, IsToldAndCancels) {
     EXPECT_GT(seen.size(), 5u);
     progress.report = [&](std::uint64_t, std::uint64_t) { cancel = true; };
     EXPECT_THROW(load_mesh(folder / "a.ply", {}, progress), Cancelled);
-    EXPECT_THROW(load_mesh(folder.file("a.gltf", gltf()), {}, progress), Cancelled);
+    EXPECT_THROW(load_mesh(folder.file("a.gltf", testing_gltf::triangle().text()), {}, progress), Cancelled);
+}
+
+TEST(Progress, OfSavingEndsWithAllThatIsWritten) {
+    TempFolder folder;
+    TriangleMesh<float> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}};
+    mesh.vertices.resize(30000), mesh.triangles.assign(60000, {0, 1, 2});
+    for (const std::string name : {"a.ply", "a.stl", "a.obj", "a.off"}) {
+        std::uint64_t last = 0, all = 0;
+        save_mesh(folder / name, mesh, {[&](std::uint64_t done, std::uint64_t total) {
+                      EXPECT_LE(done, total);
+                      last = done, all = total;
+                  }});
+        EXPECT_EQ(all, mesh.size() + (name == "a.stl" ? 0 : mesh.vertices.size()));
+        EXPECT_LT(all - last, 4096u) << name;
+    }
 }
 
 TEST(SaveMesh, ReportsWhatItCannotWrite) {

@@ -9,6 +9,7 @@
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/scenes/meshes.h>
 
+#include "gltf_text.h"
 #include "tool.h"
 
 namespace {
@@ -38,48 +39,17 @@ Mesh turned_to_y(Mesh mesh) {
     return mesh;
 }
 
-/// Binary glTF with one mesh of one primitive.
 void save_glb(const std::string& path, const Mesh& mesh) {
-    std::string binary;
-    Box3f box;
-    for (const auto& v : mesh.vertices) {
-        box.expand(v);
-        binary.append(reinterpret_cast<const char*>(v.data), 12);
-    }
-    const std::size_t positions = binary.size();
-    for (const auto& t : mesh.triangles) binary.append(reinterpret_cast<const char*>(t.data()), 12);
-    const auto list = [](const Vec3f& v) { return nlohmann::json{v[0], v[1], v[2]}; };
-    const nlohmann::json document = {
-        {"asset", {{"version", "2.0"}}},
-        {"scene", 0},
-        {"scenes", {{{"nodes", {0}}}}},
-        {"nodes", {{{"mesh", 0}}}},
-        {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}}},
-        {"buffers", {{{"byteLength", binary.size()}}}},
-        {"bufferViews",
-         {{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", positions}},
-          {{"buffer", 0}, {"byteOffset", positions}, {"byteLength", binary.size() - positions}}}},
-        {"accessors",
-         {{{"bufferView", 0},
-           {"componentType", 5126},
-           {"count", mesh.vertices.size()},
-           {"type", "VEC3"},
-           {"min", list(box.low)},
-           {"max", list(box.high)}},
-          {{"bufferView", 1},
-           {"componentType", 5125},
-           {"count", 3 * mesh.triangles.size()},
-           {"type", "SCALAR"}}}}};
-    std::string text = document.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    std::ofstream out(path, std::ios::binary);
-    const auto word = [&](std::size_t number) {
-        const auto n = static_cast<std::uint32_t>(number);
-        out.write(reinterpret_cast<const char*>(&n), 4);
-    };
-    word(0x46546C67), word(2), word(12 + 8 + text.size() + 8 + binary.size());
-    word(text.size()), word(0x4E4F534A), out << text;
-    word(binary.size()), word(0x004E4942), out << binary;
+    std::string corners, indices;
+    for (const auto& v : mesh.vertices)
+        for (int k = 0; k < 3; ++k) testing_io::append(corners, v[k]);
+    for (const auto& t : mesh.triangles)
+        for (const auto v : t) testing_io::append(indices, v);
+    std::ofstream(path, std::ios::binary)
+        << testing_gltf::Gltf()
+               .array(corners, "VEC3", testing_gltf::f4, mesh.vertices.size())
+               .indices(indices, testing_gltf::u4, 3 * mesh.triangles.size())
+               .container();
 }
 
 /// The share of the pixels that differ by more than rounding.

@@ -1,6 +1,8 @@
 /// glTF 2.0 scenes (`.gltf`, `.glb`): every instance of every mesh, in the scene's coordinates. Read here and
 /// not by Assimp, which damaged files can kill (docs/design/014-gltf.md).
-#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
 
 #include <hedgerow/error.h>
 #include <hedgerow/geometry/transform.h>
@@ -86,7 +88,7 @@ public:
             seen_[static_cast<std::size_t>(number)] = true;
             const Affine<3> m = after(to_scene, transform_of(file_, node));
             if (const auto mesh = file_.number(node, "mesh")) meshes.push_back({*mesh, m});
-            push(ordinals(node, "children"), m);
+            push(file_.ordinals(node, "children"), m);
         }
         return meshes;
     }
@@ -101,24 +103,13 @@ private:
         if (open_.size() + nodes.size() > seen_.size()) file_.fail("more nodes are named than there are");
         for (auto n = nodes.rbegin(); n != nodes.rend(); ++n) open_.push_back({*n, to_scene});
     }
-    std::vector<std::uint64_t> ordinals(const Json& object, const char* key) const {
-        std::vector<std::uint64_t> all;
-        const auto found = object.find(key);
-        if (found == object.end()) return all;
-        if (!found->is_array()) file_.fail(std::string("'") + key + "' is no array");
-        for (const Json& n : *found) {
-            if (!n.is_number_unsigned()) file_.fail(std::string("'") + key + "' holds what is no index");
-            all.push_back(n.get<std::uint64_t>());
-        }
-        return all;
-    }
     /// The nodes of the default scene; of the first if none is; without scenes the nodes that have no parent.
     std::vector<std::uint64_t> roots() const {
         if (file_.count("scenes") > 0)
-            return ordinals(file_.object("scenes", file_.scene().value_or(0)), "nodes");
+            return file_.ordinals(file_.object("scenes", file_.scene().value_or(0)), "nodes");
         std::vector<bool> child(seen_.size());
         for (std::size_t i = 0; i < seen_.size(); ++i)
-            for (const std::uint64_t n : ordinals(file_.object("nodes", i), "children"))
+            for (const std::uint64_t n : file_.ordinals(file_.object("nodes", i), "children"))
                 if (n < child.size()) child[static_cast<std::size_t>(n)] = true;
         std::vector<std::uint64_t> all;
         for (std::size_t i = 0; i < child.size(); ++i)
@@ -144,6 +135,20 @@ std::array<std::uint64_t, 3> corners_of(Mode mode, std::uint64_t i) {
     return i % 2 == 0 ? std::array{i, i + 1, i + 2} : std::array{i + 1, i, i + 2};
 }
 
+/// A primitive of triangles.
+struct Part {
+    Mode mode;
+    const GltfAccessor* positions;
+    const GltfAccessor* indices;  // null: every position is a corner, in their order
+    std::uint64_t triangles;
+};
+
+/// The parts of a mesh that have triangles, and the number of those.
+struct Mesh {
+    std::vector<Part> parts;
+    std::uint64_t triangles = 0;
+};
+
 template <class T>
 class GltfReader {
 public:
@@ -151,10 +156,10 @@ public:
         : source_(source), file_(source, path) {}
 
     TriangleMesh<T> read() {
-        const std::vector<Placed> meshes = NodeWalk(file_).placed();
-        expect_room(meshes);
-        for (const Placed& p : meshes)
-            for_each_part(p.mesh, [&](const Json& part, Mode mode) { add_part(part, mode, p); });
+        const std::vector<Placed> instances = NodeWalk(file_).placed();
+        expect_room(instances);
+        for (const Placed& p : instances)
+            for (const Part& part : mesh_of(p.mesh).parts) add_part(part, p.to_scene);
         TriangleMesh<T> mesh;
         mesh.vertices = welder_.take();
         faces_.move_to(mesh);
@@ -162,69 +167,78 @@ public:
     }
 
 private:
-    /// Calls f for each primitive of triangles that has positions.
-    template <class F>
-    void for_each_part(std::uint64_t mesh, F f) {
-        const Json& object = file_.object("meshes", mesh);
-        const auto parts = object.find("primitives");
-        if (parts == object.end() || !parts->is_array())
-            file_.fail("mesh " + std::to_string(mesh) + " has no 'primitives'");
-        for (const Json& part : *parts) {
-            if (!part.is_object())
-                file_.fail("a primitive of mesh " + std::to_string(mesh) + " is no object");
-            const std::uint64_t mode = file_.number_or(part, "mode", 4);
-            if (mode > 6)
-                file_.fail("a primitive has mode " + std::to_string(mode) + ", but modes are 0 to 6");
-            const auto attributes = part.find("attributes");
-            if (attributes == part.end() || !attributes->is_object())
-                file_.fail("a primitive of mesh " + std::to_string(mesh) + " has no 'attributes'");
-            if (mode >= 4 && attributes->contains("POSITION")) f(part, static_cast<Mode>(mode));
-        }
-    }
-    std::uint64_t corner_count(const Json& part) const {
-        const auto indices = file_.number(part, "indices");
-        const std::uint64_t accessor =
-            indices ? *indices : file_.needed_number(part.at("attributes"), "POSITION");
-        return file_.needed_number(file_.object("accessors", accessor), "count");
-    }
-    /// A few bytes can name a mesh many times: what comes of it is counted before any of it is read.
-    void expect_room(const std::vector<Placed>& meshes) {
+    /// A few bytes can name a mesh many times: each is read from the JSON once, and the triangles of all
+    /// instances are counted before one of them is made.
+    void expect_room(const std::vector<Placed>& instances) {
         std::uint64_t triangles = 0;
-        for (const Placed& p : meshes)
-            for_each_part(p.mesh, [&](const Json& part, Mode mode) {
-                triangles += std::min(triangle_count(mode, corner_count(part)), most_ordinals);
-                check_room(source_, triangles, "triangles, all instances written out");
-            });
+        for (const Placed& p : instances) {
+            source_.expect_not_cancelled();
+            triangles += mesh_of(p.mesh).triangles;
+            check_room(source_, triangles, "triangles, all instances written out");
+        }
         expect_memory(file_.name(),
                       "its " + std::to_string(triangles) + " triangles, all instances written out,",
                       triangles * sizeof(TriangleIndices));
     }
-    void add_part(const Json& part, Mode mode, const Placed& placed) {
-        const GltfAccessor positions(file_, file_.needed_number(part.at("attributes"), "POSITION"), 3);
-        std::optional<GltfAccessor> indices;
-        if (const auto number = file_.number(part, "indices")) {
-            indices.emplace(file_, *number, 1);
-            if (indices->is_float() || indices->is_signed())
-                file_.fail("the indices of a primitive are of a type that indices cannot have");
+    const Mesh& mesh_of(std::uint64_t number) {
+        const auto [found, is_new] = meshes_.try_emplace(number);
+        if (is_new) found->second = read_mesh(number);
+        return found->second;
+    }
+    const GltfAccessor& accessor_of(std::uint64_t number, int components) {
+        return accessors_.try_emplace({number, components}, file_, number, components).first->second;
+    }
+
+    Mesh read_mesh(std::uint64_t number) {
+        const Json& object = file_.object("meshes", number);
+        const std::string name = "mesh " + std::to_string(number);
+        const auto primitives = object.find("primitives");
+        if (primitives == object.end() || !primitives->is_array()) file_.fail(name + " has no 'primitives'");
+        Mesh mesh;
+        for (const Json& primitive : *primitives) {
+            if (!primitive.is_object()) file_.fail("a primitive of " + name + " is no object");
+            const std::uint64_t mode = file_.number_or(primitive, "mode", 4);
+            if (mode > 6)
+                file_.fail("a primitive has mode " + std::to_string(mode) + ", but modes are 0 to 6");
+            const auto attributes = primitive.find("attributes");
+            if (attributes == primitive.end() || !attributes->is_object())
+                file_.fail("a primitive of " + name + " has no 'attributes'");
+            const auto positions = file_.number(*attributes, "POSITION");
+            if (mode < 4 || !positions) continue;  // points or lines, or nothing to draw
+            const Part part = read_part(primitive, static_cast<Mode>(mode), accessor_of(*positions, 3));
+            if (part.triangles == 0) continue;
+            mesh.parts.push_back(part);
+            mesh.triangles += part.triangles;
         }
-        const std::uint64_t corners = indices ? indices->size() : positions.size();
+        return mesh;
+    }
+    Part read_part(const Json& primitive, Mode mode, const GltfAccessor& positions) {
+        const auto number = file_.number(primitive, "indices");
+        const GltfAccessor* const indices = number ? &accessor_of(*number, 1) : nullptr;
+        if (indices != nullptr && !indices->has_ordinals())
+            file_.fail("the indices of a primitive are of a type that indices cannot have");
+        const std::uint64_t corners = (indices != nullptr ? *indices : positions).size();
         if (mode == Mode::triangles && corners % 3 != 0)
             file_.fail("a primitive of triangles has " + std::to_string(corners) +
                        " corners, which is no multiple of 3");
-        const bool mirrored = mirrors(placed.to_scene);  // turn what the mirror turned, so fronts stay fronts
-        for (std::uint64_t i = 0; i < triangle_count(mode, corners); ++i) {
+        return {mode, &positions, indices, triangle_count(mode, corners)};
+    }
+
+    void add_part(const Part& part, const Affine<3>& to_scene) {
+        const bool mirrored = mirrors(to_scene);  // turn what the mirror turned, so fronts stay fronts
+        for (std::uint64_t i = 0; i < part.triangles; ++i) {
             if (i % 65536 == 0) source_.expect_not_cancelled();
             std::array<std::uint32_t, 3> triangle{};
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::uint64_t corner = corners_of(mode, i)[k];
-                triangle[k] = vertex(positions, indices ? index(*indices, corner) : corner, placed.to_scene);
+                const std::uint64_t corner = corners_of(part.mode, i)[k];
+                const auto named = part.indices != nullptr
+                                       ? static_cast<std::uint64_t>(part.indices->value(corner, 0))
+                                       : corner;
+                triangle[k] = vertex(*part.positions, named, to_scene);
             }
             if (mirrored) std::swap(triangle[0], triangle[2]);
             faces_.add(triangle);
         }
-    }
-    static std::uint64_t index(const GltfAccessor& indices, std::uint64_t corner) {
-        return static_cast<std::uint64_t>(indices.value(corner, 0));
     }
     std::uint32_t vertex(const GltfAccessor& positions, std::uint64_t i, const Affine<3>& to_scene) {
         if (i >= positions.size())
@@ -237,6 +251,8 @@ private:
 
     ByteSource& source_;
     GltfFile file_;
+    std::map<std::uint64_t, Mesh> meshes_;
+    std::map<std::pair<std::uint64_t, int>, GltfAccessor> accessors_;  // by number and components
     Welder<T> welder_{source_};
     FaceList faces_{source_};
 };

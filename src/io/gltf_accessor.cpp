@@ -2,7 +2,6 @@
 #include "gltf_accessor.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "mesh_parts.h"
 
@@ -13,16 +12,6 @@ namespace {
 /// Accessors without a buffer view are zeros, which cost a file nothing; no scene has use for more.
 constexpr std::uint64_t most_zeros = std::uint64_t(1) << 22;
 constexpr std::uint64_t longest_stride = 1u << 16;
-
-template <class U>
-U little(const char* bytes) {
-    unsigned char raw[sizeof(U)];
-    std::memcpy(raw, bytes, sizeof(U));
-    if constexpr (std::endian::native != std::endian::little) std::reverse(raw, raw + sizeof(U));
-    U value;
-    std::memcpy(&value, raw, sizeof(U));
-    return value;
-}
 
 GltfNumbers::Type type_of(const GltfFile& file, const GltfFile::Json& where) {
     const std::uint64_t type = file.needed_number(where, "componentType");
@@ -54,6 +43,10 @@ double GltfNumbers::value(std::uint64_t i, int component) const {
             break;
     }
     return static_cast<double>(little<float>(at));
+}
+
+bool GltfNumbers::are_ordinals() const {
+    return !normalized && (type == Type::u1 || type == Type::u2 || type == Type::u4);
 }
 
 std::uint64_t GltfNumbers::size_of_number() const {
@@ -106,9 +99,12 @@ void GltfAccessor::read_sparse(GltfFile& file, const GltfFile::Json& sparse, int
     places_ = numbers(file, *places, type_of(file, *places), replaced_, 1);
     values_ = numbers(file, *values, base_.type, replaced_, components);
     values_.normalized = base_.normalized;
+    if (!places_.are_ordinals())
+        file.fail("the indices of a sparse accessor are of a type that indices cannot have");
     if (replaced_ > 0 && (places_.bytes.empty() || values_.bytes.empty()))
         file.fail("a sparse accessor has no buffer view for its indices or values");
     for (std::uint64_t i = 0; i < replaced_; ++i) {
+        if (i % 65536 == 0) file.expect_not_cancelled();
         const double place = places_.value(i, 0);
         if (!(place >= 0 && place < static_cast<double>(size_)) ||
             (i > 0 && place <= places_.value(i - 1, 0)))

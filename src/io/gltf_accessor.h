@@ -1,9 +1,7 @@
 /// The elements of a glTF accessor, where they lie.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 
 #include <hedgerow/geometry/vec.h>
@@ -24,6 +22,8 @@ struct GltfNumbers {
     /// Number `component` of element `i`, both in range.
     double value(std::uint64_t i, int component) const;
     std::uint64_t size_of_number() const;
+    /// Whether they may be used as indices: whole, without a sign, and as they are.
+    bool are_ordinals() const;
 };
 
 /// Bounds are checked once, when it is made: `at` reads what is there. Elements that a sparse accessor
@@ -35,10 +35,7 @@ public:
     GltfAccessor(GltfFile& file, std::uint64_t number, int components);
 
     std::uint64_t size() const { return size_; }
-    bool is_float() const { return base_.type == GltfNumbers::Type::f4; }
-    bool is_signed() const {
-        return base_.type == GltfNumbers::Type::i1 || base_.type == GltfNumbers::Type::i2;
-    }
+    bool has_ordinals() const { return base_.are_ordinals(); }
     double value(std::uint64_t i, int component) const;
     Vec3d point(std::uint64_t i) const { return {value(i, 0), value(i, 1), value(i, 2)}; }
 

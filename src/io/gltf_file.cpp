@@ -16,12 +16,6 @@ namespace hedgerow::detail {
 
 namespace {
 
-std::uint32_t little32(std::string_view bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
-    return value;
-}
-
 /// All that is left of a file.
 std::string read_all(ByteSource& file) {
     std::string bytes;
@@ -64,7 +58,7 @@ const nlohmann::json empty_array = nlohmann::json::array();
 }  // namespace
 
 GltfFile::GltfFile(ByteSource& file, std::filesystem::path path)
-    : path_(std::move(path)), name_(path_.string()) {
+    : source_(file), path_(std::move(path)), name_(path_.string()) {
     container_ = read_all(file);
     const bool is_container = container_.starts_with("glTF");
     std::string_view text = is_container ? json_of_container() : std::string_view(container_);
@@ -78,14 +72,15 @@ GltfFile::GltfFile(ByteSource& file, std::filesystem::path path)
 std::string_view GltfFile::json_of_container() {
     const std::string_view bytes = container_;
     if (bytes.size() < 20) fail("ends in its header of 20 bytes");
-    if (const auto version = little32(bytes, 4); version != 2)
-        fail("is a container of version " + std::to_string(version) + ", but only 2 is read");
-    if (little32(bytes, 8) > bytes.size())
-        fail("should be " + std::to_string(little32(bytes, 8)) + " bytes long, but has " +
-             std::to_string(bytes.size()) + ": it was cut off");
+    const auto word = [&](std::size_t at) { return little<std::uint32_t>(&bytes[at]); };
+    const std::uint32_t version = word(4), length = word(8);
+    if (version != 2) fail("is a container of version " + std::to_string(version) + ", but only 2 is read");
+    if (length > bytes.size())
+        fail("should be " + std::to_string(length) + " bytes long, but has " + std::to_string(bytes.size()) +
+             ": it was cut off");
     std::optional<std::string_view> json;
-    for (std::size_t at = 12; at + 8 <= little32(bytes, 8);) {
-        const std::size_t size = little32(bytes, at);
+    for (std::size_t at = 12; at + 8 <= length;) {
+        const std::size_t size = word(at);
         if (size > bytes.size() - at - 8)
             fail("has a chunk of " + std::to_string(size) + " bytes at byte " + std::to_string(at) +
                  ", which is longer than the file");
@@ -133,10 +128,23 @@ const GltfFile::Json& GltfFile::object(const char* key, std::uint64_t i) const {
 std::optional<std::uint64_t> GltfFile::number(const Json& object, const char* key) const {
     const auto found = object.find(key);
     if (found == object.end()) return std::nullopt;
-    if (found->is_number_unsigned()) return found->get<std::uint64_t>();
-    const double x = found->is_number_float() ? found->get<double>() : -1;  // 3.0, as some exporters write
+    return whole(*found, key);
+}
+
+std::vector<std::uint64_t> GltfFile::ordinals(const Json& object, const char* key) const {
+    std::vector<std::uint64_t> all;
+    const auto found = object.find(key);
+    if (found == object.end()) return all;
+    if (!found->is_array()) fail(std::string("'") + key + "' is no array");
+    for (const Json& n : *found) all.push_back(whole(n, key));
+    return all;
+}
+
+std::uint64_t GltfFile::whole(const Json& value, const char* key) const {
+    if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+    const double x = value.is_number_float() ? value.get<double>() : -1;  // 3.0, as some exporters write
     if (!(x >= 0) || x > 0x1p53 || x != std::floor(x))
-        fail(std::string("'") + key + "' is no whole number where one should stand");
+        fail(std::string("'") + key + "' holds what is no whole number");
     return static_cast<std::uint64_t>(x);
 }
 
@@ -203,7 +211,7 @@ std::string_view GltfFile::find_bytes(std::uint64_t i, const Json& description, 
     if (!uri->is_string()) fail("the 'uri' of buffer " + std::to_string(i) + " is no text");
     const auto& text = uri->get_ref<const std::string&>();
     if (is_data_uri(text)) return own = bytes_of_data_uri(text, name_);
-    const auto file = file_of_uri(text, path_.parent_path(), name_);
+    const auto file = file_of_uri(text, path_, name_);
     const std::uint64_t size = needed_number(description, "byteLength");
     try {
         return own = first_bytes(file, size);

@@ -1,6 +1,10 @@
 /// The parts of a glTF 2.0 file: its JSON, the bytes of its buffers, and checked ways into both.
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,6 +16,17 @@
 
 namespace hedgerow::detail {
 
+/// The number in `sizeof(U)` bytes, in the order that all of glTF has.
+template <class U>
+U little(const char* bytes) {
+    unsigned char raw[sizeof(U)];
+    std::memcpy(raw, bytes, sizeof(U));
+    if constexpr (std::endian::native != std::endian::little) std::reverse(raw, raw + sizeof(U));
+    U value;
+    std::memcpy(&value, raw, sizeof(U));
+    return value;
+}
+
 /// A file whose every access is checked: what is missing, of the wrong type or out of range is an InputError
 /// that names the file and the place. Buffers are read when they are first asked for, and only from the
 /// file itself, from data URIs, and from files in the scene's folder.
@@ -20,7 +35,8 @@ public:
     using Json = nlohmann::json;
 
     /// Reads `.gltf` text or a `.glb` container, told apart by their first bytes, and holds it against what
-    /// can be read: version 2, no extension that is required and changes the geometry.
+    /// can be read: version 2, no extension that is required and changes the geometry. `file` has to live as
+    /// long as this.
     GltfFile(ByteSource& file, std::filesystem::path path);
 
     const std::string& name() const { return name_; }
@@ -35,6 +51,8 @@ public:
         return number(object, key).value_or(otherwise);
     }
     std::uint64_t needed_number(const Json& object, const char* key) const;
+    /// An array of whole numbers that are not negative; empty where there is no such member.
+    std::vector<std::uint64_t> ordinals(const Json& object, const char* key) const;
     /// `count` finite numbers; nothing where there is no such member.
     std::optional<std::vector<double>> numbers(const Json& object, const char* key, std::size_t count) const;
     /// `size` bytes of a buffer view, from `offset` on. They lie there as long as the file is held.
@@ -43,6 +61,7 @@ public:
     std::uint64_t stride(std::uint64_t view) const;
     std::optional<std::uint64_t> scene() const { return number(root_, "scene"); }
 
+    void expect_not_cancelled() const { source_.expect_not_cancelled(); }
     /// Throws InputError "NAME: WHAT. Repair the file, or export it again".
     [[noreturn]] void fail(const std::string& what) const;
 
@@ -55,9 +74,12 @@ private:
 
     std::string_view json_of_container();
     void expect_known();
+    /// A value of the member `key`.
+    std::uint64_t whole(const Json& value, const char* key) const;
     std::string_view buffer(std::uint64_t i);
     std::string_view find_bytes(std::uint64_t i, const Json& description, std::string& own) const;
 
+    const ByteSource& source_;
     std::filesystem::path path_;
     std::string name_;
     std::string container_;                   // all of a .glb; empty for .gltf

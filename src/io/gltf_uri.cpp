@@ -50,7 +50,7 @@ std::optional<std::string> percent_decoded(std::string_view uri) {
     return text;
 }
 
-/// Whether a folder holds a file, once all links are followed.
+/// Whether a folder holds a file, once all links are followed. The folder's path is not empty.
 bool holds(const std::filesystem::path& folder, const std::filesystem::path& file) {
     std::error_code error;
     const auto whole_folder = std::filesystem::weakly_canonical(folder, error);
@@ -86,8 +86,10 @@ std::string bytes_of_data_uri(std::string_view uri, const std::string& name) {
     return bytes;
 }
 
-std::filesystem::path file_of_uri(std::string_view uri, const std::filesystem::path& folder,
+std::filesystem::path file_of_uri(std::string_view uri, const std::filesystem::path& scene,
                                   const std::string& name) {
+    // A scene that is named without a folder lies in the current one.
+    const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
     const auto fail = [&](const std::string& why) {
         throw InputError(name + ": its buffer " + shown(uri) + " " + why +
                          ". Buffers are read from the scene's own folder: put the file there");

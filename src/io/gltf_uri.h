@@ -15,9 +15,9 @@ inline bool is_data_uri(std::string_view uri) {
 /// The bytes of `data:...;base64,...`. Throws InputError, naming `name`, for what is not base64.
 std::string bytes_of_data_uri(std::string_view uri, const std::string& name);
 
-/// The file in `folder` (or in a folder of it) that a relative URI names. Throws InputError, naming `name`,
-/// for schemes, absolute paths, `..`, and links that lead out of the folder.
-std::filesystem::path file_of_uri(std::string_view uri, const std::filesystem::path& folder,
+/// The file that a relative URI names, in the folder of the file `scene` or in a folder of that. Throws
+/// InputError, naming `name`, for schemes, absolute paths, `..`, and links that lead out of the folder.
+std::filesystem::path file_of_uri(std::string_view uri, const std::filesystem::path& scene,
                                   const std::string& name);
 
 }  // namespace hedgerow::detail
