@@ -1,4 +1,7 @@
-/// PNG images: round trips and bad input.
+/// Images: round trips of PNG, bad input, and writers that are stopped.
+#include <atomic>
+
+#include <hedgerow/io/exr.h>
 #include <hedgerow/io/image.h>
 
 #include "io_support.h"
@@ -22,6 +25,34 @@ TEST(Png, WhatIsSavedIsReadBack) {
     const Image red(3000, 1000, {255, 0, 0});
     save_png(folder / "red.png", red);
     EXPECT_EQ(load_png(folder / "red.png"), red) << "packed most tightly";
+}
+
+TEST(Png, StaysAsItWasWhereSavingIsCancelled) {
+    TempFolder folder;
+    const std::atomic<bool> cancel = true;
+    const auto path = folder.file("a.png", "old");
+    EXPECT_THROW(save_png(path, Image(9, 9), {{}, &cancel}), Cancelled);
+    EXPECT_EQ(contents(path), "old");
+    EXPECT_EQ(folder.file_count(), 1u);
+}
+
+TEST(Exr, StaysAsItWasWhereSavingIsCancelled) {
+    if (!exr_supported()) GTEST_SKIP() << "this build has no OpenEXR";
+    TempFolder folder;
+    const std::vector<float> values(100 * 100);
+    const Layers layers{100, 100, {{"Y", Strided<float>(values)}}};
+    std::atomic<bool> cancel = false;
+    std::uint64_t told = 0;
+    const Progress progress{[&](std::uint64_t done, std::uint64_t total) {
+                                EXPECT_EQ(total, 10000u);
+                                told = done, cancel = true;
+                            },
+                            &cancel};
+    const auto path = folder.file("a.exr", "old");
+    EXPECT_THROW(save_exr(path, layers, progress), Cancelled);
+    EXPECT_LT(told, 5000u) << "the rest was not packed";
+    EXPECT_EQ(contents(path), "old");
+    EXPECT_EQ(folder.file_count(), 1u);
 }
 
 TEST(Png, BadInput) {

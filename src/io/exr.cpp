@@ -104,18 +104,21 @@ void write(detail::OutputFile& file, const Layers& layers) {
     Stream stream(file);
     Imf::OutputFile image(stream, header);
     Row row(layers);
+    const auto width = static_cast<std::uint64_t>(layers.width);
+    file.expect(width * static_cast<std::uint64_t>(layers.height));
     image.setFrameBuffer(row.buffer());
     for (int y = 0; y < layers.height; ++y) {
         row.fill(y);
         image.writePixels();
+        file.advance(width);
     }
 }
 
 }  // namespace
 
-void save_exr(const std::filesystem::path& path, const Layers& layers) {
+void save_exr(const std::filesystem::path& path, const Layers& layers, const Progress& progress) {
     check(path, layers);
-    detail::OutputFile file(path);
+    detail::OutputFile file(path, progress);
     try {
         write(file, layers);
     } catch (const Iex::BaseExc& error) {
@@ -129,7 +132,7 @@ bool exr_supported() {
     return true;
 }
 #else
-void save_exr(const std::filesystem::path& path, const Layers&) {
+void save_exr(const std::filesystem::path& path, const Layers&, const Progress&) {
     throw InputError(path.string() +
                      ": this build has no OpenEXR: build with HEDGEROW_EXR=ON, or save a PNG");
 }

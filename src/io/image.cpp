@@ -31,13 +31,13 @@ struct Handle : png_image {
 
 }  // namespace
 
-void save_png(const std::filesystem::path& path, const Image& image) {
+void save_png(const std::filesystem::path& path, const Image& image, const Progress& progress) {
     detail::expect_pixels(path, image.width, image.height, image.pixels.size(), "pixels");
     Handle png;
     png.width = static_cast<png_uint_32>(image.width);
     png.height = static_cast<png_uint_32>(image.height);
     png.format = PNG_FORMAT_RGB;
-    detail::OutputFile file(path);
+    detail::OutputFile file(path, progress);
     if (!png_image_write_to_stdio(&png, file.stream(), 0, image.pixels.data(), 0, nullptr))
         throw OutputError(path.string() + ": cannot be written (" + png.message +
                           "). Check the folder, its permissions and the space left");

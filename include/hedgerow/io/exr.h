@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include <hedgerow/parallel/progress.h>
 #include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
@@ -30,7 +31,9 @@ struct Layers {
 /// is bad or there twice; OutputError if the path cannot be written (a pipe cannot: the format is not written
 /// in one go). The format is "OpenEXR File Layout", openexr.com/en/latest/OpenEXRFileLayout.html. O(values),
 /// in the memory of some rows.
-void save_exr(const std::filesystem::path& path, const Layers& layers);
+///
+/// `progress` is told of the pixels. Throws Cancelled if it is cancelled: the file of before then stays.
+void save_exr(const std::filesystem::path& path, const Layers& layers, const Progress& progress = {});
 
 /// Whether this build has OpenEXR (HEDGEROW_EXR=ON). Without it `save_exr` throws InputError.
 bool exr_supported();

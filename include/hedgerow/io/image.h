@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <vector>
 
+#include <hedgerow/parallel/progress.h>
+
 namespace hedgerow {
 
 /// Pixels in rows from the top, left to right; red, green, blue in sRGB.
@@ -33,8 +35,9 @@ private:
 };
 
 /// Writes a PNG, by way of a file beside `path` that is then renamed. Throws InputError if the image has no
-/// pixels, or other than width × height, and OutputError if the path cannot be written.
-void save_png(const std::filesystem::path& path, const Image& image);
+/// pixels, or other than width × height, OutputError if the path cannot be written, and Cancelled, once the
+/// image is packed, if `progress` is cancelled: the file of before then stays.
+void save_png(const std::filesystem::path& path, const Image& image, const Progress& progress = {});
 
 /// Reads any PNG: greys and palettes become RGB, 16 bits become 8, what is transparent lies on black. Throws
 /// InputError if the file is none, is damaged, or promises more pixels than its size can hold.
