@@ -150,6 +150,18 @@ TEST(Advice, GivesAReasonFromTheCounts) {
     const std::string why = advise(c, Ask::closest_hit)[1].reason;
     EXPECT_NE(why.find("grid takes 4 times as long with 1,568 tests"), std::string::npos) << why;
 }
+TEST(Advice, RanksTheLeastSlowWhereEachStructureIsSlowForSomeRays) {
+    Comparison c = made_up;
+    c.structures = {costing("one", 1, 1, 500, 1), costing("other", 1, 1, 100, 1)};
+    for (std::size_t i = 0; i < 2; ++i) {
+        c.structures[i].queries[0].seconds = i == 0 ? 1 : 20;
+        c.structures[i].queries[1].seconds = i == 0 ? 20 : 1;
+    }
+    const auto memory = advise(c, Ask::closest_hit)[3];
+    ASSERT_EQ(memory.ranking.size(), 2u);
+    EXPECT_EQ(memory.ranking[0].structure, "other");
+    EXPECT_NE(memory.rule.find("at most 20 times"), std::string::npos) << memory.rule;
+}
 TEST(Advice, IsForTheQueryThatIsAsked) {
     EXPECT_EQ(advise(made_up, Ask::nearest)[1].ranking[0].structure, "none");
     EXPECT_EQ(advise(made_up, Ask::closest_hit, {.few = 1})[0].ranking[0].structure, "none");
@@ -338,6 +350,7 @@ TEST(Measure, CountsWithoutTimesWhenThereAreNoRounds) {
                      c = measure(mesh, structures, counts);
     EXPECT_TRUE(c.finished);
     ASSERT_EQ(c.structures.size(), 3u);
+    for (const StructureCost& s : c.structures) EXPECT_EQ(s.build_seconds, 0);
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t k = 0; k < 12; ++k) {
             const QueryCost &one = c.structures[i].queries.at(k), &other = timed.structures[i].queries.at(k);
@@ -418,6 +431,20 @@ TEST(Measure, AsksWhatIsSlowLess) {
     EXPECT_LT(q.asked, 10'000u);
     EXPECT_EQ(q.primitives, 50'000);
 }
+TEST(Measure, BuildsWhereNoQuerySuitsThePrimitives) {
+    MeasureOptions o = quick_options();
+    o.asks = {Ask::closest_hit};
+    EXPECT_FALSE((can_be_asked<PointCloud<float, 3>>(Ask::closest_hit)));
+    EXPECT_TRUE((can_be_asked<PointCloud<float, 3>>(Ask::nearest)));
+    EXPECT_TRUE(can_be_asked<SegmentSet<float>>(Ask::closest_hit));
+    const Strings structures = {"kdtree", "bvh"};
+    const Comparison c = measure(points<float>(200), structures, o);
+    EXPECT_TRUE(c.finished);
+    ASSERT_EQ(c.structures.size(), 2u);
+    EXPECT_TRUE(c.structures[1].queries.empty());
+    EXPECT_EQ(c.structures[1].update.slowdown, 1);
+    EXPECT_EQ(advise(c, Ask::closest_hit).size(), 4u);
+}
 TEST(Measure, RefusesWhatIsNotThere) {
     const Strings structures = {"bvh"};
     EXPECT_THROW(measure(TriangleMesh<float>{}, structures), InputError);
@@ -434,6 +461,23 @@ TEST(Measure, StopsWhenItIsTold) {
         measure(points<float>(1000), structures, quick_options(), serial_executor(), progress);
     EXPECT_FALSE(c.finished);
     EXPECT_LT(c.structures.size(), 3u);
+
+    cancel = false;
+    MeasureOptions counts = quick_options();
+    counts.rounds = 0;
+    EXPECT_EQ(measure(points<float>(1000), structures, counts, serial_executor(), progress).structures.size(),
+              1u)
+        << "its counts are whole";
+}
+TEST(Measure, StopsBetweenTheQueriesOfOneKind) {
+    const auto cloud = points<float>(100);
+    const auto index = build_any("brute-force", cloud);
+    Questions<float, 3> questions(Ask::nearest, "8 nearest", cloud.points);
+    const std::atomic<bool> cancel{true};
+    Visits visits;
+    EXPECT_THROW(questions.answers(*index, visits, {{}, &cancel}), Cancelled);
+    EXPECT_EQ(questions.answers(*index, visits).size(), 100u);
+    EXPECT_EQ(visits.primitives, 100u * 100u);
 }
 
 TEST(AnyIndexChanges, AreOfferedWhereTheStructureHasThem) {

@@ -8,6 +8,7 @@
 #include "bench_report.h"
 #include "page.h"
 #include "plot.h"
+#include "xml.h"
 
 namespace hedgerow::cli {
 

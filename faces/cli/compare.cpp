@@ -77,30 +77,29 @@ public:
         : a_(a), limit_(a.threads), executor_(a.threads == 1 ? serial_executor() : default_executor()) {
         report_.scene = a.scene;
         report_.timed = !a.counts;
+        if (!a.ask.empty()) report_.ask = ask_named(a.ask);
         for (const std::string& s : a.sweeps) report_.sweeps.push_back({compare::sweep_of(s), {}});
     }
 
     template <class P>
     void compare_on(const P& primitives) {
+        check_ask<P>();
         for (auto& s : report_.sweeps) check_structures(s.sweep.structures, P::dimension);
         const auto chosen = structures_for<P>(primitives.size());
         check_structures(chosen, P::dimension);
-        if (report_.sweeps.empty() && !a_.scale) {
+        if (report_.sweeps.empty() && !a_.scale)
             report_.comparison = measured(primitives, chosen, true, "comparing");
-            report_.ask = ask_for(*report_.comparison);
-        }
         for (auto& s : report_.sweeps) {
             if (interrupted) break;
             s.comparison = measured(primitives, s.sweep.structures, false, "sweeping " + s.sweep.option);
-            report_.ask = ask_for(s.comparison);
         }
     }
     template <class P>
     void scale_on(const P& primitives, const std::vector<std::string>& structures) {
+        check_ask<P>();
         check_structures(structures, P::dimension);
         auto c = measured(primitives, structures, false, fmt::format("{} primitives", primitives.size()));
         if (!c.finished) return;
-        report_.ask = ask_for(c);
         report_.by_size.push_back(std::move(c));
     }
 
@@ -151,6 +150,12 @@ public:
     }
 
 private:
+    /// Throws UsageError, before anything is measured, where --for names a query that P cannot be asked.
+    template <class P>
+    void check_ask() const {
+        if (!a_.ask.empty() && !compare::can_be_asked<P>(report_.ask))
+            throw UsageError(fmt::format("--for {}: points cannot be asked that; try --for nearest", a_.ask));
+    }
     void note(std::string text) {
         if (std::find(report_.notes.begin(), report_.notes.end(), text) == report_.notes.end())
             report_.notes.push_back(std::move(text));
@@ -168,18 +173,9 @@ private:
             c.finished = false;
         }
         c.scene = a_.scene;
+        if (a_.ask.empty() && !c.structures.empty()) report_.ask = compare::usual_ask(c);
         for (auto& text : ray_notes(c)) note(std::move(text));
         return c;
-    }
-    compare::Ask ask_for(const compare::Comparison& c) const {
-        if (c.structures.empty()) return {};
-        if (a_.ask.empty()) return compare::usual_ask(c);
-        const auto ask = ask_named(a_.ask);
-        if (std::none_of(c.structures.front().queries.begin(), c.structures.front().queries.end(),
-                         [&](const auto& q) { return q.ask == ask; }))
-            throw UsageError(
-                fmt::format("--for {}: {} cannot be asked that; try --for nearest", a_.ask, c.primitive));
-        return ask;
     }
 
     const CompareArguments& a_;
@@ -251,8 +247,11 @@ template <class T>
 int compare_in(const CompareArguments& a) {
     Comparing comparing(a);
     if (a.scale) run_scale<T>(a, comparing);
-    if (!a.scale || !a.sweeps.empty())
-        std::visit([&](const auto& set) { comparing.compare_on(set); }, load<T>(a));
+    try {
+        if (!interrupted && (!a.scale || !a.sweeps.empty()))
+            std::visit([&](const auto& set) { comparing.compare_on(set); }, load<T>(a));
+    } catch (const Cancelled&) {  // while loading: growth that was measured before is shown
+    }
     if (!comparing.measured_any()) throw Cancelled("nothing was measured");
     show(a, comparing.report());
     return interrupted ? 130 : 0;
@@ -290,7 +289,7 @@ Run add_compare(CLI::App& verb) {
         ->check(CLI::Range(0, 1024));
     return [a] {
         if (!a->html.empty()) check_writable(a->html);
-        return a->precision == "double" ? compare_in<double>(*a) : compare_in<float>(*a);
+        return in_precision(*a, [&]<class T>(T) { return compare_in<T>(*a); });
     };
 }
 

@@ -12,41 +12,42 @@ using nlohmann::ordered_json;
 
 namespace {
 
-ordered_json json_of(const StructureCost& s) {
-    ordered_json queries = ordered_json::array();
-    for (const QueryCost& q : s.queries)
-        queries.push_back({{"ask", name_of(q.ask)},
-                           {"kind", q.kind},
-                           {"asked", q.asked},
-                           {"seconds", q.seconds},
-                           {"spread", q.spread},
-                           {"nodes", q.nodes},
-                           {"leaves", q.leaves},
-                           {"primitives", q.primitives},
-                           {"skipped", q.skipped}});
-    const UpdateCost& u = s.update;
-    return {{"structure", s.structure},
-            {"build_seconds", s.build_seconds},
-            {"builds", s.builds},
-            {"bytes", s.bytes},
-            {"depth", s.depth},
-            {"nodes", s.nodes},
-            {"leaves", s.leaves},
-            {"items", s.items},
-            {"queries", queries},
-            {"update",
-             {{"how", u.how},
-              {"one_seconds", u.one},
-              {"all_seconds", u.all},
-              {"insert_seconds", u.insert},
-              {"erase_seconds", u.erase},
-              {"drift", u.drift},
-              {"slowdown", u.slowdown}}}};
+ordered_json json_of(const QueryCost& q, bool timed) {
+    ordered_json j = {{"ask", name_of(q.ask)}, {"kind", q.kind}, {"asked", q.asked}};
+    if (timed) j.update({{"seconds", q.seconds}, {"spread", q.spread}});
+    j.update(
+        {{"nodes", q.nodes}, {"leaves", q.leaves}, {"primitives", q.primitives}, {"skipped", q.skipped}});
+    return j;
 }
 
-ordered_json json_of(const Comparison& c) {
+ordered_json json_of(const UpdateCost& u) {
+    return {{"how", u.how},
+            {"one_seconds", u.one},
+            {"all_seconds", u.all},
+            {"insert_seconds", u.insert},
+            {"erase_seconds", u.erase},
+            {"drift", u.drift},
+            {"slowdown", u.slowdown}};
+}
+
+ordered_json json_of(const StructureCost& s, bool timed) {
+    ordered_json queries = ordered_json::array();
+    for (const QueryCost& q : s.queries) queries.push_back(json_of(q, timed));
+    ordered_json j = {{"structure", s.structure}};
+    if (timed) j.update({{"build_seconds", s.build_seconds}, {"builds", s.builds}});
+    j.update({{"bytes", s.bytes},
+              {"depth", s.depth},
+              {"nodes", s.nodes},
+              {"leaves", s.leaves},
+              {"items", s.items},
+              {"queries", queries}});
+    if (timed) j["update"] = json_of(s.update);
+    return j;
+}
+
+ordered_json json_of(const Comparison& c, bool timed) {
     ordered_json structures = ordered_json::array();
-    for (const auto& s : c.structures) structures.push_back(json_of(s));
+    for (const auto& s : c.structures) structures.push_back(json_of(s, timed));
     ordered_json rays = ordered_json::array();
     for (const RaySet& r : c.rays) rays.push_back({{"kind", r.kind}, {"rays", r.rays}, {"missed", r.missed}});
     return {{"primitive", c.primitive}, {"size", c.size}, {"dimension", c.dimension},
@@ -105,20 +106,19 @@ ordered_json growth_json(const CompareReport& r) {
 
 ordered_json json_of(const CompareReport& r) {
     ordered_json j = {{"scene", r.scene}, {"notes", r.notes}, {"ask", name_of(r.ask)}};
-    if (r.comparison) {
-        j.update(json_of(*r.comparison));
-        if (!r.timed) return j;
+    if (r.comparison) j.update(json_of(*r.comparison, r.timed));
+    if (r.comparison && r.timed) {
         j["break_even"] = break_even_json(*r.comparison, r.ask);
         j["advice"] = advice_json(*r.comparison, r.ask);
     }
     for (const auto& s : r.sweeps) {
         ordered_json swept = {
             {"structure", s.sweep.structure}, {"option", s.sweep.option}, {"values", s.sweep.values}};
-        swept.update(json_of(s.comparison));
+        swept.update(json_of(s.comparison, r.timed));
         j["sweeps"].push_back(swept);
     }
     if (!r.by_size.empty()) {
-        for (const auto& c : r.by_size) j["scale"]["scenes"].push_back(json_of(c));
+        for (const auto& c : r.by_size) j["scale"]["scenes"].push_back(json_of(c, r.timed));
         j["scale"]["growth"] = growth_json(r);
     }
     return j;

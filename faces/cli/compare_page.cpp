@@ -10,6 +10,7 @@
 #include "compare_report.h"
 #include "page.h"
 #include "plot.h"
+#include "xml.h"
 
 namespace hedgerow::cli {
 
@@ -66,14 +67,19 @@ std::string kinds_plot(const Comparison& c, Ask ask, std::string title, Unit uni
     return plot.series.empty() ? "" : svg_of(plot);
 }
 
-std::string comparison_plots(const Comparison& c, Ask ask) {
-    std::string html = total_plot(c, ask);
-    html += structures_plot(c, "build time", Unit::seconds, [](const auto& s) { return s.build_seconds; });
+std::string comparison_plots(const Comparison& c, Ask ask, bool timed) {
+    std::string html;
+    if (timed) {
+        html += total_plot(c, ask);
+        html +=
+            structures_plot(c, "build time", Unit::seconds, [](const auto& s) { return s.build_seconds; });
+    }
     html += structures_plot(c, "memory beyond the primitives", Unit::bytes,
                             [](const auto& s) { return double(s.bytes); });
-    html += structures_plot(c, "to follow primitives that all moved", Unit::seconds,
-                            [](const auto& s) { return s.update.all; });
-    for (std::size_t i = 0; i < std::size(ask_names); ++i)
+    if (timed)
+        html += structures_plot(c, "to follow primitives that all moved", Unit::seconds,
+                                [](const auto& s) { return s.update.all; });
+    for (std::size_t i = 0; timed && i < std::size(ask_names); ++i)
         html += kinds_plot(c, static_cast<Ask>(i), fmt::format("time a query: {}", ask_names[i]),
                            Unit::seconds, &QueryCost::seconds);
     html +=
@@ -84,7 +90,7 @@ std::string comparison_plots(const Comparison& c, Ask ask) {
 }
 
 /// A line for each of some figures, over the values of the option.
-std::string sweep_plots(const CompareReport::Swept& swept, Ask ask) {
+std::string sweep_plots(const CompareReport::Swept& swept, Ask ask, bool timed) {
     const auto& all = swept.comparison.structures;
     const auto number = [](const std::string& text) {
         char* end = nullptr;
@@ -116,13 +122,13 @@ std::string sweep_plots(const CompareReport::Swept& swept, Ask ask) {
     const auto mean = [&](double QueryCost::*figure) {
         return [figure, ask](const StructureCost& s) { return query_mean(s, ask, figure); };
     };
-    return plot("time a query", Unit::seconds, times) +
+    const auto build = [](const StructureCost& s) { return s.build_seconds; };
+    return (timed ? plot("time a query", Unit::seconds, times) : "") +
            plot("what a query looks at", Unit::number,
                 std::vector<Line>{{"nodes", mean(&QueryCost::nodes)},
                                   {"leaves", mean(&QueryCost::leaves)},
                                   {"primitives", mean(&QueryCost::primitives)}}) +
-           plot("build time", Unit::seconds,
-                std::vector<Line>{{"build", [](const StructureCost& s) { return s.build_seconds; }}}) +
+           (timed ? plot("build time", Unit::seconds, std::vector<Line>{{"build", build}}) : "") +
            plot("memory", Unit::bytes,
                 std::vector<Line>{{"memory", [](const StructureCost& s) { return double(s.bytes); }}});
 }
@@ -157,9 +163,10 @@ std::string page_of(const CompareReport& r) {
         html += "</ul>\n";
     }
     html += "<h2>Plots</h2>\n";
-    if (r.comparison && !r.comparison->structures.empty()) html += comparison_plots(*r.comparison, r.ask);
+    if (r.comparison && !r.comparison->structures.empty())
+        html += comparison_plots(*r.comparison, r.ask, r.timed);
     for (const auto& s : r.sweeps)
-        if (!s.comparison.structures.empty()) html += sweep_plots(s, r.ask);
+        if (!s.comparison.structures.empty()) html += sweep_plots(s, r.ask, r.timed);
     if (!r.by_size.empty())
         for (const auto figure : growth_figures) html += growth_plot(r, figure);
     html += "<h2>Tables</h2>\n";

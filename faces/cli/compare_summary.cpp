@@ -28,26 +28,24 @@ std::vector<std::string> advice_lines(const CompareReport& r) {
 std::optional<Table> summary_of(const CompareReport& r) {
     if (!r.comparison || r.comparison->structures.empty()) return std::nullopt;
     const Comparison& c = *r.comparison;
+    const std::string sets = c.rays.empty() ? "" : "the mean over its sets of rays";
+    const std::string scale = r.timed ? "x: times the fastest" : "";
     Table t{fmt::format("a {} query", name_of(r.ask)),
-            c.rays.empty() ? "x: times the fastest" : "the mean over its sets of rays; x: times the fastest",
-            {"structure"},
+            sets + (sets.empty() || scale.empty() ? "" : "; ") + scale,
+            {"structure", "build", "memory", "time", "x", "nodes", "leaves", "primitives"},
             {}};
-    const std::vector<std::string> columns =
-        r.timed ? std::vector<std::string>{"build", "memory", "time", "x", "nodes", "leaves", "primitives"}
-                : std::vector<std::string>{"memory", "nodes", "leaves", "primitives"};
-    t.columns.insert(t.columns.end(), columns.begin(), columns.end());
     double best = query_mean(c.structures.front(), r.ask);
     for (const auto& s : c.structures) best = std::min(best, query_mean(s, r.ask));
     for (const auto& s : c.structures) {
-        std::vector<std::string> row = {s.structure};
         const double time = query_mean(s, r.ask);
-        if (r.timed) row.push_back(seconds_text(s.build_seconds));
-        row.push_back(bytes_text(double(s.bytes)));
-        if (r.timed) row.insert(row.end(), {seconds_text(time), best > 0 ? number_text(time / best) : ""});
+        std::vector<std::string> row = {s.structure, seconds_text(s.build_seconds),
+                                        bytes_text(double(s.bytes)), seconds_text(time),
+                                        best > 0 ? number_text(time / best) : ""};
         for (const auto figure : {&QueryCost::nodes, &QueryCost::leaves, &QueryCost::primitives})
             row.push_back(fmt::format("{:.2f}", query_mean(s, r.ask, figure)));
         t.rows.push_back(std::move(row));
     }
+    if (!r.timed) drop(t, "build", 1), drop(t, "time", 2);
     return t;
 }
 

@@ -27,7 +27,7 @@ double least(const std::vector<StructureCost>& all, F figure) {
     return best;
 }
 
-Table structures_table(const Comparison& c) {
+Table structures_table(const Comparison& c, bool timed) {
     Table t{"structures",
             "x: times the least",
             {"structure", "build", "x", "memory", "x", "bytes/primitive", "depth", "items/primitive", "nodes",
@@ -42,12 +42,13 @@ Table structures_table(const Comparison& c) {
                           fmt::format("{:.1f}", double(s.bytes) / n), std::to_string(s.depth),
                           fmt::format("{:.2f}", double(s.items) / n), number_text(double(s.nodes)),
                           number_text(double(s.leaves))});
+    if (!timed) drop(t, "build", 2);
     return t;
 }
 
-Table kind_table(const Comparison& c, std::size_t kind) {
+Table kind_table(const Comparison& c, std::size_t kind, bool timed) {
     Table t{c.structures.front().queries[kind].kind,
-            "a query, on the mean; x: times the fastest",
+            timed ? "a query, on the mean; x: times the fastest" : "a query, on the mean",
             {"structure", "time", "x", "spread", "nodes", "leaves", "primitives", "skipped", "asked"},
             {}};
     const double best = least(c.structures, [&](const auto& s) { return s.queries[kind].seconds; });
@@ -58,6 +59,7 @@ Table kind_table(const Comparison& c, std::size_t kind) {
                           fmt::format("{:.2f}", q.leaves), fmt::format("{:.2f}", q.primitives),
                           fmt::format("{:.2f}", q.skipped), std::to_string(q.asked)});
     }
+    if (!timed) drop(t, "time", 3);
     return t;
 }
 
@@ -114,9 +116,10 @@ Table break_even_table(const Comparison& c, Ask ask) {
     return t;
 }
 
-Table sweep_table(const CompareReport::Swept& swept, Ask ask) {
+Table sweep_table(const CompareReport::Swept& swept, Ask ask, bool timed) {
     Table t{fmt::format("{}: {}", swept.sweep.structure, swept.sweep.option),
-            fmt::format("a {} query, of rays the mean over their sets; x: times the least", name_of(ask)),
+            fmt::format("a {} query, of rays the mean over their sets{}", name_of(ask),
+                        timed ? "; x: times the least" : ""),
             {swept.sweep.option, "build", "x", "memory", "items/primitive", "time", "x", "nodes", "leaves",
              "primitives"},
             {}};
@@ -134,6 +137,7 @@ Table sweep_table(const CompareReport::Swept& swept, Ask ask) {
                           fmt::format("{:.2f}", mean(&QueryCost::leaves)),
                           fmt::format("{:.2f}", mean(&QueryCost::primitives))});
     }
+    if (!timed) drop(t, "build", 2), drop(t, "time", 2);
     return t;
 }
 
@@ -185,15 +189,16 @@ std::vector<Table> tables_of(const CompareReport& r) {
     std::vector<Table> all;
     if (r.comparison && !r.comparison->structures.empty()) {
         const Comparison& c = *r.comparison;
-        all.push_back(structures_table(c));
+        all.push_back(structures_table(c, r.timed));
         for (std::size_t kind = 0; kind < c.structures.front().queries.size(); ++kind)
-            all.push_back(kind_table(c, kind));
+            all.push_back(kind_table(c, kind, r.timed));
         if (r.timed) all.push_back(update_table(c)), all.push_back(break_even_table(c, r.ask));
     }
     for (const auto& swept : r.sweeps)
-        if (!swept.comparison.structures.empty()) all.push_back(sweep_table(swept, r.ask));
+        if (!swept.comparison.structures.empty()) all.push_back(sweep_table(swept, r.ask, r.timed));
     if (!r.by_size.empty())
-        for (const auto figure : growth_figures) all.push_back(growth_table(r, figure));
+        for (const auto figure : growth_figures)
+            if (Table t = growth_table(r, figure); !t.rows.empty()) all.push_back(std::move(t));
     return all;
 }
 

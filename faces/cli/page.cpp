@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "plot.h"
+#include "xml.h"
 
 namespace hedgerow::cli {
 
@@ -37,8 +37,8 @@ std::string html_of(const Table& t) {
         return row + "</tr>\n";
     };
     std::string html = fmt::format(
-        "<div class=\"wide\"><table>\n<caption><b>{}</b>: {}</caption>\n<thead>{}</thead>\n<tbody>\n",
-        escaped(t.title), escaped(t.note), cells(t.columns, "th"));
+        "<div class=\"wide\"><table>\n<caption><b>{}</b>{}{}</caption>\n<thead>{}</thead>\n<tbody>\n",
+        escaped(t.title), t.note.empty() ? "" : ": ", escaped(t.note), cells(t.columns, "th"));
     for (const auto& row : t.rows) html += cells(row, "td");
     return html + "</tbody></table></div>\n";
 }

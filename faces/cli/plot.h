@@ -81,7 +81,4 @@ struct PointPlot {
 };
 std::string svg_of(const PointPlot& plot);
 
-/// Text as it may stand in a page.
-std::string escaped(const std::string& text);
-
 }  // namespace hedgerow::cli

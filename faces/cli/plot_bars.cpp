@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "plot_parts.h"
+#include "xml.h"
 
 namespace hedgerow::cli {
 

@@ -4,24 +4,9 @@
 
 #include <hedgerow/compare/quantity.h>
 
-namespace hedgerow::cli {
+#include "xml.h"
 
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        if (c == '&')
-            safe += "&amp;";
-        else if (c == '<')
-            safe += "&lt;";
-        else if (c == '>')
-            safe += "&gt;";
-        else if (c == '"')
-            safe += "&quot;";
-        else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n')
-            safe += c;
-    }
-    return safe;
-}
+namespace hedgerow::cli {
 
 namespace plot_parts {
 

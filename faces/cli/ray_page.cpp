@@ -1,4 +1,5 @@
 #include "ray_drawing.h"
+#include "xml.h"
 
 namespace hedgerow::cli {
 

@@ -3,29 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hedgerow::cli {
+#include "xml.h"
 
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char c : text) switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                // Other control characters are not allowed in XML at all.
-                out += static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
-        }
-    return out;
-}
+namespace hedgerow::cli {
 
 namespace {
 

@@ -13,9 +13,6 @@
 
 namespace hedgerow::cli {
 
-/// With &, <, > and quotes as entities.
-std::string escaped(std::string_view text);
-
 /// Many shapes as the data of one path, at half a pixel. A shape that looks like one before is left out, so
 /// that a path is no longer than its pixels. O(1) a shape.
 class Path {

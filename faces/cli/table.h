@@ -1,7 +1,9 @@
 /// Tables, as text and for a page.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hedgerow::cli {
@@ -12,6 +14,9 @@ struct Table {
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
 };
+
+/// Removes some columns, from the first one of that name on.
+void drop(Table& table, std::string_view first, std::size_t count);
 
 std::string text_of(const Table& table);
 

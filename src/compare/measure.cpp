@@ -55,11 +55,12 @@ public:
             throw InputError("there are no primitives, so there is nothing to compare");
         oracle_ = build_any("bvh", primitives, executor_);
         const SceneQuestions<P> scene(primitives, *oracle_, options);
-        questions_ = scene.all();
-        ray_sets_ = scene.ray_sets();
+        auto all = scene.all();
+        questions_ = std::move(all.questions);
+        ray_sets_ = std::move(all.ray_sets);
         seen_from_outside_ = scene.seen_from_outside();
         Visits ignored;
-        for (Set& q : questions_) answers_.push_back(q.answers(*oracle_, ignored));
+        for (Set& q : questions_) answers_.push_back(q.answers(*oracle_, ignored, progress_));
     }
 
     Comparison run(std::span<const std::string> structures) {
@@ -67,24 +68,17 @@ public:
         steps_ = structures.size() * (static_cast<std::size_t>(o_.rounds) + 2);
         try {
             for (const std::string& s : structures) {
-                if (progress_.cancelled()) break;
                 contenders_.push_back(contender(s));
                 step();
             }
-        } catch (const Cancelled&) {  // in a build: those that are built are not measured yet
-            return c.finished = false, c;
+        } catch (const Cancelled&) {  // the counts of the structures before this one are whole
         }
         for (int round = 0; round < o_.rounds; ++round)
-            for (Contender& contender : contenders_) {
-                if (progress_.cancelled()) break;
-                for (Trial& t : contender.trials)
-                    t.seconds.push_back(seconds_of([&] { t.questions->put_to(*contender.index); }));
-                step();
-            }
+            for (Contender& contender : contenders_)
+                if (time_round(contender)) step();
         for (Contender& contender : contenders_) {
-            // One that has no round has nothing to say, if it should have one.
-            if (contender.trials.size() < questions_.size()) continue;
-            if (o_.rounds > 0 && contender.trials.back().seconds.empty()) continue;
+            // A structure without a round has no times, if it should have any.
+            if (o_.rounds > 0 && contender.rounds == 0) continue;
             finish(contender);
             c.structures.push_back(std::move(contender.cost));
             step();
@@ -103,11 +97,14 @@ private:
         std::unique_ptr<Any> index;
         StructureCost cost;
         std::vector<Trial> trials;
+        int rounds = 0;  // that were timed
     };
 
     void step() { progress_(++done_, steps_); }
 
+    /// Builds a structure and counts what its queries visit. Throws Cancelled.
     Contender contender(const std::string& structure) {
+        progress_.look();
         Contender c;
         std::vector<double> seconds;
         double spent = 0;
@@ -119,7 +116,7 @@ private:
         } while (static_cast<int>(seconds.size()) < o_.rounds && spent < o_.build_seconds);
         const Any& index = *c.index;
         c.cost = {structure,
-                  median(seconds),
+                  o_.rounds > 0 ? median(seconds) : 0,
                   static_cast<int>(seconds.size()),
                   index.bytes(),
                   index.node_count(),
@@ -128,9 +125,19 @@ private:
                   index.depth(),
                   {},
                   {}};
-        for (std::size_t i = 0; i < questions_.size() && !progress_.cancelled(); ++i)
-            c.trials.push_back(trial(index, i));
+        for (std::size_t i = 0; i < questions_.size(); ++i) c.trials.push_back(trial(index, i));
         return c;
+    }
+    /// Times each trial once. False where the progress is cancelled: nothing is kept of such a round.
+    bool time_round(Contender& c) {
+        std::vector<double> seconds;
+        for (const Trial& t : c.trials) {
+            if (progress_.cancelled()) return false;
+            seconds.push_back(seconds_of([&] { t.questions->put_to(*c.index); }));
+        }
+        for (std::size_t i = 0; i < seconds.size(); ++i) c.trials[i].seconds.push_back(seconds[i]);
+        ++c.rounds;
+        return true;
     }
 
     /// As many of the questions as there is time for, asked once to see that the answers are right.
@@ -142,7 +149,7 @@ private:
         t.questions = step == 1 ? std::shared_ptr<Set>(std::shared_ptr<void>(), &all)
                                 : std::make_shared<Set>(all.thinned(step));
         Visits visits;
-        const auto answers = t.questions->answers(index, visits);
+        const auto answers = t.questions->answers(index, visits, progress_);
         for (std::size_t k = 0; k < answers.size(); ++k)
             if (answers[k] != answers_[i][k * step])
                 throw Disagreement("answers differ: " + std::string(index.structure()) + " and " +
@@ -167,6 +174,7 @@ private:
         const double share = o_.seconds / o_.rounds;
         std::size_t asked = 1;
         for (;;) {
+            progress_.look();
             Set some = all.thinned((all.size() + asked - 1) / asked);
             const double first = seconds_of([&] { some.put_to(index); });
             const double again =
@@ -209,6 +217,7 @@ private:
         const std::uint64_t first = scattered(o_.seed) % n;
         std::vector<double> out, in;
         for (int round = 0; round < o_.rounds; ++round) {
+            progress_.look();
             // Steps of n / some: all different.
             const auto each = [&](auto f) {
                 for (std::size_t i = 0; i < some; ++i)
@@ -232,21 +241,24 @@ private:
         P moved = primitives_;
         const auto fitted = build_any(c.cost.structure, moved, executor_);
         Bend<T, D>(oracle_->bounds())(moved);
-        UpdateCost& u = c.cost.update;
         std::vector<double> seconds, slowdown;
+        double drift = 1;
         for (int round = 0; round < o_.rounds; ++round)
-            seconds.push_back(seconds_of([&] { u.drift = fitted->refit(executor_); }, building_));
+            seconds.push_back(seconds_of([&] { drift = fitted->refit(executor_); }, building_));
         const auto anew = build_any(c.cost.structure, moved, executor_);
         expect_same(c, *fitted, *anew, "after a refit");
         for (int round = 0; round < o_.rounds; ++round) {
             double refitted = 0, rebuilt = 0;
             for (const Trial& t : c.trials) {
                 if (t.cost.ask != c.trials.front().cost.ask) continue;
+                progress_.look();
                 refitted += seconds_of([&] { t.questions->put_to(*fitted); });
                 rebuilt += seconds_of([&] { t.questions->put_to(*anew); });
             }
-            slowdown.push_back(refitted / rebuilt);
+            slowdown.push_back(rebuilt > 0 ? refitted / rebuilt : 1);
         }
+        UpdateCost& u = c.cost.update;
+        u.drift = drift;
         u.how = "refit";
         u.all = median(seconds);
         if (!c.index->changes_one_by_one()) u.one = u.all;
@@ -256,7 +268,8 @@ private:
     void expect_same(const Contender& c, const Any& one, const Any& other, const char* when) const {
         Visits ignored;
         for (const Trial& t : c.trials)
-            if (t.questions->answers(one, ignored) != t.questions->answers(other, ignored))
+            if (t.questions->answers(one, ignored, progress_) !=
+                t.questions->answers(other, ignored, progress_))
                 throw Disagreement(c.cost.structure + ": answers differ " + when + " to '" + t.cost.kind +
                                    "' (seed " + std::to_string(o_.seed) + "): please report this scene");
     }

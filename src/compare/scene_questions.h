@@ -21,48 +21,35 @@ public:
     SceneQuestions(const P& primitives, const AnyIndex<T, D>& index, const MeasureOptions& options)
         : set_(view_of(primitives)), index_(index), box_(index.bounds()), o_(options) {}
 
-    std::vector<Set> all() const {
+    /// What is asked, and how many rays of each set meet nothing.
+    struct All {
         std::vector<Set> questions;
+        std::vector<RaySet> ray_sets;
+    };
+    All all() const {
+        All found;
         const auto add = [&](Ask ask, std::string kind, typename Set::List list) {
             const bool wanted =
                 o_.asks.empty() || std::find(o_.asks.begin(), o_.asks.end(), ask) != o_.asks.end();
             Set made(ask, std::move(kind), std::move(list));
-            if (wanted && made.size() > 0) questions.push_back(std::move(made));
+            if (wanted && made.size() > 0) found.questions.push_back(std::move(made));
         };
-        if constexpr (MeetsRays<ViewOf<P>> || requires { set_.triangle(0); }) {
-            const auto random = random_rays(), coherent = coherent_rays(), incoherent = incoherent_rays();
+        if constexpr (can_be_asked<P>(Ask::closest_hit)) {
+            const std::pair<const char*, typename Set::Rays> sets[] = {
+                {"coherent", coherent_rays()}, {"incoherent", incoherent_rays()}, {"random", random_rays()}};
             constexpr std::pair<Ask, const char*> asks[] = {
                 {Ask::closest_hit, "closest hit"}, {Ask::any_hit, "any hit"}, {Ask::all_hits, "all hits"}};
-            for (const auto& [ask, name] : asks) {
-                add(ask, std::string(name) + ", coherent rays", coherent);
-                add(ask, std::string(name) + ", incoherent rays", incoherent);
-                add(ask, std::string(name) + ", random rays", random);
-            }
+            for (const auto& [ask, name] : asks)
+                for (const auto& [kind, rays] : sets)
+                    add(ask, std::string(name) + ", " + kind + " rays", rays);
+            for (const auto& [kind, rays] : sets)
+                if (!rays.empty()) found.ray_sets.push_back({kind, rays.size(), missed(rays)});
         }
         const auto points = random_points();
         add(Ask::closest_point, "closest point", points);
         add(Ask::nearest, std::to_string(Set::k) + " nearest", points);
         add(Ask::overlap, "box overlap", boxes());
-        return questions;
-    }
-
-    /// How many rays of each set meet nothing.
-    std::vector<RaySet> ray_sets() const {
-        std::vector<RaySet> sets;
-        if constexpr (MeetsRays<ViewOf<P>> || requires { set_.triangle(0); }) {
-            const auto add = [&](std::string_view kind, const typename Set::Rays& rays) {
-                std::vector<Hit<T>> hits(rays.size());
-                index_.closest_hits(rays, hits);
-                const auto met =
-                    std::count_if(hits.begin(), hits.end(), [](const auto& h) { return bool(h); });
-                if (!rays.empty())
-                    sets.push_back({kind, rays.size(), rays.size() - static_cast<std::size_t>(met)});
-            };
-            add("coherent", coherent_rays());
-            add("incoherent", incoherent_rays());
-            add("random", random_rays());
-        }
-        return sets;
+        return found;
     }
     /// The share of the primitives that the eye of the coherent rays sees, by a sample; 1 if it is in the
     /// scene's box.
@@ -88,6 +75,12 @@ public:
     }
 
 private:
+    std::size_t missed(const typename Set::Rays& rays) const {
+        std::vector<Hit<T>> hits(rays.size());
+        index_.closest_hits(rays, hits);
+        return static_cast<std::size_t>(
+            std::count_if(hits.begin(), hits.end(), [](const auto& h) { return !h; }));
+    }
     /// Each kind has random numbers of its own.
     enum Stream : std::uint64_t { of_rays = 1, of_bounces, of_points, of_places, of_sights };
     Random random(Stream stream, std::uint64_t i) const { return Random(scattered(o_.seed) + stream, i); }
