@@ -225,7 +225,7 @@ TEST_F(Draw, ATreeStandsBesideItsCells) {
                   steps);
     }
     expect_bad("draw gen:segments2d:30 --structure grid --tree -o " + file("x.svg"), "no tree");
-    expect_bad("draw gen:cube --tree -o " + file("x.png"), "--slice");
+    expect_usage("draw gen:cube --tree -o " + file("x.png"), "--slice");
 }
 
 TEST_F(Draw, EmptyCellsOfAGridAreMarkedAsPruned) {
@@ -250,6 +250,47 @@ TEST_F(Draw, StoppingAtTheFirstHitShowsTheWrongOne) {
     EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "nearest"), 1u);
 }
 
+/// A number of the k-th element that holds some text, by the name of its attribute.
+double attribute(const std::string& xml, const std::string& text, std::size_t k, const std::string& name) {
+    std::size_t at = xml.find(text);
+    for (; k > 0; --k) at = xml.find(text, at + 1);
+    const std::size_t begin = xml.rfind('<', at);
+    const std::size_t value = xml.find(" " + name + "=\"", begin) + name.size() + 3;
+    return std::stod(xml.substr(value));
+}
+TEST_F(Draw, EachStructureShowsItsOwnFirstHit) {
+    const auto r = run(
+        "draw gen:segments2d:24 --seed 1 --structure kdtree --beside grid:resolution=4 --ray=-0.1,0.3,1,0.1 "
+        "--stop-at-first --json -o " +
+        file("ray.svg"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const auto t = [&](std::size_t k) {
+        std::size_t at = r.output.find("\"hit\": {");
+        for (; k > 0; --k) at = r.output.find("\"hit\": {", at + 1);
+        return std::stod(r.output.substr(r.output.find("\"t\": ", at) + 5));
+    };
+    ASSERT_LT(t(0), t(1)) << "the second one lies farther";
+    const auto svg = bytes_of(file("ray.svg"));
+    double lengths[2];
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double from = attribute(svg, "class=\"origin\"", k, "cx");
+        lengths[k] = attribute(svg, "class=\"hit\"", k, "cx") - from;
+        EXPECT_NEAR(attribute(svg, "marker-end", k, "x2") - from, lengths[k], 0.02) << "where the ray ends";
+    }
+    EXPECT_NEAR(lengths[1] / lengths[0], t(1) / t(0), 0.01);
+}
+TEST_F(Draw, AnEquallyNearHitIsNotWrong) {
+    // The second triangle is in front, and the first one behind: the ray meets both at their common edge.
+    std::ofstream(file("edge.obj")) << "v -1 0 0\nv 1 0 0\nv 0 1 -1\nv 0 -1 1\nf 1 2 3\nf 2 1 4\n";
+    for (const char* structure : {"bvh:max_leaf_size=1", "brute-force"}) {
+        const auto r = run("draw " + file("edge.obj") + " --structure " + structure +
+                           " --ray=0,0,5,0,0,-1 --stop-at-first -o " + file("ray.svg"));
+        ASSERT_EQ(r.code, 0) << r.output;
+        EXPECT_EQ(r.output.find("WRONG"), std::string::npos) << r.output;
+        EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "nearest"), 0u);
+    }
+}
+
 TEST_F(Draw, HeightShowsATreeFromItsLeaves) {
     const auto cells = [&](const std::string& more) {
         EXPECT_EQ(
@@ -262,6 +303,16 @@ TEST_F(Draw, HeightShowsATreeFromItsLeaves) {
     EXPECT_EQ(cells("--height 0"), 16u) << "the leaves";
     EXPECT_LT(cells("--height 1"), cells("--height 2"));
     EXPECT_EQ(cells("--height 20"), 31u);
+    EXPECT_EQ(cells("--height 0 --depth 2"), 0u) << "the children of the root have cells below them";
+    EXPECT_EQ(cells("--height 20 --depth 2"), 3u);
+
+    // Of a slice too, heights are those of the whole tree.
+    ASSERT_EQ(
+        run("draw gen:teapot:300 --quiet --structure bvh --slice z=0.4 --height 0 -o " + file("s.svg")).code,
+        0);
+    const auto slice = bytes_of(file("s.svg"));
+    EXPECT_GT(elements_with_class(slice, "cell"), 0u);
+    EXPECT_EQ(elements_with_class(slice, "cell"), elements_with_class(slice, "cell leaf"));
 }
 
 TEST_F(Draw, ASliceOfManyTrianglesMakesASmallFile) {
@@ -292,6 +343,8 @@ TEST_F(Draw, BoxesAreDrawnOverAPictureOfTheMesh) {
             .code,
         0);
     EXPECT_EQ(load_png(file("b.png")).width, 160);
+    const auto r = run("draw gen:cube --json --size 64x48 --depth 1 -o " + file("b.png"));
+    EXPECT_NE(r.output.find("\"cells_drawn\": 1"), std::string::npos) << r.output;
 }
 
 /// Two pictures to one scale have the same bar, whatever they show.
@@ -329,6 +382,9 @@ TEST_F(Draw, HeatMapsCompareByAFixedScale) {
     EXPECT_NE(run("draw gen:teapot:500 --size 64x48 --heat tests --scale 1 --json -o " + file("h.png"))
                   .output.find("\"share_beyond_scale\""),
               std::string::npos);
+    const auto named = run("draw gen:teapot:500 --size 64x48 --heat tests --json -o " + file("h\xff.png"));
+    EXPECT_EQ(named.code, 0) << "whatever bytes a name has";
+    EXPECT_NE(named.output.find("\"mean\""), std::string::npos) << named.output;
 }
 
 TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {
@@ -341,18 +397,23 @@ TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {
     EXPECT_EQ(run("draw gen:cube --depth -1" + png).code, 2);
     EXPECT_EQ(run("draw gen:cube --log" + png).code, 2);
     EXPECT_EQ(run("draw gen:points2d:20 --stop-at-first" + svg).code, 2);
-    expect_bad("draw gen:points2d:20 --beside bvh --beside grid --beside bsp --beside kdtree" + svg,
-               "--beside");
+    // Usage is looked at before a scene: this file is not there.
+    const std::string draw = "draw " + file("missing.ply");
+    expect_usage(draw + " --beside bvh --beside grid --beside bsp --beside kdtree" + svg, "--beside");
+    expect_usage(draw + " --beside bvh --beside grid --slice x=0.5 --tree" + svg, "trees of two");
+    expect_usage(draw + " --height 2" + png, "--slice");
+    EXPECT_EQ(run(draw + " --height 2 --heat steps" + png).code, 2);
     expect_usage("draw gen:points2d:20" + png, ".svg");
     expect_usage("draw gen:cube" + svg, ".png");
     expect_usage("draw gen:cube --slice z=0.5" + png, ".svg");
     for (const char* slice : {"w=0.5", "z=2", "z", "z=", "z=@", "z=0.5x", "z=nan"})
-        expect_bad("draw gen:cube --slice " + std::string(slice) + svg, "--slice");
+        expect_usage(draw + " --slice " + slice + svg, "--slice");
     expect_bad("draw gen:points2d:20 --slice x=0.5" + svg, "flat");
     expect_bad("draw gen:points2d:20 --heat steps" + png, "flat");
     expect_bad("draw gen:points2d:20 --ray 1,2,3,4,5,6" + svg, "4 are needed");
     expect_bad("draw gen:cube --ray 1,2,3,4" + svg, "6 are needed");
-    expect_bad("draw gen:cube --ray 1,2,3,0,0,0" + svg, "direction");
+    expect_usage(draw + " --ray 1,2,3,0,0,0" + svg, "direction");
+    expect_usage(draw + " --ray 1,2,0,0,1" + svg, "5 numbers");
     expect_usage("draw gen:cube --ray 1,2,3,0,0,1 --frames" + svg, ".html");
     expect_usage("draw gen:cube --structure kdtre" + png, "did you mean 'kdtree'");
     expect_usage("draw gen:cube --structure bvh --beside octre --slice x=0.5" + svg, "did you mean 'octree'");

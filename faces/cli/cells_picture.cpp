@@ -93,9 +93,7 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
     const Box2d shown = frame_of(scene, flats);
     const Layout layout(scene.width, scene.height, structures, trees ? 1 : 0);
     const auto cells_area = [&](std::size_t s) {
-        Box2d area = layout.area(s);
-        if (trees) area.high[0] = area.low[0] + 0.46 * area.extent()[0];
-        return area;
+        return trees ? cells_part(layout.area(s)) : layout.area(s);
     };
     const Panel first(shown, cells_area(0));
     Svg svg(scene.width, scene.height,
@@ -112,9 +110,7 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
         layout.draw_caption(svg, s);
         if (structures[s].tree.nodes.empty()) continue;
         number_leaves(svg, panel, structures[s].flat);
-        Box2d area = layout.area(s);
-        area.low[0] = cells_area(s).high[0] + picture_margin;
-        const TreePanel tree(structures[s].tree, area);
+        const TreePanel tree(structures[s].tree, tree_part(layout.area(s)));
         tree.draw_links(svg);
         for (std::size_t i = 0; i < structures[s].tree.nodes.size(); ++i) tree.draw_node(svg, i);
         tree.draw_note(svg);

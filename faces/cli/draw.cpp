@@ -31,6 +31,25 @@ int draw(const DrawArguments& a, const Scene<T>& scene) {
     return a.heat.empty() ? draw_wireframe(a, scene) : draw_heat(a, scene);
 }
 
+/// What is wrong with the options, whatever the scene holds, is said before it is read.
+template <class T>
+void check(const DrawArguments& a) {
+    if (a.beside.size() > 3) throw UsageError("--beside: one picture has room for four structures");
+    if (a.ray.empty())
+        check_cells(a);
+    else
+        check_ray<T>(a);
+    const std::string ending = ending_of(a.output);
+    if (ending == ".png" && (a.tree || a.height))
+        throw UsageError(fmt::format("{} is about flat pictures, as .svg: add --slice, or draw a flat scene",
+                                     a.tree ? "--tree" : "--height"));
+    if (ending == ".svg" || ending == ".html")
+        parse_size(a.view.size);
+    else
+        check_picture_memory(a.view.size, ending == ".exr");
+    check_writable(a.output);
+}
+
 }  // namespace
 
 void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what) {
@@ -39,9 +58,9 @@ void expect_ending(const DrawArguments& a, const std::string& ending, const std:
             fmt::format("{}: {} is written as {}; let the output end so", a.output, what, ending));
 }
 
-nlohmann::ordered_json facts_of(const NamedStructure& s, std::size_t leaves, int depth) {
+nlohmann::ordered_json facts_of(const NamedStructure& s, std::size_t cells, std::size_t leaves, int depth) {
     nlohmann::ordered_json facts = {
-        {"structure", s.name}, {"cells_drawn", s.flat.cells.size()}, {"leaves", leaves}, {"depth", depth}};
+        {"structure", s.name}, {"cells_drawn", cells}, {"leaves", leaves}, {"depth", depth}};
     if (s.flat.overlap) facts["sibling_overlap"] = *s.flat.overlap;
     return facts;
 }
@@ -95,11 +114,13 @@ Run add_draw(CLI::App& verb) {
     verb.add_flag("--stop-at-first", a->stop_at_first,
                   "with --ray: stop at the first hit, wherever it lies: often not the nearest")
         ->needs(ray);
-    verb.add_option("--height", a->height,
-                    "only cells with at most so many levels below them: how a tree grows from its leaves")
-        ->check(CLI::Range(0, 128))
-        ->excludes(ray)
-        ->excludes(tree);
+    auto* const height =
+        verb.add_option("--height", a->height,
+                        "flat pictures: only cells with at most so many levels below them, as a tree grows "
+                        "from its leaves")
+            ->check(CLI::Range(0, 128))
+            ->excludes(ray)
+            ->excludes(tree);
     auto* const heat =
         verb.add_option("--heat", a->heat,
                         "steps, tests or time (in nanoseconds) of a view's rays, as .png or .exr")
@@ -108,16 +129,16 @@ Run add_draw(CLI::App& verb) {
         ->needs(heat);
     verb.add_flag("--log", a->log, "the heat's scale is logarithmic")->needs(heat);
     ray->excludes(slice)->excludes(heat);
-    heat->excludes(slice)->excludes(beside)->excludes(tree);
+    heat->excludes(slice)->excludes(beside)->excludes(tree)->excludes(height);
     verb.add_option("--threads", a->threads, "that build and cast rays; 0: all cores")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     return [a] {
-        check_picture_memory(a->view.size, false);
-        if (a->beside.size() > 3) throw InputError("--beside: one picture has room for four structures");
-        check_writable(a->output);
-        return in_precision(*a, [&]<class T>(T) { return draw(*a, load<T>(*a)); });
+        return in_precision(*a, [&]<class T>(T) {
+            check<T>(*a);
+            return draw(*a, load<T>(*a));
+        });
     };
 }
 

@@ -33,6 +33,11 @@ struct DrawArguments : Common {
 /// All structures that are drawn: the first and those beside it.
 std::vector<std::string> structures_of(const DrawArguments& a);
 
+/// Throws UsageError for what is wrong with the options, whatever the scene holds.
+void check_cells(const DrawArguments& a);
+template <class T>
+void check_ray(const DrawArguments& a);
+
 /// The cells of some structures: of a flat scene, or in a slice.
 template <class T>
 int draw_cells(const DrawArguments& a, const Scene<T>& scene);
@@ -63,7 +68,7 @@ std::vector<OutlineCell<D>> few(std::vector<OutlineCell<D>> cells) {
 }
 
 /// What is reported of a structure that was drawn.
-nlohmann::ordered_json facts_of(const NamedStructure& s, std::size_t leaves, int depth);
+nlohmann::ordered_json facts_of(const NamedStructure& s, std::size_t cells, std::size_t leaves, int depth);
 
 /// Calls f with a set that lies in space and with what can be seen of it, of points small spheres; 1 if the
 /// scene is flat.

@@ -24,15 +24,21 @@ Section<2> section_of(const DrawArguments& a, const Box2d&, const Upright&) {
         throw InputError(a.scene + " is flat already, and has no slices: leave --slice out");
     return {};
 }
-/// Across an axis: "z=0.5" is a fraction of the scene's extent, "z=@12.5" a position.
-Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright& upright) {
-    const std::string_view text = a.slice;
-    const auto bad = [&]() {
-        return InputError(
+/// What --slice says: an axis, and where the plane crosses it.
+struct Slice {
+    int axis;
+    bool position;  ///< else a fraction of the scene's extent
+    double value;
+};
+/// "z=0.5" is a fraction, "z=@12.5" a position.
+Slice slice_of(const std::string& slice) {
+    const std::string_view text = slice;
+    const auto bad = [&] {
+        return UsageError(
             fmt::format("--slice {}: write x, y or z, then = and a fraction from 0 to 1, as z=0.5, or @ and "
                         "a position, as "
                         "z=@12.5",
-                        a.slice));
+                        slice));
     };
     if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') throw bad();
     const int axis = text[0] - 'x';
@@ -41,12 +47,14 @@ Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright
     double value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) throw bad();
-    if (!position) {
-        if (!(value >= 0 && value <= 1)) throw bad();
-        value = bounds.low[axis] + value * bounds.extent()[axis];
-    }
+    if (!position && !(value >= 0 && value <= 1)) throw bad();
+    return {axis, position, value};
+}
+Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright& upright) {
+    const auto [axis, position, value] = slice_of(a.slice);
     Section<3> section;
-    section.origin[axis] = section.within.low[axis] = section.within.high[axis] = value;
+    section.origin[axis] = section.within.low[axis] = section.within.high[axis] =
+        position ? value : bounds.low[axis] + value * bounds.extent()[axis];
     // Up is up in the picture, unless the plane lies across it.
     const int up = axis != upright.axis ? upright.axis : (axis == 2 ? 1 : 2);
     section.right[3 - axis - up] = 1;
@@ -54,11 +62,12 @@ Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright
     return section;
 }
 
-/// Those with at most so many levels of cells below them.
+/// Those of some cells that have at most `most` levels of cells below them in the whole structure.
 template <int D>
-std::vector<OutlineCell<D>> of_height(std::vector<OutlineCell<D>> cells, int most) {
+std::vector<OutlineCell<D>> of_height(std::vector<OutlineCell<D>> cells,
+                                      const std::vector<OutlineCell<D>>& whole, int most) {
     std::unordered_map<NodeId, int> height;
-    for (auto c = cells.rbegin(); c != cells.rend(); ++c) {  // children come before their parents
+    for (auto c = whole.rbegin(); c != whole.rend(); ++c) {  // children come before their parents
         const int own = height[c->id];
         if (c->level > 1) height[c->parent] = std::max(height[c->parent], own + 1);
     }
@@ -71,8 +80,6 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
     constexpr int D = P::dimension;
     expect_ending(a, ".svg", D == 2 ? "a flat scene" : "a slice");
     const auto specs = structures_of(a);
-    if (a.tree && specs.size() > 2)
-        throw InputError("--tree: one picture has room for the trees of two structures");
     std::vector<NamedStructure> structures;
     FlatScene scene;
     ordered_json report = ordered_json::array();
@@ -81,8 +88,9 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
         const auto bounds = bounds_of(*index);
         const auto section = section_of(a, bounds, upright_of(a.view, a, set));
         const auto limits = section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels);
-        auto cells = few(index->outline(limits));
-        if (a.height) cells = of_height(std::move(cells), *a.height);
+        auto cells = index->outline(limits);
+        if (a.height) cells = of_height(std::move(cells), index->outline(), *a.height);
+        cells = few(std::move(cells));
         NamedStructure s{spec, {}, flat_structure(cells, section)};
         if (a.tree) s.tree = cropped(tree_for(spec, D == 2 ? cells : index->outline(), true));
         if (!a.beside.empty()) {
@@ -98,7 +106,7 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
         if (s.flat.overlap.value_or(0) > 0)
             s.facts.push_back(fmt::format("siblings share {:.2f}% of their parents' {}",
                                           100 * *s.flat.overlap, D == 2 ? "area" : "volume"));
-        report.push_back(facts_of(s, index->leaf_count(), index->depth()));
+        report.push_back(facts_of(s, s.flat.cells.size(), index->leaf_count(), index->depth()));
         if (scene.primitives.empty()) scene = flat_scene(a, set, section, bounds);
         structures.push_back(std::move(s));
     }
@@ -113,6 +121,12 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
 }
 
 }  // namespace
+
+void check_cells(const DrawArguments& a) {
+    if (!a.slice.empty()) slice_of(a.slice);
+    if (a.tree && a.beside.size() > 1)
+        throw UsageError("--tree: one picture has room for the trees of two structures");
+}
 
 template <class T>
 int draw_cells(const DrawArguments& a, const Scene<T>& scene) {

@@ -51,7 +51,7 @@ Ray<T, D> ray_of(const DrawArguments& a) {
         ray.direction[k] = static_cast<T>(a.ray[std::size_t(k) + std::size_t(D)]);
     }
     if (!(length(Vec<double, D>(ray.direction)) > 0) || !finite(ray.origin) || !finite(ray.direction))
-        throw InputError("--ray: the direction must be finite and not zero, the origin finite");
+        throw UsageError("--ray: the direction must be finite and not zero, the origin finite");
     return ray;
 }
 
@@ -169,6 +169,19 @@ int draw_ray_in(const DrawArguments& a, const P& set) {
 }
 
 }  // namespace
+
+template <class T>
+void check_ray(const DrawArguments& a) {
+    if (a.ray.size() == 4)
+        ray_of<T, 2>(a);
+    else if (a.ray.size() == 6)
+        ray_of<T, 3>(a);
+    else
+        throw UsageError(
+            fmt::format("--ray has {} numbers: a flat scene takes 4, one in space 6", a.ray.size()));
+}
+template void check_ray<float>(const DrawArguments&);
+template void check_ray<double>(const DrawArguments&);
 
 template <class T>
 int draw_ray(const DrawArguments& a, const Scene<T>& scene) {

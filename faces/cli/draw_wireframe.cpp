@@ -79,28 +79,37 @@ void draw_level_legend(Image& image, const std::vector<std::string>& title, int 
     }
 }
 
-/// One structure's boxes over the picture of what can be seen.
-template <class T, class Seen>
-Image wireframe(const AnyIndex<T, 3>& index, const AnyIndex<T, 3>& seen_index, const Seen& seen,
-                const RenderOptions& options, int wanted, std::string& facts) {
-    auto picture = raycast(seen_index, seen, options, interruptible_executor());
-    for (auto& pixel : picture.image.pixels)
-        for (auto& c : pixel)
-            c = static_cast<std::uint8_t>(255 - (255 - c) * 9 / 20);  // pale, under the lines
-    const RayMaker maker(options.camera, options.width, options.height);
-    const auto surface = depths(seen_index, maker, options.width, options.height, interruptible_executor());
-    int levels = 0;
-    auto cells = boxes_of(index, wanted, levels);
+/// What can be seen of the scene, pale, and how far it is away: under the lines of every structure.
+struct Background {
+    RayMaker maker;
+    Image image;
+    std::vector<float> surface;
+
+    template <class T, class Seen>
+    Background(const DrawArguments& a, const AnyIndex<T, 3>& index, const Seen& seen,
+               const RenderOptions& options)
+        : maker(options.camera, options.width, options.height) {
+        ProgressLine line("casting rays", a.quiet, "rows");
+        image = raycast(index, seen, options, interruptible_executor(), line.progress()).image;
+        for (auto& pixel : image.pixels)
+            for (auto& c : pixel) c = static_cast<std::uint8_t>(255 - (255 - c) * 9 / 20);
+        surface = depths(index, maker, options.width, options.height, interruptible_executor());
+    }
+};
+
+/// The boxes of some cells over what can be seen.
+Image wireframe(std::vector<OutlineCell<3>> cells, const std::vector<std::string>& title, int levels,
+                const Background& background) {
     std::stable_sort(cells.begin(), cells.end(),
                      [](const auto& a, const auto& b) { return a.level > b.level; });
-    Wireframe wires(picture.image, surface, maker);
-    const float unit = static_cast<float>(options.height) / 768;
+    Image image = background.image;
+    Wireframe wires(image, background.surface, background.maker);
+    const float unit = static_cast<float>(image.height) / 768;
     for (const auto& c : cells)
         draw_edges(c, pixel_of(level_colour(c.level - 1, levels)),
                    unit * std::max(1.1f, 2.8f * std::pow(0.85f, static_cast<float>(c.level - 1))), wires);
-    facts = fmt::format("{} cells of the first {} levels of {}", cells.size(), levels, index.depth());
-    draw_level_legend(picture.image, {std::string(index.structure()), facts}, levels);
-    return picture.image;
+    draw_level_legend(image, title, levels);
+    return image;
 }
 constexpr int gap = 4;  // pixels between pictures
 
@@ -125,8 +134,6 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = 4, options.seed = a.seed;
-    if (a.tree)
-        throw InputError("--tree: trees stand beside flat pictures; add --slice, or draw a flat scene");
     const auto specs = structures_of(a);
     if (specs.size() > 1) options.width = std::max(1, (options.width - gap) / 2);
     if (specs.size() > 2) options.height = std::max(1, (options.height - gap) / 2);
@@ -134,13 +141,18 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     const Upright upright = upright_of(a.view, a, set);
     options.camera = camera_of(
         a.view, a, Box3f{Vec3f(seen_index->bounds().low), Vec3f(seen_index->bounds().high)}, upright);
+    const Background background(a, *seen_index, seen, options);
     std::vector<Image> images;
     ordered_json report = ordered_json::array();
     std::string text;
     for (const auto& spec : specs) {
         const auto index = build_shown(a, spec, set);
-        std::string facts;
-        images.push_back(wireframe(*index, *seen_index, seen, options, a.levels, facts));
+        int levels = 0;
+        auto cells = boxes_of(*index, a.levels, levels);
+        const std::size_t drawn = cells.size();
+        std::string facts =
+            fmt::format("{} cells of the first {} levels of {}", drawn, levels, index->depth());
+        images.push_back(wireframe(std::move(cells), {spec, facts}, levels, background));
         NamedStructure s{spec, {facts}, {}};
         if (!a.beside.empty()) {
             add_shared(index->outline(), Section<3>{{}, {1, 0, 0}, {0, 1, 0}}, s.flat);
@@ -148,7 +160,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
                 facts +=
                     fmt::format("; siblings share {:.2f}% of their parents' volume", 100 * *s.flat.overlap);
         }
-        report.push_back(facts_of(s, index->leaf_count(), index->depth()));
+        report.push_back(facts_of(s, drawn, index->leaf_count(), index->depth()));
         text += fmt::format("{}: {}\n", spec, facts);
     }
     save_png(a.output, joined(images));

@@ -40,6 +40,23 @@ std::string level_style(int levels, double thin) {
     return css;
 }
 
+namespace {
+
+constexpr double cells_share = 0.46;  // of the width, where a tree stands beside its cells
+
+}  // namespace
+
+Box2d cells_part(const Box2d& area) {
+    Box2d left = area;
+    left.high[0] = area.low[0] + cells_share * area.extent()[0];
+    return left;
+}
+Box2d tree_part(const Box2d& area) {
+    Box2d right = area;
+    right.low[0] = cells_part(area).high[0] + picture_margin;
+    return right;
+}
+
 Caption::Caption(std::string_view name_text, const std::vector<std::string>& facts_text, double width) {
     const auto letters = [&](double each) { return static_cast<std::size_t>(std::max(12.0, width / each)); };
     name = wrapped(name_text, letters(7.6));

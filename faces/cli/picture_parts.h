@@ -52,6 +52,10 @@ private:
 
 inline constexpr double picture_margin = 24, picture_head = 64, legend_width = 150;
 
+/// The left part of an area, for cells, and the rest of it, for their tree.
+Box2d cells_part(const Box2d& area);
+Box2d tree_part(const Box2d& area);
+
 /// What is to be seen of some structures and of the primitives.
 Box2d frame_of(const FlatScene& scene, const std::vector<const FlatStructure*>& structures);
 /// A factor for lines: smaller where there are many.

@@ -7,13 +7,9 @@ namespace hedgerow::cli {
 
 namespace {
 
-Box2d cells_part(const NamedStructure& s, Box2d area) {
-    if (!s.tree.nodes.empty()) area.high[0] -= 0.54 * area.extent()[0];
-    return area;
-}
-Box2d tree_part(Box2d area) {
-    area.low[0] += 0.46 * area.extent()[0] + picture_margin;
-    return area;
+/// Where the ray ends in a structure: at its hit, or else at the end of what is seen.
+double end_of(const TraceTable& table, double beyond) {
+    return table.hit ? table.hit->second : beyond;
 }
 Box2d around_point(const Vec2d& p, double reach) {
     return {p - Vec2d::all(reach), p + Vec2d::all(reach)};
@@ -45,7 +41,9 @@ RayFrame::RayFrame(const FlatScene& scene, const std::vector<RayView>& views) {
     if (const auto in = meet(Ray<double, 2>{table.flat_origin, table.flat_direction}, shown))
         enter = in->entry, leave = in->exit;
     first = enter * speed > 0.3 * wide ? enter - 0.1 * wide / speed : 0;
-    last = table.hit ? table.hit->second : leave + 0.04 * wide / speed;
+    const double beyond = leave + 0.04 * wide / speed;
+    last = end_of(table, beyond);
+    for (const auto& v : views) last = std::max(last, end_of(v.table, beyond));
     shown.expand(table.at(first)).expand(table.at(last));
 }
 
@@ -56,7 +54,8 @@ RayDrawing::RayDrawing(Svg& svg, const FlatScene& scene, const RayView& view, co
       all_(view.structure.flat),
       table_(view.table),
       frame_(frame),
-      cells_area_(cells_part(view.structure, area)),
+      last_(end_of(view.table, frame.last)),
+      cells_area_(view.structure.tree.nodes.empty() ? area : cells_part(area)),
       panel_(frame.shown, cells_area_),
       tree_(view.structure.tree) {
     for (const auto& p : scene.primitives) primitives_[p.id] = &p;
@@ -128,7 +127,7 @@ void RayDrawing::add_legend(Svg& svg, const Vec2d& at, bool numbers, bool tree) 
 }
 
 Vec2d RayDrawing::at(double t) const {
-    return panel_(table_.at(std::clamp(t, frame_.first, frame_.last)));
+    return panel_(table_.at(std::clamp(t, frame_.first, last_)));
 }
 std::string RayDrawing::colour(std::size_t step) const {
     return level_colour(static_cast<int>(step), static_cast<int>(table_.rows.size()));
@@ -172,7 +171,7 @@ void RayDrawing::interval(std::size_t i) {
     const Interval<double> in = table_.rows[i].inside;
     const Vec2d enter = at(in.entry), leave = at(in.exit);
     svg_.line(enter, leave, "class=\"part\"");
-    const Vec2d along = normalized(at(frame_.last) - at(frame_.first)), side(along[1], -along[0]);
+    const Vec2d along = normalized(at(last_) - at(frame_.first)), side(along[1], -along[0]);
     Labels labels(cells_area_);
     labels.block(Box2d().expand(enter).expand(leave));
     const auto mark = [&](const Vec2d& p, double t, const Vec2d& wanted) {
@@ -197,14 +196,14 @@ void RayDrawing::node(std::size_t i) {
                   fmt::format("{}", i + 1), fmt::format("class=\"number\" style=\"fill:{}\"", colour(i)));
 }
 void RayDrawing::ray() {
-    svg_.line(at(frame_.first), at(frame_.last), "class=\"ray\" marker-end=\"url(#arrow)\"");
+    svg_.line(at(frame_.first), at(last_), "class=\"ray\" marker-end=\"url(#arrow)\"");
     if (frame_.first <= 0) svg_.circle(at(0), 3.5, "class=\"origin\"");
 }
 void RayDrawing::hit() {
     if (!table_.hit) return;
     svg_.circle(at(table_.hit->second), 5, "class=\"hit\"");
     svg_.circle(at(table_.hit->second), 1.6, "fill=\"#d0103a\"");
-    if (!table_.nearest || table_.nearest == table_.hit) return;
+    if (!table_.wrong()) return;
     svg_.circle(at(table_.nearest->second), 5, "class=\"nearest\"");
     svg_.text(at(table_.nearest->second) + Vec2d(0, -9), "nearest", "class=\"t\" style=\"fill:#0a7d32\"");
 }
@@ -215,7 +214,7 @@ void RayDrawing::numbers() {
         std::vector<std::size_t> steps;
     };
     Labels labels(cells_area_);
-    labels.block(around_point(at(frame_.last), 7));
+    labels.block(around_point(at(last_), 7));
     if (frame_.first <= 0) labels.block(around_point(at(0), 4));
     std::vector<Entered> nodes;
     for (std::size_t i = 0; i < table_.rows.size(); ++i) {
@@ -236,7 +235,7 @@ void RayDrawing::numbers() {
             labels.draw(svg_, middle, middle, fmt::format("{}", i + 1),
                         fmt::format("class=\"badge\" stroke=\"{}\"", colour(i)));
     }
-    const Vec2d along = normalized(at(frame_.last) - at(frame_.first)), side(along[1], -along[0]);
+    const Vec2d along = normalized(at(last_) - at(frame_.first)), side(along[1], -along[0]);
     for (const auto& e : nodes)
         labels.draw(svg_, e.at, e.at - side * 14.0, runs_text(e.steps), "class=\"badge\" stroke=\"#b6bcc8\"");
 }

@@ -11,8 +11,8 @@
 
 namespace hedgerow::cli {
 
-/// What is seen of a ray, in t, and of the plane with it: from its origin, if that is near, to a little
-/// beyond where it ends.
+/// What is seen of a ray, in t, and of the plane with it: from its origin, if that is near, to its farthest
+/// hit in any of the structures, or to a little beyond the scene.
 struct RayFrame {
     double first = 0, last = 0;
     Box2d shown;
@@ -54,6 +54,7 @@ private:
     const FlatStructure& all_;
     const TraceTable& table_;
     const RayFrame& frame_;
+    double last_;  ///< t where this structure's ray ends
     Box2d cells_area_;
     Panel panel_;
     std::optional<TreePanel> tree_panel_;

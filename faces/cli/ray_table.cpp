@@ -11,9 +11,8 @@ namespace hedgerow::cli {
 std::string TraceTable::summary() const {
     if (nearest)
         return fmt::format("stops after {} steps at primitive {}, t = {:.6g}; {} {}, t = {:.6g}", rows.size(),
-                           hit->first, hit->second,
-                           hit == nearest ? "the nearest is" : "WRONG, the nearest is", nearest->first,
-                           nearest->second);
+                           hit->first, hit->second, wrong() ? "WRONG, the nearest is" : "the nearest is",
+                           nearest->first, nearest->second);
     const std::string cost =
         fmt::format("{} steps: {} nodes, {} leaves, {} primitives tested{}", rows.size(), visits.nodes,
                     visits.leaves, visits.primitives,
@@ -26,7 +25,8 @@ void TraceTable::stop_at_first_hit() {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         std::optional<std::pair<PrimitiveId, double>> first;
         for (const auto& t : rows[i].tests)
-            if (t.t && (!first || *t.t < first->second)) first = {t.id, *t.t};
+            if (t.t && (!first || std::pair(*t.t, t.id) < std::pair(first->second, first->first)))
+                first = {t.id, *t.t};  // the lower id of equal ones, as queries have it
         if (!first) continue;
         nearest = std::exchange(hit, first);
         const bool cells_are_nodes = visits.nodes == rows.size();  // of a grid

@@ -35,6 +35,8 @@ struct TraceTable {
     /// In the picture's plane.
     Vec2d flat_origin, flat_direction;
 
+    /// Whether the walk was stopped at a hit beyond the nearest one.
+    bool wrong() const { return nearest && hit->second != nearest->second; }
     Vec2d at(double t) const { return flat_origin + flat_direction * t; }
     /// One line: what it took and what came of it.
     std::string summary() const;
