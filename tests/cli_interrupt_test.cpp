@@ -44,6 +44,28 @@ TEST_F(Interrupted, WhileMeasuring) {
     expect_untouched({"bench", "gen:soup:2M", "--html", file("b.html"), "--quiet"}, file("b.html"));
 }
 
+/// What is measured is written, whatever comes after it is not.
+TEST_F(Interrupted, AComparisonKeepsWhatWasMeasured) {
+    const std::string page = file("a.html"), unfinished = file("a.unfinished.html");
+    EXPECT_EQ(
+        run_interrupted({"compare", "gen:soup", "--scale", "--sizes", "100,200,400,3M", "--structures",
+                         "kdtree", "--sweep", "bvh:bins=4,8", "--time", "0.001", "--html", page, "--quiet"},
+                        2500),
+        130);
+    EXPECT_NE(bytes_of(unfinished).find("growth: nodes a query"), std::string::npos)
+        << "three sizes were measured";
+    fs::remove(unfinished);
+
+    EXPECT_EQ(
+        run_interrupted({"compare", "gen:soup:60k", "--for", "overlap", "--sweep", "bvh:builder=lbvh,ploc",
+                         "--sweep", "bsp:leaf_size=1,2", "--time", "0.001", "--html", page, "--quiet"},
+                        4000),
+        130);
+    if (fs::exists(unfinished)) {
+        EXPECT_NE(bytes_of(unfinished).find("a overlap query"), std::string::npos);
+    }
+}
+
 TEST_F(Interrupted, APictureKeepsItsFinishedRowsBesideTheOneOfBefore) {
     const std::string output = file("a.png"), unfinished = file("a.unfinished.png");
     std::ofstream(output) << "precious";
@@ -52,6 +74,13 @@ TEST_F(Interrupted, APictureKeepsItsFinishedRowsBesideTheOneOfBefore) {
     if (fs::exists(unfinished)) {
         EXPECT_EQ(load_png(unfinished).width, 1600);
     }
+}
+
+TEST_F(Interrupted, IsSaidByTheCodeWhereNobodyCanReadTheMessage) {
+    const auto r = run_shell("timeout --preserve-status -s INT 1.5 " HEDGEROW_TOOL_PATH
+                             " render gen:teapot:6000 --structure brute-force --size 1600x1200 -o " +
+                             file("a.png") + " 2>&-");
+    EXPECT_EQ(r.code, 130) << r.output;
 }
 
 }  // namespace

@@ -110,6 +110,9 @@ TEST_F(Cli, ASavedIndexIsDescribedAndRendered) {
         EXPECT_NE(facts.find("\"precision\": \"" + std::string(precision)), std::string::npos) << facts;
         EXPECT_NE(facts.find("\"file_bytes\": " + std::to_string(bytes.size())), std::string::npos) << facts;
 
+        const auto compared = run("compare --structures bvh --queries 16 --time 0.001 " + saved);
+        EXPECT_EQ(compared.code, 0) << compared.output;
+
         ASSERT_EQ(run("render " + scene + view).code, 0);
         const std::string picture = bytes_of(file("saved.png"));
         for (const std::string structure : {"", " --structure wide", " --structure kdtree"}) {
@@ -173,6 +176,15 @@ TEST_F(Cli, FilesAreConverted) {
     expect_usage("generate " + file("a.obj") + " -o " + file("b.ply"), "hedgerow convert");
 }
 
+TEST_F(Cli, FormatsAreRefusedBeforeAnyWork) {
+    // None of these scenes fits into memory, and the file is not there.
+    expect_usage("generate gen:terrain:2000M -o " + file("a.xyz"), ".ply .stl .obj .off");
+    expect_usage("generate gen:points:2000M -o " + file("a.stl"), ".ply .npy .csv .xyz");
+    expect_usage("generate gen:spheres:2000M -o " + file("a.ply"), "no file format here holds spheres");
+    expect_usage("convert " + file("missing.ply") + " -o " + file("a.glb"), "Meshes are written as .ply");
+    expect_usage("convert " + file("missing.ply") + " -o " + file("a"), "Points are written as .ply");
+}
+
 TEST_F(Cli, ExtensionsAreOfAnyCase) {
     EXPECT_EQ(run("generate gen:cube -o " + file("A.PLY")).code, 0);
     EXPECT_EQ(run("render " + file("A.PLY") + " --size 16x16 -o " + file("A.PNG")).code, 0);
@@ -201,6 +213,10 @@ TEST_F(Cli, DoublesAreKept) {
               std::string::npos);
     EXPECT_NE(run("info --json " + file("one.csv")).output.find("0.12345679,"), std::string::npos)
         << "with the digits of a float, not those of a double";
+    ASSERT_EQ(run("convert " + file("one.csv") + " -o " + file("one.npy")).code, 0);
+    EXPECT_NE(run("info --json --precision double " + file("one.npy")).output.find("0.123456789,"),
+              std::string::npos)
+        << "convert keeps them unless it is told not to";
     ASSERT_EQ(run("render gen:teapot:200 --quiet --size 32x24 --precision double -o " + file("d.png")).code,
               0);
 }

@@ -56,6 +56,8 @@ TEST_F(Usage, ValuesOutOfRangeAreTwo) {
         EXPECT_FALSE(std::filesystem::exists(file("x.png"))) << bad;
     }
     expect_usage("compare gen:cube --time nan", "finite");
+    expect_usage("render gen:cube --eye 1e39,0,0" + to, "from -3.4e38 to 3.4e38");
+    expect_usage("bench gen:cube --width 3000000000", "from -2^31 to 2^31 - 1");
     expect_usage("render gen:cube -o ''", "empty");
     expect_usage("render '' -o x.png", "empty");
     expect_usage("render gen:cube -o " + file("x.jpg"), ".png");
@@ -128,6 +130,8 @@ TEST_F(Usage, TooLittleMemoryIsOneWithTheFigure) {
         EXPECT_NE(r.output.find(said), std::string::npos) << r.output;
         EXPECT_EQ(r.output.find("bad_alloc"), std::string::npos) << r.output;
     }
+    const auto lines = limited("draw gen:points2d:50 --size 32768x32768 -o " + file("x.svg"));
+    EXPECT_EQ(lines.code, 0) << lines.output << ": no pixel of an SVG is held";
 }
 
 TEST_F(Usage, OnePointIsAPicture) {

@@ -32,7 +32,6 @@ CLI::Validator number(bool good(const std::string&), const std::string& wanted) 
         "");
 }
 
-/// The words of a list; `unless` is left out.
 std::vector<std::string_view> names_of(const std::vector<const CLI::App*>& verbs) {
     std::vector<std::string_view> names;
     for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
@@ -48,11 +47,11 @@ void check_arguments(CLI::App& verb) {
     for (CLI::Option* option : verb.get_options()) {
         const std::string type = option->get_type_name();
         if (type.starts_with("FLOAT"))
-            option->check(number(reads_as<double>, "a finite number"));
+            option->check(number(reads_as<double>, "a finite number from -3.4e38 to 3.4e38"));
         else if (type.starts_with("UINT"))
             option->check(number(reads_as<std::uint64_t>, "a whole number from 0 to 2^64 - 1"));
         else if (type.starts_with("INT"))
-            option->check(number(reads_as<std::int32_t>, "a whole number"));
+            option->check(number(reads_as<std::int32_t>, "a whole number from -2^31 to 2^31 - 1"));
         else if (type.starts_with("TEXT"))
             option->check(
                 number([](const std::string& text) { return !text.empty(); }, "a name: it is empty"));

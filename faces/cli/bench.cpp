@@ -31,7 +31,7 @@ struct BenchArguments : Common {
 constexpr const char* usual_scenes[] = {"gen:teapot-in-stadium:50000", "gen:soup:200000",
                                         "gen:hairball:200000", "gen:terrain:20000"};
 
-/// Parts of a list that are among known words, as an enum whose values are their places. Throws InputError.
+/// Parts of a list that are among known words, as an enum whose values are their places. Throws UsageError.
 template <class E, std::size_t N>
 std::vector<E> list_of(const std::string& option, const std::string& list,
                        const std::string_view (&known)[N]) {

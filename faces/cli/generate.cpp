@@ -1,4 +1,8 @@
 /// hedgerow generate and hedgerow convert: scenes into files.
+#include <algorithm>
+#include <span>
+#include <string_view>
+
 #include <fmt/format.h>
 
 #include <hedgerow/error.h>
@@ -25,7 +29,30 @@ void save(const Common& c, const Other&, const Progress&) {
     throw InputError(c.scene + ": no file format here holds these primitives");
 }
 
+constexpr std::string_view mesh_endings[] = {".ply", ".stl", ".obj", ".off"};
+constexpr std::string_view point_endings[] = {".ply", ".npy", ".csv", ".xyz"};
+
+/// Throws UsageError, before a scene is read or generated, for an output whose ending names no format, or
+/// none that holds what is generated.
+void check_format(const Common& c) {
+    std::string_view yields;  // unknown of a file
+    for (const SceneInfo& info : scene_list())
+        if (info.name == generated_name(c)) yields = info.yields;
+    const bool mesh = yields.empty() || yields == "triangles", points = yields.empty() || yields == "points";
+    if (!mesh && !points) throw UsageError(fmt::format("{}: no file format here holds {}", c.scene, yields));
+    const auto among = [&](std::span<const std::string_view> endings) {
+        return std::find(endings.begin(), endings.end(), ending_of(c.output)) != endings.end();
+    };
+    if ((mesh && among(mesh_endings)) || (points && among(point_endings))) return;
+    std::string known;
+    if (mesh) known += fmt::format(" Meshes are written as {}.", fmt::join(mesh_endings, " "));
+    if (points) known += fmt::format(" Points are written as {}.", fmt::join(point_endings, " "));
+    throw UsageError(fmt::format("{}: this ending names no format for {}.{}", c.output,
+                                 yields.empty() ? "meshes or points" : yields, known));
+}
+
 int save_scene(const Common& c) {
+    check_format(c);
     check_writable(c.output);
     return in_precision(c, [&]<class T>(T) {
         const Scene<T> scene = load<T>(c);
@@ -56,6 +83,7 @@ Run add_generate(CLI::App& verb) {
 
 Run add_convert(CLI::App& verb) {
     auto c = std::make_shared<Common>();
+    c->precision = "double";  // files of doubles keep their digits
     add_common(verb, *c, true);
     return [c] { return save_scene(*c); };
 }

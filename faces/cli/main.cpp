@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
 #include <system_error>
 #include <vector>
@@ -182,6 +183,8 @@ int run_safely(int count, char** arguments) {
         return short_of_memory();
     } catch (const std::length_error&) {  // more elements than any memory has addresses
         return short_of_memory();
+    } catch (const std::filesystem::filesystem_error& e) {
+        return failed(1, e.what());
     } catch (const std::system_error& e) {  // from fmt, printing
         return lost_output(e.code().value());
     } catch (const std::exception& e) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <exception>
+#include <utility>
 
 #include <unistd.h>
 
@@ -32,6 +34,11 @@ std::string& failed_work() {
     return work;
 }
 
+/// Work goes on where the terminal is gone, so failure to write is passed over.
+void rewrite_line(const std::string& text) noexcept {
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+}
+
 /// 1234567 triangles: "1.23 million triangles"; of bytes "1.23 MB".
 std::string amount(double count, const std::string& unit) {
     if (unit == "bytes") return fmt::format("{:.3g} MB", count * 1e-6);
@@ -48,8 +55,8 @@ ProgressLine::ProgressLine(std::string what, bool quiet, std::string unit)
       exceptions_(std::uncaught_exceptions()),
       start_(now()) {}
 ProgressLine::~ProgressLine() {
-    if (std::uncaught_exceptions() > exceptions_) failed_work() = what_;
-    if (shown_) fmt::print(stderr, "\r\033[K");
+    if (std::uncaught_exceptions() > exceptions_) failed_work() = std::move(what_);  // allocates nothing
+    if (shown_) rewrite_line("");
 }
 const std::string& ProgressLine::failed() {
     return failed_work();
@@ -65,11 +72,11 @@ void ProgressLine::show(std::uint64_t done, std::uint64_t total) {
     const std::lock_guard lock(mutex_);
     if (now() - last_ < 0.1) return;
     last_ = now();
-    fmt::print(stderr, "\r\033[K{}", progress_text(what_, unit_, done, total, last_ - start_));
+    rewrite_line(progress_text(what_, unit_, done, total, last_ - start_));
 }
 void ProgressLine::say(const std::string& doing) {
     const std::lock_guard lock(mutex_);
-    if (shown_) fmt::print(stderr, "\r\033[K{} {}", what_, doing);
+    if (shown_) rewrite_line(what_ + " " + doing);
 }
 
 std::string progress_text(const std::string& what, const std::string& unit, std::uint64_t done,

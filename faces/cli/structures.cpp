@@ -20,8 +20,8 @@ const StructureInfo& structure_named(const std::string& name) {
         names.push_back(s.name);
         list += (list.empty() ? "" : ", ") + std::string(s.name);
     }
-    throw UsageError(fmt::format("there is no structure '{}'{}; the structures are {}", name,
-                                 suggestion(name, names), list));
+    throw UsageError(
+        fmt::format("no structure is called '{}'{}; there are {}", name, suggestion(name, names), list));
 }
 
 nlohmann::ordered_json json_of(const StructureInfo& s) {
@@ -39,7 +39,7 @@ int show_all(bool json) {
         if (!json) fmt::print("{:14} {}\n", s.name, s.description);
     }
     if (json)
-        fmt::print("{}\n", all.dump(2));
+        print_json(all);
     else
         fmt::print(
             "\nhedgerow structures NAME lists its options; they stand behind a colon, as "
@@ -49,7 +49,7 @@ int show_all(bool json) {
 
 int show_one(const StructureInfo& s, bool json) {
     if (json) {
-        fmt::print("{}\n", json_of(s).dump(2));
+        print_json(json_of(s));
         return 0;
     }
     fmt::print("{}: {}\n", s.name, s.description);

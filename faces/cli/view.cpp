@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 
@@ -62,7 +63,7 @@ bool asks_for_layers(const std::string& output) {
 
 int FinishedPicture::exit_code() const {
     if (whole) return 0;
-    fmt::print(stderr, "hedgerow: interrupted; the finished part is in {}\n", output);
+    std::fprintf(stderr, "hedgerow: interrupted; the finished part is in %s\n", output.c_str());
     return 130;
 }
 FinishedPicture finish_picture(const std::string& output, std::uint64_t rows, int height) {

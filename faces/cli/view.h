@@ -26,7 +26,7 @@ void add_view(CLI::App& verb, ViewArguments& view);
 /// Only where the camera is and where it looks.
 void add_camera(CLI::App& verb, ViewArguments& view);
 
-/// Width and height. Throws InputError unless it is WIDTHxHEIGHT, each from 1 to 32768.
+/// Width and height. Throws UsageError unless it is WIDTHxHEIGHT, each from 1 to 32768.
 std::pair<int, int> parse_size(const std::string& text);
 
 /// Which way is up: as the user says, or as the scene does.
@@ -38,12 +38,13 @@ Upright upright_of(const ViewArguments& view, const Common& common, const P& pri
 /// A line for people: what was chosen for them. Empty where nothing was, and for generated scenes.
 std::string up_text(const ViewArguments& view, const Common& common, const Upright& upright);
 
-/// Where the scene is best seen from, but for what the user says. Throws InputError for a view along up.
+/// Where the scene is best seen from, but for what the user says. Throws UsageError for a camera that
+/// sees nothing, as one that looks along up.
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,
                  const Upright& upright);
 
-/// Whether a picture's file is .exr, layers of numbers, or .png, colours. Throws InputError for any other
-/// ending, and for .exr in a build without OpenEXR.
+/// Whether a picture's file is .exr, layers of numbers, or .png, colours. Throws UsageError for any other
+/// ending, and InputError for .exr in a build without OpenEXR.
 bool asks_for_layers(const std::string& output);
 
 /// Where a picture goes: one that was interrupted must not replace one of before.
