@@ -110,12 +110,12 @@ inline Gltf triangle(const std::string& count = "3") {
         .accessor("VEC3", f4, count, R"(,"bufferView":0)");
 }
 
-using Corners = std::array<Vec3d, 3>;
+using ThreeCorners = std::array<Vec3d, 3>;
 
 struct GltfCase {
     std::string name;
     Gltf file;
-    std::vector<Corners> triangles;
+    std::vector<ThreeCorners> triangles;
 };
 
 /// Files of every kind that is read.
@@ -135,12 +135,12 @@ inline std::vector<GltfCase> gltf_cases() {
         file.nodes = nodes;
         return file;
     };
-    const auto flipped = [](Corners t) {  // by a scale of −1 along x, with its front kept
+    const auto flipped = [](ThreeCorners t) {  // by a scale of −1 along x, with its front kept
         for (Vec3d& p : t) p[0] = -p[0];
-        return Corners{t[2], t[1], t[0]};
+        return ThreeCorners{t[2], t[1], t[0]};
     };
     const std::string mirror = R"({"mesh":0,"scale":[-1,1,1]})";
-    const std::vector<Corners> one{{a, b, c}}, strip{{a, b, c}, {c, b, d}, {c, d, e}},
+    const std::vector<ThreeCorners> one{{a, b, c}}, strip{{a, b, c}, {c, b, d}, {c, d, e}},
         fan{{a, b, c}, {a, c, d}, {a, d, e}}, strip_back{{e, d, c}, {c, d, b}, {c, b, a}},
         fan_back{{e, d, c}, {e, c, b}, {e, b, a}};
 
@@ -162,7 +162,7 @@ inline std::vector<GltfCase> gltf_cases() {
     };
 
     // Scaled by (2, 3, 4), turned by 120° about (1, 1, 1), which takes x to y to z to x, and moved.
-    const std::vector<Corners> turned{{Vec3d(22, 2, 6), Vec3d(22, 8, 6), Vec3d(22, 2, 21)}};
+    const std::vector<ThreeCorners> turned{{Vec3d(22, 2, 6), Vec3d(22, 8, 6), Vec3d(22, 2, 21)}};
     const std::string parent = R"({"translation":[10,0,0],"children":[1]},)";
     all.push_back({"rotation and scale in a moved node",
                    on_nodes(corners(), parent + R"({"mesh":0,"rotation":[0.5,0.5,0.5,0.5],"scale":[2,3,4]})"),
@@ -190,7 +190,7 @@ inline std::vector<GltfCase> gltf_cases() {
     numbers("u4", u4, std::uint32_t(4294967295u), std::uint32_t(77777777));
     numbers("f4", f4, 0.5f, -0.25f);
 
-    const std::vector<Corners> around{{b, c, a}};
+    const std::vector<ThreeCorners> around{{b, c, a}};
     all.push_back({"u1 indices", corners().indices(packed<std::uint8_t>({1, 2, 0}), u1, 3), around});
     all.push_back({"u4 indices", corners().indices(packed<std::uint32_t>({1, 2, 0}), u4, 3), around});
 

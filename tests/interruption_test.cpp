@@ -60,7 +60,7 @@ const char* const structures[] = {"bvh",
                                   "bsp",
                                   "grid",
                                   "two-level-grid"};
-constexpr std::size_t count = 12'000;
+constexpr std::size_t count = 12'000, written = 20'000;  // primitives that are built over, and others
 
 const TriangleMesh<float>& mesh() {
     static const auto made = soup<float>(count);
@@ -124,7 +124,7 @@ TEST(Interruption, ATokenRaisedAtAnySplitEndsTheBuild) {
 
 TEST(Interruption, GeneratorsStopWhereverTheyAreAsked) {
     for (const SceneInfo& info : scene_list()) {
-        const SceneSpec spec{std::string(info.name), count, 0};
+        const SceneSpec spec{std::string(info.name), written, 0};
         std::uint64_t reports = 0, stop_at = 0;
         std::atomic<bool> token{false};
         const Progress progress{[&](std::uint64_t done, std::uint64_t total) {
@@ -153,14 +153,15 @@ TEST(Interruption, WritersLeaveWhatWasThere) {
                                 if (++reports == 3) token = true;
                             },
                             &token};
-    const auto cloud = points<float>(count);
+    const auto cloud = points<float>(written);
+    const auto triangles = soup<float>(written);
     for (const char* const name : {"a.ply", "a.stl", "a.obj", "a.off", "a.npy", "a.csv"}) {
         folder.file(name, "of before");
         reports = 0, token = false;
         const bool of_points = std::string(name) == "a.npy" || std::string(name) == "a.csv";
         const auto save = [&] {
             of_points ? save_points(folder / name, cloud, progress)
-                      : save_mesh(folder / name, mesh(), progress);
+                      : save_mesh(folder / name, triangles, progress);
         };
         EXPECT_THROW(save(), Cancelled) << name;
         EXPECT_EQ(contents(folder / name), "of before");

@@ -7,8 +7,8 @@ namespace {
 using namespace testing_gltf;
 using testing_io::TempFolder;
 
-std::vector<Corners> triangles_of(const TriangleMesh<double>& mesh) {
-    std::vector<Corners> all;
+std::vector<ThreeCorners> triangles_of(const TriangleMesh<double>& mesh) {
+    std::vector<ThreeCorners> all;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         const auto t = mesh.view().triangle(i);
         all.push_back({t.a, t.b, t.c});

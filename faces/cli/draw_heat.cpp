@@ -36,24 +36,21 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
         camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)}, upright);
     Picture picture;
     FinishedPicture finished;
-    double pixels = 0;
     {
         ProgressLine line("casting rays", a.quiet, "rows");
         picture = raycast(*index, set, options, default_executor(), line.progress());
         finished = finish_picture(a.output, line.done(), options.height);
-        pixels = double(options.width) * double(line.done());
     }
-    // The picture's mean counts rows that an interruption left out as zeros.
-    const double mean = picture.mean * double(options.width) * double(options.height) / pixels;
+    const double share_beyond = double(picture.beyond) / double(picture.pixels);
     const std::string unit =
         a.heat == "time" ? "nanoseconds" : (a.heat == "tests" ? "primitives tested" : a.heat);
-    draw_note(
-        picture.image, 0, 0,
-        note_lines(picture.image,
-                   {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
-                    fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit, mean, picture.most)},
-                   colour_bar_left(picture.image, options.steps_max)),
-        letter_scale(picture.image));
+    draw_note(picture.image, 0, 0,
+              note_lines(picture.image,
+                         {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
+                          fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit, picture.mean,
+                                      picture.most)},
+                         colour_bar_left(picture.image, options.steps_max)),
+              letter_scale(picture.image));
     save(finished.output, picture);
     if (a.json)
         print_json({{"output", finished.output},
@@ -61,15 +58,15 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
                     {"heat", a.heat},
                     {"scale", options.steps_max},
                     {"logarithmic", a.log},
-                    {"mean", mean},
+                    {"mean", picture.mean},
                     {"most", picture.most},
-                    {"share_beyond_scale", double(picture.beyond) / pixels},
+                    {"share_beyond_scale", share_beyond},
                     {"finished", finished.whole}});
     else if (!a.quiet)
         fmt::print(
             "{}: {} a ray: {:.1f} on average, at most {:.0f}; the scale ends at {}, and {:.2f}% of the "
             "pixels lie beyond\n{}",
-            a.structure, unit, mean, picture.most, options.steps_max, 100 * double(picture.beyond) / pixels,
+            a.structure, unit, picture.mean, picture.most, options.steps_max, 100 * share_beyond,
             up_text(a.view, a, upright));
     return finished.exit_code();
 }

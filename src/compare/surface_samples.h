@@ -9,6 +9,7 @@
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/scenes/random.h>
+#include <hedgerow/surface.h>
 
 namespace hedgerow::compare {
 
@@ -25,8 +26,8 @@ SurfacePlace<T, 3> place_on(const Triangle<T, 3>& t, Random& random) {
     double u = random.uniform(), v = random.uniform();
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const Vec<double, 3> a(t.a), e1 = Vec<double, 3>(t.b) - a, e2 = Vec<double, 3>(t.c) - a;
-    const double scale = std::max(max_component(abs(e1)), max_component(abs(e2)));
-    return {Vec<T, 3>(a + e1 * u + e2 * v), normalized(cross(e1 / scale, e2 / scale))};
+    return {Vec<T, 3>(a + e1 * u + e2 * v),
+            detail::unit_normal({a, Vec<double, 3>(t.b), Vec<double, 3>(t.c)})};
 }
 template <class T>
 SurfacePlace<T, 3> place_on(const Sphere<T, 3>& s, Random& random) {

@@ -56,7 +56,9 @@ struct Picture {
     std::uint64_t rays = 0;
     Visits visits;  // unless counted, 0
     KernelUse use;  // what answered; where counted, no kernel
-    /// Of what is counted: the mean and the most of all pixels, and how many lie beyond the scale.
+    /// Of what is counted, over the finished rows: how many pixels they have, the mean and the most of these,
+    /// and how many lie beyond the scale.
+    std::uint64_t pixels = 0;
     double mean = 0, most = 0;
     std::uint64_t beyond = 0;
     /// Empty unless layers were asked for. The colours as light, linear and unclamped; of what is counted,
@@ -274,11 +276,17 @@ private:
         Picture picture;
         picture.image = Image(o_.width, o_.height);
         picture.rays = total_.rays, picture.visits = total_.visits, picture.use = total_.use;
-        for (const auto& v : values_) {
-            picture.most = std::max(picture.most, double(v[0]));
-            picture.mean += double(v[0]) / double(values_.size());
-            picture.beyond += o_.steps_max > 0 && v[0] > static_cast<float>(o_.steps_max);
+        for (int y = 0; y < o_.height; ++y) {
+            if (!done_[static_cast<std::size_t>(y)]) continue;
+            for (int x = 0; x < o_.width; ++x) {
+                const float value = values_[pixel(x, y)][0];
+                picture.most = std::max(picture.most, double(value));
+                picture.mean += double(value);
+                picture.beyond += o_.steps_max > 0 && value > static_cast<float>(o_.steps_max);
+                ++picture.pixels;
+            }
         }
+        picture.mean /= double(std::max<std::uint64_t>(picture.pixels, 1));
         const ColourScale scale{
             o_.steps_max > 0 ? o_.steps_max : static_cast<std::uint64_t>(std::ceil(picture.most)),
             o_.log_scale};
