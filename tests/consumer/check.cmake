@@ -1,8 +1,8 @@
-# cmake -D HOW=core|installed|subdirectory -D WORK=DIR -D SOURCE=DIR [-D BINARY=DIR -D COMPILER=g++] -D OPTIONS=...
+# cmake -D HOW=core|installed|subdirectory|subdirectory_io -D WORK=DIR -D SOURCE=DIR [-D BINARY=DIR -D COMPILER=g++] -D OPTIONS=...
 #       -P check.cmake
 # Builds the consumer in WORK: with core alone in every variant, whose outputs must be the same, else in one.
 #
-# As a subdirectory core and io are compiled again: without optimisation, which is quicker, and in a folder that is
+# As a subdirectory core (and io) is compiled again: without optimisation, which is quicker, and in a folder that is
 # kept for the next run.
 cmake_minimum_required(VERSION 3.25)
 
@@ -10,8 +10,15 @@ function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-if(HOW STREQUAL "subdirectory")
-  list(APPEND OPTIONS -DCMAKE_BUILD_TYPE= -DHEDGEROW_SOURCE=${SOURCE} -DHEDGEROW_COMPONENTS=core,io)
+if(HOW MATCHES "^subdirectory")
+  set(components core)
+  set(io OFF)
+  if(HOW STREQUAL "subdirectory_io")
+    set(components core,io)
+    set(io ON)
+  endif()
+  list(APPEND OPTIONS -DCMAKE_BUILD_TYPE= -DHEDGEROW_SOURCE=${SOURCE} -DHEDGEROW_COMPONENTS=${components}
+       -DHEDGEROW_IO=${io})
 else()
   file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/installed ${WORK}/build)
   set(components core)
