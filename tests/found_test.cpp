@@ -92,4 +92,17 @@ TEST(Found, Round99x621ByExactArithmetic) {
     EXPECT_TRUE(is_exact(shape, question));
 }
 
+/// The oracle was wrong: the hit's t is beyond the largest double.
+TEST(Found, Round4711x4975) {
+    const Triangle<double, 3> shape = {{-0x1p+24, 0x1.42d373ac61c9fp+23, 0x1.dcdb56e384443p+20},
+                                       {0x1p+42, 0x1.42d373ac61c9fp+23, -0x1.2937cf873251p+23},
+                                       {-0x1p+25, -0x1.cde1f04944752p+23, 0x1.fdb5b5cd917d2p+23}};
+    const Ray<double, 3> question = {
+        {0x1.6ddb9da469d87p+36, -0x1.a1ed9a6631d08p+20, 0x1.073823badb993p+23},
+        {-0x1.6d5b9da469d87p-1005, 0x1.771126f92803dp-1018, 0x1.ecfb24256bc8p-1019},
+        0,
+        INFINITY};
+    EXPECT_TRUE(is_exact(shape, question));
+}
+
 }  // namespace

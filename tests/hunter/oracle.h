@@ -104,12 +104,13 @@ std::string wrong(const Triangle<T, 3>& tri, const Ray<T, 3>& ray, const std::op
         const Number most = 2 * (e + step);
         return away2 <= 3 * most * most ? "" : "a hit lies farther from its triangle than the bound allows";
     }
+    // A hit beyond the largest T has no t.
+    const double last = static_cast<double>(std::min(ray.t_max, std::numeric_limits<T>::max()));
     for (int i = -1; i < 6; ++i) {
         Point from = origin;
         if (i >= 0) from[static_cast<std::size_t>(i / 2)] += Number(4 * e) * (i % 2 == 0 ? 1 : -1);
         const auto at = crossing(from, direction, corners);
-        if (!at || *at * (1 - 0x1p-20) < static_cast<double>(ray.t_min) ||
-            (static_cast<double>(ray.t_max) < 1e300 && *at * (1 + 0x1p-20) > static_cast<double>(ray.t_max)))
+        if (!at || *at * (1 - 0x1p-20) < static_cast<double>(ray.t_min) || *at * (1 + 0x1p-20) > last)
             return "";
     }
     return "a triangle that the ray crosses well inside is not hit";
