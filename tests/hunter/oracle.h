@@ -124,7 +124,8 @@ bool is_exact(const Shape& shape, const Box<T, D>& box) {
 template <class T>
 bool is_exact(const Triangle<T, 3>& tri, const Ray<T, 3>& ray) {
     const auto meeting = meet_watertight(ray, tri);
-    return wrong(tri, ray, meeting ? std::optional(meeting->t) : std::nullopt).empty();
+    const bool hit = meeting && std::isfinite(meeting->t);  // as queries have it
+    return wrong(tri, ray, hit ? std::optional(meeting->t) : std::nullopt).empty();
 }
 
 }  // namespace hedgerow::hunter
