@@ -89,16 +89,19 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
         const auto section = section_of(a, bounds, upright_of(a.view, a, set));
         const auto limits = section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels);
         auto cells = index->outline(limits);
-        if (a.height) cells = of_height(std::move(cells), index->outline(), *a.height);
+        // The whole outline is made once, and only where heights, a tree or shared parts come from it.
+        const bool needs_whole = a.height || !a.beside.empty() || (a.tree && D == 3);
+        const auto whole = needs_whole ? index->outline() : decltype(cells)();
+        if (a.height) cells = of_height(std::move(cells), whole, *a.height);
         cells = few(std::move(cells));
         NamedStructure s{spec, {}, flat_structure(cells, section)};
-        if (a.tree) s.tree = cropped(tree_for(spec, D == 2 ? cells : index->outline(), true));
+        if (a.tree) s.tree = cropped(tree_for(spec, D == 2 ? cells : whole, true));
         if (!a.beside.empty()) {
             // The figure is of the whole tree, whatever the picture shows of it.
-            FlatStructure whole;
-            add_shared(index->outline(), section, whole);
+            FlatStructure all;
+            add_shared(whole, section, all);
             add_shared(cells, section, s.flat);
-            s.flat.overlap = whole.overlap;
+            s.flat.overlap = all.overlap;
         }
         s.facts = {fmt::format("{} cells here; {} leaves, depth {}, {} items of {} primitives",
                                s.flat.cells.size(), index->leaf_count(), index->depth(), index->item_count(),

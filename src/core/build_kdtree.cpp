@@ -1,4 +1,7 @@
 /// The list of kd-tree builders, compiled once for all sets.
+#include <optional>
+#include <utility>
+
 #include <hedgerow/structures/item_limit.h>
 #include <hedgerow/structures/kdtree/builders/binned.h>
 #include <hedgerow/structures/kdtree/builders/build.h>

@@ -1,5 +1,5 @@
-# cmake -D HOW=core|installed|subdirectory|subdirectory_io -D WORK=DIR -D SOURCE=DIR [-D BINARY=DIR -D COMPILER=g++] -D OPTIONS=...
-#       -P check.cmake
+# cmake -D HOW=core|installed|subdirectory|subdirectory_io -D WORK=DIR -D SOURCE=DIR [-D BINARY=DIR -D COMPILER=g++]
+#       -D OPTIONS=... -P check.cmake
 # Builds the consumer in WORK: with core alone in every variant, whose outputs must be the same, else in one.
 #
 # As a subdirectory core (and io) is compiled again: without optimisation, which is quicker, and in a folder that is
@@ -11,14 +11,12 @@ function(run)
 endfunction()
 
 if(HOW MATCHES "^subdirectory")
-  set(components core)
-  set(io OFF)
+  list(APPEND OPTIONS -DCMAKE_BUILD_TYPE= -DHEDGEROW_SOURCE=${SOURCE})
   if(HOW STREQUAL "subdirectory_io")
-    set(components core,io)
-    set(io ON)
+    list(APPEND OPTIONS -DHEDGEROW_COMPONENTS=core,io)
+  else()
+    list(APPEND OPTIONS -DHEDGEROW_COMPONENTS=core -DHEDGEROW_IO=OFF)
   endif()
-  list(APPEND OPTIONS -DCMAKE_BUILD_TYPE= -DHEDGEROW_SOURCE=${SOURCE} -DHEDGEROW_COMPONENTS=${components}
-       -DHEDGEROW_IO=${io})
 else()
   file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/installed ${WORK}/build)
   set(components core)
