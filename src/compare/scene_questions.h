@@ -159,12 +159,17 @@ private:
         }
         return all;
     }
-    auto shape(std::size_t i) const requires requires(const ViewOf<P>& v) { v.triangle(0); }
-    { return set_.triangle(i); }
-    auto shape(std::size_t i) const requires requires(const ViewOf<P>& v) { v.sphere(0); }
-    { return set_.sphere(i); }
-    auto shape(std::size_t i) const requires requires(const ViewOf<P>& v) { v.segment(0); }
-    { return set_.segment(i); }
+    static constexpr bool has_shapes = requires(const ViewOf<P>& v) { v.triangle(0); }
+    || requires(const ViewOf<P>& v) { v.sphere(0); }
+    || requires(const ViewOf<P>& v) { v.segment(0); };
+    auto shape(std::size_t i) const requires has_shapes {
+        if constexpr (requires { set_.triangle(i); })
+            return set_.triangle(i);
+        else if constexpr (requires { set_.sphere(i); })
+            return set_.sphere(i);
+        else
+            return set_.segment(i);
+    }
 
     ViewOf<P> set_;
     const AnyIndex<T, D>& index_;

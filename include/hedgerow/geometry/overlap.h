@@ -128,8 +128,8 @@ private:
     Triangle<T, 3> tri_;
     Box<T, 3> bounds_;
     std::array<detail::Edge<3>, 3> edges_;
-    Vec3d normal_, size_;      // the normal, and the magnitudes of the products that it is made of
-    std::array<int, 3> turn_;  // exact signs of the normal
+    Vec3d normal_, size_;  // the normal, and the magnitudes of the products that it is made of
+    int turn_[3];          // exact signs of the normal
 };
 template <class T>
 bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
