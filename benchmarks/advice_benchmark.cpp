@@ -1,16 +1,16 @@
-/// How good the advice of a comparison is: on each scene a structure is advised from one sample of queries,
-/// and then held against all others with other queries, of other rounds. Prints how much more the advised one
-/// costs than the one that turns out best, and how often that is at most a tenth.
+/// Measures how good the advice of a comparison is. On each scene one sample of queries gives the advised
+/// structure; then all structures are timed with other queries. Prints the advised structure's cost as a
+/// multiple of the best one's, and how often the excess is at most a tenth.
 ///
 ///   advice_benchmark [SCENE ...]     default: scenes that nothing was tuned on
 #include <algorithm>
 #include <cstdio>
 
 #include <hedgerow/ask.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/compare/advice.h>
 #include <hedgerow/compare/lists.h>
 #include <hedgerow/compare/measure.h>
-#include <hedgerow/error.h>
 #include <hedgerow/scenes/generate.h>
 
 #include "measure/machine.h"
@@ -33,19 +33,22 @@ void judge(const std::string& name, const P& primitives, std::vector<Score>& sco
     const auto structures = usual_structures(P::dimension, PointSet<ViewOf<P>>, primitives.size(), left_out);
     MeasureOptions options;
     options.asks = {Ask::closest_hit, Ask::nearest};
+    // Take the advice from a short measurement.
     options.seconds = 0.1, options.seed = first_seed;
     const Comparison sample = measure(primitives, structures, options);
+    // Take the truth from a longer measurement with other queries.
     options.seconds = 0.5, options.seed = other_seed;
     const Comparison truth = measure(primitives, structures, options);
     const Ask ask = usual_ask(sample);
     const auto advised = advise(sample, ask), measured = advise(truth, ask);
+    // Compare the advised structure with the best one, need by need.
     scores.resize(advised.size());
     for (std::size_t i = 0; i < advised.size(); ++i) {
         const std::string& choice = advised[i].ranking.front().structure;
         const auto& ranking = measured[i].ranking;
         const auto at = std::find_if(ranking.begin(), ranking.end(),
                                      [&](const Ranked& r) { return r.structure == choice; });
-        // Not in the ranking: too slow, now, to be worth its memory.
+        // The longer measurement may find the structure too slow to rank for little memory.
         const double ratio = at == ranking.end() ? INFINITY : at->figure / ranking.front().figure;
         scores[i].good += ratio <= near_enough, ++scores[i].all;
         std::printf("| %-26s | %-17s | %-24s | %-24s | %5.2f |\n", name.c_str(), advised[i].need.c_str(),
@@ -75,6 +78,7 @@ int main(int count, char** arguments) {
     for (const auto& name : names)
         std::visit([&](const auto& set) { judge(name, set, scores); },
                    generate<float>(parse_scene_spec(name)));
+    // Sum the scores over all needs.
     Score sum;
     for (const Score& s : scores) sum.good += s.good, sum.all += s.all;
     std::printf("\nwithin a tenth of the best:");

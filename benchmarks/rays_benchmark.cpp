@@ -1,7 +1,8 @@
-/// Closest-hit rates and build times of the BVH, beside Embree in the same run when it is there.
+/// Closest-hit rates and build times of the BVH, beside Embree's in the same run if Embree was found.
 ///
 ///   rays_benchmark [SCENE ...]     a mesh file or gen:NAME[:SIZE]; default: gen:teapot-in-stadium
 #include <hedgerow/ask.h>
+#include <hedgerow/structures/bvh/bvh.h>
 
 #include "measure/contest.h"
 #include "measure/machine.h"
@@ -16,7 +17,7 @@ namespace {
 constexpr int repeats = 7;
 
 void builds(const TriangleMesh<float>& mesh) {
-    const double one = median_seconds(repeats, [&] { build<Bvh>(mesh); });
+    const double one = median_seconds(repeats, [&] { build<Bvh>(mesh, serial_executor()); });
     double two;
     {
         const ThreadLimit limit(2);
@@ -36,6 +37,7 @@ void traces(const TriangleMesh<float>& mesh) {
     std::printf("  %.1f bytes a triangle, depth %d, SAH cost %.1f\n",
                 double(index.bytes()) / double(mesh.size()), index.structure().depth(),
                 index.structure().sah_cost());
+    // Make the rays and the indices of the peers.
     const auto sets = ray_sets(mesh, index.bounds(), 1024, 1 << 19);
     std::vector<std::unique_ptr<PeerIndex>> theirs;
     for (const auto& peer : peers())
@@ -44,8 +46,10 @@ void traces(const TriangleMesh<float>& mesh) {
     std::printf("  %-8s %9s %8s %8s %8s", "rays", "Mrays/s", "nodes", "leaves", "prims");
     std::printf("   Embree Mrays/s (ratio)   robust (ratio)\n");
     for (const auto& [name, rays] : sets) {
+        // Count what the rays visit.
         Visits v;
         for (const auto& r : rays) closest_hit(index, r, KeepAll{}, v);
+        // Time our BVH and the peers in turn.
         std::vector<std::function<std::size_t()>> contenders = {[&, &rays = rays] {
             std::size_t found = 0;
             for (const auto& r : rays) found += closest_hit(index, r).has_value();

@@ -1,5 +1,5 @@
-/// Every structure on large scenes, one thread: builds beside Embree's, closest hits beside those of the
-/// binned BVH in the same run, and what a mailbox spares.
+/// Every structure on large scenes, one thread: build times beside Embree's, closest-hit rates beside those
+/// of the binned BVH in the same run, and the repeated tests that a mailbox avoids.
 ///
 ///   structures_benchmark [SCENE ...]     default: gen:terrain:2000000 gen:soup:200000; a mesh file is a
 ///   scene
@@ -22,7 +22,7 @@ namespace {
 constexpr int repeats = 5;
 constexpr std::size_t most_for_slow_builds = 200000;
 
-/// The first is what the others are measured against.
+/// The specs to measure. The first one is the baseline of the others.
 std::vector<std::string> structures_for(std::size_t triangles) {
     std::vector<std::string> specs = {"bvh",
                                       "bvh:builder=sweep",
@@ -55,6 +55,7 @@ std::vector<Built> builds(const TriangleMesh<float>& mesh) {
     std::vector<Built> all;
     for (const auto& spec : structures_for(mesh.size())) {
         Built index;
+        // Build slow structures only once.
         const int times = spec == "bsp" || spec == "kdtree" ? 1 : repeats;
         const double one = median_seconds(times, [&] { index = build_any(spec, mesh, serial_executor()); });
         double two;
@@ -89,8 +90,10 @@ void traces(const TriangleMesh<float>& mesh, const std::vector<Built>& all) {
                 return static_cast<std::size_t>(
                     std::ranges::count_if(hits, [](const auto& h) { return bool(h); }));
             });
+        // Time all structures in turn.
         const auto rate = rates(repeats, n, contenders);
         for (std::size_t c = 0; c < all.size(); ++c) {
+            // Count what the rays visit.
             std::vector<Visits> visits(n);
             all[c]->closest_hits(set.rays, hits, visits);
             Visits sum;
@@ -104,7 +107,7 @@ void traces(const TriangleMesh<float>& mesh, const std::vector<Built>& all) {
     }
 }
 
-/// Adds up what is tested, and the different ones among it.
+/// Counts tests, and collects the different primitives among them. `tests` leaves out what a mailbox skips.
 template <class Index>
 struct DifferentTests {
     const Index& index;
@@ -128,7 +131,8 @@ struct DifferentTests {
     void skip(PrimitiveId) { --tests; }
 };
 
-/// Of the tests of what has been tested before, the part that a mailbox spares.
+/// Prints the part of the repeated tests that a mailbox avoids: tests of primitives that the same ray has
+/// tested before.
 template <template <class, int> class S>
 void mailbox(const char* name, const TriangleMesh<float>& mesh, const std::vector<RaySet>& sets) {
     typename S<float, 3>::Options options;
@@ -137,6 +141,7 @@ void mailbox(const char* name, const TriangleMesh<float>& mesh, const std::vecto
     for (const auto& set : sets) {
         std::uint64_t tests = 0, different = 0, spared = 0;
         for (const auto& ray : set.rays) {
+            // Count the tests and the different primitives, then what the mailbox skips.
             DifferentTests<std::remove_cvref_t<decltype(with)>> count{with};
             closest_hit(with, ray, KeepAll{}, count);
             Visits visits;

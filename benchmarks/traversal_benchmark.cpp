@@ -1,5 +1,5 @@
-/// What order, culling and the SAH bring: visits and time a ray of each variant, side by side, and the SAH's
-/// prediction beside what is counted.
+/// What child order, culling and the SAH bring: visits and time a ray of each variant, and the SAH's
+/// predicted cost beside the counted cost.
 ///
 ///   traversal_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:200000
 #include <hedgerow/any_index.h>
@@ -20,9 +20,11 @@ void variant(const char* spec, const TriangleMesh<float>& mesh, const RaySet& se
     const auto index = build_any(spec, mesh);
     std::vector<Hit<float>> hits(set.rays.size());
     std::vector<Visits> visits(set.rays.size());
+    // Count what the rays visit.
     index->closest_hits(set.rays, hits, visits);
     Visits all;
     for (const auto& v : visits) all += v;
+    // Time the queries without counts.
     std::vector<double> times;
     for (int r = 0; r < repeats; ++r) {
         const double start = seconds();
@@ -35,7 +37,8 @@ void variant(const char* spec, const TriangleMesh<float>& mesh, const RaySet& se
                 median(times) / n * 1e9);
 }
 
-/// Uniformly random lines of the scene's ball: chords between independent uniform points of its sphere.
+/// Uniformly random lines through the ball around the scene's box: chords between independent uniform points
+/// of its sphere.
 std::vector<Ray3f> random_lines(const Box3f& box, std::size_t n) {
     const Vec3f center = box.center();
     const float radius = 0.5f * length(box.extent());
@@ -49,7 +52,8 @@ std::vector<Ray3f> random_lines(const Box3f& box, std::size_t n) {
     return lines;
 }
 
-/// Cost by counts, in the SAH's units, of the rays that meet the scene's box at all.
+/// The mean cost of the rays that hit the scene's box, from counted visits in the SAH's units. `all` asks for
+/// all hits instead of the closest.
 double counted_cost(const SahOptions& unit, const AnyIndex<float, 3>& index, const std::vector<Ray3f>& rays,
                     bool all) {
     std::vector<Hit<float>> hits;
@@ -88,6 +92,7 @@ int main(int count, char** arguments) {
     if (names.empty()) names = {"gen:teapot-in-stadium", "gen:soup:200000"};
     for (const auto& name : names) {
         const auto mesh = scene(name);
+        // Make the rays from the bounds of the mesh.
         Box3f box;
         for (const auto& v : mesh.vertices) box.expand(v);
         const auto sets = ray_sets(mesh, box, 256, 1 << 16);
@@ -96,6 +101,7 @@ int main(int count, char** arguments) {
             "| structure                    | rays     | nodes    | leaves   | prims    | ns a ray  |\n");
         std::printf(
             "|------------------------------|----------|----------|----------|----------|-----------|\n");
+        // Measure each variant with each ray set.
         for (const char* spec : {"bvh", "bvh:builder=sweep", "bvh:builder=midpoint",
                                  "bvh:builder=equal-counts", "bvh:ordered=off", "bvh:culling=off",
                                  "bvh:ordered=off,culling=off", "kdtree", "grid", "octree"})

@@ -1,6 +1,6 @@
-/// What a BVH's bounding volume costs and brings: bytes, cycles a test, tests and time a ray. All but the
-/// first row are the study structure (structures/bvh/volume_bvh.h), whose tree is that of the first; kdop6 is
-/// the same box by its way.
+/// What a BVH's bounding volume costs and brings: bytes, cycles a test, tests and time a ray. The first row
+/// is the default BVH. The other rows are the study structure (structures/bvh/volume_bvh.h) over the same
+/// tree; its kdop6 is the default's box, tested by the code of the study.
 ///
 ///   volumes_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:100000
 ///   gen:hairball:20000; a mesh file is a scene
@@ -18,14 +18,14 @@ namespace {
 
 constexpr int repeats = 3;
 
-/// Rays and nodes, both in arbitrary order, against each other: seconds a test. At the end the answers
-/// are counted, so that no test is left out.
+/// Seconds of one test of a ray against a volume, for rays and nodes in arbitrary order.
 template <class Index>
 double test_seconds(const Index& index, const std::vector<Ray3f>& rays) {
     const auto& tree = index.structure();
     const std::size_t nodes = tree.leaf_count() - 1;
     if (nodes == 0) return 0;
     std::vector<RayProbe<float, 3>> probes;
+    // Take up to 1000 rays, scattered over the set.
     for (std::size_t i = 0; i < std::min<std::size_t>(rays.size(), 1000); ++i)
         probes.emplace_back(rays[i * 7919 % rays.size()], index.bounds());
     std::vector<double> times;
@@ -33,7 +33,8 @@ double test_seconds(const Index& index, const std::vector<Ray3f>& rays) {
     for (int r = 0; r < repeats; ++r) {
         const double start = seconds();
         tests = 0;
-        for (std::size_t k = 0; k < 64; ++k) {  // few nodes, so that it is not the memory that is measured
+        // Test only 64 nodes, so that they stay in the cache and memory is not measured.
+        for (std::size_t k = 0; k < 64; ++k) {
             const auto volumes = tree.volumes({static_cast<std::uint32_t>(k * nodes / 64), 0});
             for (const auto& probe : probes) {
                 float at[4];
@@ -43,14 +44,17 @@ double test_seconds(const Index& index, const std::vector<Ray3f>& rays) {
         }
         times.push_back(seconds() - start);
     }
+    // Use the count, so that the compiler keeps all tests.
     asm volatile("" : : "r"(entered));
     return median(times) / static_cast<double>(tests);
 }
 
 template <class Index>
 void row(const char* name, const Index& index, const RaySet& set, double built, double clock) {
+    // Count what the rays visit.
     Visits visits;
     for (const auto& ray : set.rays) closest_hit(index, ray, KeepAll{}, visits);
+    // Time the queries without counts.
     std::vector<double> times;
     std::size_t hits = 0;
     for (int r = 0; r < repeats; ++r) {
@@ -60,6 +64,7 @@ void row(const char* name, const Index& index, const RaySet& set, double built, 
         times.push_back(seconds() - start);
     }
     const double n = static_cast<double>(set.rays.size());
+    // Print the node bytes without the items of the leaves.
     const double items = static_cast<double>(index.size()) * sizeof(PrimitiveId);
     const double inner = static_cast<double>(index.structure().leaf_count() - 1);
     const double bytes = static_cast<double>(index.structure().bytes());
@@ -86,12 +91,14 @@ void table(const TriangleMesh<float>& mesh, double clock) {
         const double built = seconds() - start;
         for (const auto& set : sets) row(name, index, set, built, clock);
     };
-    measure("(default)", [&] { return build<Bvh>(mesh); });
+    measure("(default)", [&] { return build<Bvh>(mesh, serial_executor()); });
     for (const auto& [name, volume] : volume_names) {
+        // The box is the default BVH, above; kdop4 and kdop8 are for the plane.
         if (volume == Volume::box || volume == Volume::kdop4 || volume == Volume::kdop8) continue;
         VolumeBvhOptions options;
         options.volume = volume;
-        measure(std::string(name).c_str(), [&] { return build<VolumeBvh>(mesh, options); });
+        measure(std::string(name).c_str(),
+                [&] { return build<VolumeBvh>(mesh, options, serial_executor()); });
     }
 }
 

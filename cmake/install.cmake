@@ -79,5 +79,5 @@ foreach(component core any io tool)
 endforeach()
 
 # The documents keep the places that their links name: README.md beside docs/ and examples/.
-install(FILES README.md ARCHITECTURE.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core)
+install(FILES README.md ARCHITECTURE.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core)
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT core PATTERN CMakeLists.txt EXCLUDE)

@@ -1,5 +1,5 @@
-// Many questions at once, over arrays that you already have: vertices with positions and normals side by
-// side, particles with their masses. Nothing is copied to be looked at.
+// Many queries at once, over arrays that you already have: vertices whose positions and normals alternate,
+// and particles with masses. Views read the arrays where they are.
 //
 //   batch_queries [MESH]      a mesh file, or else the generated teapot
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Particle {
     double position[3];
 };
 
-/// Stands for the arrays that a program of yours would have.
+/// An example of an array that your program may have.
 std::vector<Vertex> interleaved(const TriangleMesh<float>& mesh) {
     std::vector<Vertex> vertices(mesh.vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i)
@@ -31,7 +31,7 @@ std::vector<Vertex> interleaved(const TriangleMesh<float>& mesh) {
     return vertices;
 }
 
-/// Rays from all around into the box: the same ones on every machine.
+/// Rays from all around into the box, the same on every machine.
 std::vector<Ray3f> rays_into(const Box3f& box, std::size_t count) {
     const Vec3d center(box.center()), extent(box.extent());
     std::vector<Ray3f> rays(count);
@@ -47,19 +47,20 @@ std::vector<Ray3f> rays_into(const Box3f& box, std::size_t count) {
 /// Returns how many answers were wrong.
 int ask_rays(const TriangleMesh<float>& mesh) {
     const std::vector<Vertex> vertices = interleaved(mesh);
-    // A view is a pointer, a count and a stride. It must not outlive the arrays, nor an index the view's.
+    // A view is a pointer, a count and a stride. The arrays must outlive the view and every index over it.
     const TriangleMeshView<float> view(
         Strided<Vec3f>(&vertices.data()->position, vertices.size(), sizeof(Vertex)),
         Strided<TriangleIndices>(mesh.triangles.data(), mesh.triangles.size()));
-    Executor& threads = default_executor();  // or an Executor of yours; without one all is serial
+    Executor& threads = default_executor();  // or your own Executor; without one, small work is serial
     const auto index = build(view, threads);
 
+    // Find the closest hits of many rays in one call.
     const std::vector<Ray3f> rays = rays_into(index.bounds(), 100000);
     std::vector<Hit<float>> hits(rays.size());
     closest_hits(index, rays, hits, threads);
     const auto found = std::count_if(hits.begin(), hits.end(), [](const auto& hit) { return bool(hit); });
 
-    // The same with a count for each ray. Any query takes one, and without it counting costs nothing.
+    // Repeat the queries with a count for each ray. Any query takes one; without it counting costs nothing.
     std::vector<Visits> visits(rays.size());
     int wrong = 0;
     for (std::size_t i = 0; i < rays.size(); ++i)
@@ -71,13 +72,15 @@ int ask_rays(const TriangleMesh<float>& mesh) {
     std::printf("a ray opened %.1f nodes and tested %.1f triangles\n", static_cast<double>(sum.nodes) / n,
                 static_cast<double>(sum.primitives) / n);
 
-    const auto oracle = build<BruteForce>(mesh);  // the plain arrays, no structure: the same bits
+    // Compare some answers with those of brute force, which tests every triangle: all bits are equal.
+    const auto oracle = build<BruteForce>(mesh);
     for (std::size_t i = 0; i < rays.size(); i += 1000)
         wrong += closest_hit(oracle, rays[i]).value_or(Hit<float>{}) != hits[i];
     return wrong;
 }
 
 int ask_points() {
+    // Build an index over the positions inside the particles.
     std::vector<Particle> particles(20000);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         Random random(2, i);
@@ -88,7 +91,7 @@ int ask_points() {
         Strided<Vec3d>(&particles.data()->position, particles.size(), sizeof(Particle)));
     const auto index = build<KdTree>(view, {.leaf_size = 8});
 
-    // The mass of the 16 nearest neighbours, in pieces over the threads; a piece reuses its list.
+    // Sum the masses of the 16 nearest neighbours, in pieces over the threads. Each piece reuses its list.
     std::vector<double> masses(1000);
     default_executor().for_each_piece(masses.size(), 64, [&](std::size_t begin, std::size_t end) {
         std::vector<Near<double, 3>> near;
@@ -99,6 +102,7 @@ int ask_points() {
     });
     std::printf("the 16 particles nearest to the first weigh %g\n", masses[0]);
 
+    // Compare the answers of two structures.
     int wrong = 0;
     const auto bvh = build<Bvh>(view);
     std::vector<Near<double, 3>> near, other;

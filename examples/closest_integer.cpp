@@ -1,5 +1,5 @@
-// Which of these integers is the closest to k? By looking at each, by sorting them first, and by a kd-tree in
-// one dimension: what one question costs, and what a question costs when there are many.
+// Finds the integer closest to k in three ways: a scan, bisection of the sorted integers, and a kd-tree in
+// one dimension. Prints the cost of a single query, and the cost of a query when there are many.
 //
 //   closest_integer [HOW_MANY]     1,000,000 integers unless said otherwise
 #include <algorithm>
@@ -15,14 +15,14 @@ namespace {
 
 using Integers = std::vector<long>;
 
-/// O(n) a question. Of two that are equally close the lower.
+/// Tests every integer: O(n) a query. Returns the lower of two that are equally close.
 long closest_by_scan(const Integers& all, long k) {
     return *std::min_element(all.begin(), all.end(), [k](long a, long b) {
         return std::labs(a - k) != std::labs(b - k) ? std::labs(a - k) < std::labs(b - k) : a < b;
     });
 }
 
-/// O(log n) a question, once they are sorted.
+/// Bisects sorted integers: O(log n) a query. Returns the lower of two that are equally close.
 long closest_by_bisection(const Integers& sorted, long k) {
     const auto above = std::lower_bound(sorted.begin(), sorted.end(), k);
     if (above == sorted.begin()) return *above;
@@ -30,8 +30,8 @@ long closest_by_bisection(const Integers& sorted, long k) {
     return k - *(above - 1) <= *above - k ? *(above - 1) : *above;
 }
 
-/// Sixteen integers and k = 18: what is compared by scan, and what by bisection once they are sorted. Returns
-/// whether both find 20.
+/// Prints the comparisons of a bisection for k = 18 among sixteen integers, and the number of distances that
+/// a scan takes. Returns whether both find 20.
 bool show_sixteen() {
     const Integers all = {10, 123, 2, 100, 6, 25, 64, 11, 200, 30, 950, 111, 20, 8, 1, 80};
     constexpr long k = 18;
@@ -40,7 +40,8 @@ bool show_sixteen() {
     std::printf("sorted:");
     for (const long i : sorted) std::printf(" %ld", i);
     std::printf("\nk = %ld: ", k);
-    std::size_t low = 0, high = sorted.size(), steps = 0;  // the first that is not less than k
+    // Bisect for the first integer that is not less than k, and print each comparison.
+    std::size_t low = 0, high = sorted.size(), steps = 0;
     while (low < high) {
         const std::size_t middle = low + (high - low) / 2;
         std::printf("%ld%s k, ", sorted[middle], sorted[middle] < k ? " <" : " >=");
@@ -50,6 +51,7 @@ bool show_sixteen() {
             high = middle;
         ++steps;
     }
+    // Compare the two integers around k, and check both functions.
     const long closest = closest_by_bisection(sorted, k);
     std::printf("so it lies between %ld and %ld: %ld\n", sorted[low - 1], sorted[low], closest);
     std::printf("%zu steps and 2 distances, instead of %zu distances\n\n", steps, all.size());
@@ -62,7 +64,7 @@ double seconds_of(auto work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Prints a line of the table and returns the answers.
+/// Times the queries, prints a line of the table and returns the answers.
 Integers report(const char* way, double preparation, const Integers& questions, auto answer) {
     constexpr double many = 1e6;
     Integers answers;
@@ -87,25 +89,29 @@ int main(int argc, char** argv) {
         std::fputs("the closest of the sixteen is not 20\n", stderr);
         return 1;
     }
+    // Draw random integers and random values of k.
     hedgerow::Random random(1, 1);
     const auto some = [&](std::size_t count) {
         Integers integers(count);
-        for (long& i : integers) i = static_cast<long>(random.bits() >> 24);  // a double holds it
+        for (long& i : integers) i = static_cast<long>(random.bits() >> 24);  // 40 bits, exact in a double
         return integers;
     };
     const Integers integers = some(n), questions = some(100);
 
+    // Time the scan, which needs no preparation.
     std::printf("%zu integers, in seconds\n", n);
     std::printf("%-8s %14s %14s %14s %22s\n", "", "preparation", "a question", "the first",
                 "one of a million");
     const Integers by_scan =
         report("scan", 0, questions, [&](long k) { return closest_by_scan(integers, k); });
 
+    // Time bisection, prepared by a sort.
     Integers sorted = integers;
     const double sorting = seconds_of([&] { std::sort(sorted.begin(), sorted.end()); });
     const Integers by_bisection =
         report("sort", sorting, questions, [&](long k) { return closest_by_bisection(sorted, k); });
 
+    // Time the kd-tree, prepared by its build, over points in one dimension.
     hedgerow::PointCloud<double, 1> line;
     for (const long i : integers) line.points.emplace_back(static_cast<double>(i));
     auto tree = hedgerow::build<hedgerow::PointKdTree>(line);
@@ -119,6 +125,7 @@ int main(int argc, char** argv) {
     std::printf("looked at: %zu by scan, %.1f by kd-tree\n", n,
                 static_cast<double>(visits.primitives) / static_cast<double>(questions.size()));
 
+    // Check that all three give the same answers.
     if (by_scan != by_bisection || by_scan != by_tree) {
         std::fputs("the answers differ\n", stderr);
         return 1;

@@ -1,5 +1,5 @@
-// A scene in two levels: one index placed many times, under an index of the placed ones. Here a BVH whose
-// leaves are grids; any structure may hold any.
+// A scene in two levels: an index that is placed many times, and an index over its instances. Here a BVH
+// holds instances of a grid; any structure can be either.
 #include <cstdio>
 
 #include <hedgerow/hedgerow.h>
@@ -8,7 +8,7 @@
 
 using namespace hedgerow;
 
-/// Rings of teapots, each turned, leant and stretched in its own way; a few are mirrored.
+/// Makes rings of teapots, each turned, leant and stretched in its own way; a few are mirrored.
 template <class I>
 std::vector<Instance<I>> rings_of(const I& teapot) {
     std::vector<Instance<I>> all;
@@ -29,16 +29,17 @@ std::vector<Instance<I>> rings_of(const I& teapot) {
 int main() {
     const auto mesh = teapot<float>(1000);
 
-    // The three lines.
+    // Build both levels: three lines.
     const auto grid = build<Grid>(mesh);
     const InstanceSet scene(rings_of(grid));
     const auto index = build<Bvh>(scene);
 
-    // The oracle: every teapot of every ray, triangle by triangle.
+    // Build the oracle, which tests every triangle of every teapot.
     const auto triangles = build<BruteForce>(mesh);
     const auto oracle = build<BruteForce>(InstanceSet(rings_of(triangles)));
 
-    // A picture from above and aside, by the number of the teapot; and both say the same, to the last bit.
+    // Print a picture from above and aside, with a letter for each teapot. Compare some answers with those of
+    // the oracle: all bits are equal.
     int wrong = 0, hits = 0;
     constexpr int rows = 30, columns = 72;
     const Vec3f center = index.bounds().center();
@@ -50,7 +51,7 @@ int main() {
             const auto hit = closest_hit(index, ray);
             hits += hit.has_value();
             std::putchar(hit ? static_cast<char>('a' + hit->instance % 26) : ' ');
-            if ((row * columns + column) % 31 != 0) continue;  // the oracle takes its time
+            if ((row * columns + column) % 31 != 0) continue;  // the oracle is slow
             const Vec3f near = ray.at(28);
             wrong += hit != closest_hit(oracle, ray);
             wrong += closest_point(index, near) != closest_point(oracle, near);

@@ -1,8 +1,9 @@
-// A type of your own in every structure: capsules (a segment with a radius), here the branches of a tree.
+// A primitive type of your own in every structure: capsules (a segment with a radius), here a tree's
+// branches.
 //
-// A primitive set needs `Scalar`, `dimension`, `size()` and `bounds(i)`, and a member for each kind of
-// question that it is to answer (primitives/concepts.h): `meet` for rays, `closest_point` for distances,
-// `overlaps` for boxes. Nothing is registered and nothing derived from; whatever is asked is inlined.
+// A primitive set needs `Scalar`, `dimension`, `size()` and `bounds(i)`, and a member for each kind of query
+// that it answers (primitives/concepts.h): `meet` for rays, `closest_point` for distances, `overlaps` for
+// boxes. It needs no registration and no base class, and its members are inlined into the queries.
 #include <cstdio>
 #include <span>
 #include <vector>
@@ -16,8 +17,8 @@ struct Capsule {
     float radius;
 };
 
-/// An index keeps a copy of the set it was built over. This one only looks at the caller's array, so the copy
-/// costs nothing.
+/// An index keeps a copy of the set that it was built over. This set only refers to the caller's array, so
+/// the copy is cheap.
 struct Capsules {
     using Scalar = float;
     static constexpr int dimension = 3;
@@ -28,8 +29,9 @@ struct Capsules {
         const auto& [a, b, radius] = all[i];
         return merged(Sphere<float, 3>{a, radius}.bounds(), Sphere<float, 3>{b, radius}.bounds());
     }
-    /// The least t in the ray's interval at which its surface is met. A capsule is convex, so a line is in it
-    /// from the first entry into one of its parts (two balls and a cylinder) to the last exit from one.
+    /// Returns the least t in the ray's interval at which the ray hits the surface. A capsule is convex, so a
+    /// line is inside it from the first entry into one of its parts (two balls and a cylinder) to the last
+    /// exit from one.
     std::optional<Meeting<float>> meet(std::size_t i, const Ray3f& ray) const {
         const auto& [a, b, radius] = all[i];
         Interval<float> in{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
@@ -43,7 +45,7 @@ struct Capsules {
             if (ray.t_min <= t && t <= ray.t_max && in.entry <= in.exit) return Meeting<float>{t, 0, 0};
         return std::nullopt;
     }
-    /// Of the solid capsule, and within its bounds: structures rely on that.
+    /// Returns the closest point of the solid capsule. The point is within the bounds, as structures require.
     Vec3f closest_point(std::size_t i, const Vec3f& p) const {
         const auto& [a, b, radius] = all[i];
         const Vec3f on_axis = hedgerow::closest_point(p, Segment<float, 3>{a, b});
@@ -51,23 +53,28 @@ struct Capsules {
         return away <= radius ? clamped(p, bounds(i))
                               : clamped(on_axis + (p - on_axis) * (radius / away), bounds(i));
     }
-    // No `overlaps`: this program asks no box. `overlapping(index, box, found)` would not compile.
+    // There is no `overlaps`, since this program has no box queries. `overlapping(index, box, found)` would
+    // not compile.
 
 private:
-    /// The ray's line in the cylinder between the ends, without its caps (those lie in the balls).
+    /// The interval in which the ray's line is inside the cylinder between the ends. The cylinder's caps are
+    /// inside the balls.
     static std::optional<Interval<float>> meet_cylinder(const Ray3f& ray, const Capsule& c) {
         const Vec3d axis(c.b - c.a), from(ray.origin - c.a), d(ray.direction);
         const double l2 = length2(axis), r = static_cast<double>(c.radius);
         if (l2 == 0) return std::nullopt;
-        // The height above a in units of the axis, and what is left across it, both linear in t.
+        // Write the height above a, in units of the axis, and the distance vector across it as linear
+        // functions of t.
         const double height = dot(from, axis) / l2, rise = dot(d, axis) / l2;
         const Vec3d across = from - axis * height, drift = d - axis * rise;
         const double speed2 = length2(drift);
-        if (speed2 == 0) return std::nullopt;  // along the axis: the balls answer
+        if (speed2 == 0) return std::nullopt;  // along the axis: the balls suffice
         const double nearest = -dot(across, drift) / speed2;
-        const double room = product(r, r) - length2(across + drift * nearest);  // no compiler fuses these
+        // Intersect with the infinite cylinder. `product` keeps compilers from fusing the difference.
+        const double room = product(r, r) - length2(across + drift * nearest);
         if (room < 0) return std::nullopt;
         double entry = nearest - std::sqrt(room / speed2), exit = nearest + std::sqrt(room / speed2);
+        // Cut the interval off at the two ends.
         if (rise == 0 && (height < 0 || height > 1)) return std::nullopt;
         if (rise != 0) {
             const double low = -height / rise, high = (1 - height) / rise;
@@ -96,7 +103,7 @@ int main() {
     const auto kdtree = build<KdTree>(capsules);
     const auto grid = build<Grid>(capsules);
 
-    // A picture by depth, seen along +y; and every structure says the same, to the last bit.
+    // Print a picture by depth, seen along +y. All structures give the same answers, to the last bit.
     int wrong = 0, hits = 0;
     const Box3f box = bvh.bounds();
     const Vec3f extent = box.extent();

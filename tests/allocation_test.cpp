@@ -1,6 +1,6 @@
-/// Queries allocate nothing, and builds with a budget no more than they say. A program of its own, since it
-/// counts every allocation that it makes; where a sanitizer does its own, nothing is counted and nothing
-/// tested.
+/// Tests that queries allocate nothing, and that a build with a budget allocates no more than it says. This
+/// is a program of its own because it counts all its allocations. A sanitizer has an allocator of its own, so
+/// nothing is counted or tested there.
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -36,7 +36,7 @@ static void freed(void* p) {
     std::free(p);
 }
 
-// Not inlined: g++ would see malloc without its free, or the other way round, and warn.
+// Not inlined, because g++ would see a malloc without its free, or a free without its malloc, and warn.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     return counted(std::malloc(size > 0 ? size : 1));
 }
@@ -75,7 +75,7 @@ std::size_t allocated_by(F f) {
 }
 
 TYPED_TEST(Allocation, IsCounted) {
-    // Called by name: what an expression allocates, a compiler may leave out.
+    // Calls the operators by name, because a compiler may leave out the allocation of a new-expression.
     EXPECT_EQ(allocated_by([] { operator delete(operator new(3)); }), 1u);
 }
 
@@ -87,7 +87,7 @@ TYPED_TEST(Allocation, QueriesDoNone) {
         std::vector<Hit<T>> hits, batch(questions.rays.size());
         std::vector<Near<T, 3>> near;
         std::vector<PrimitiveId> found;
-        hits.reserve(50 * mesh.size());  // a structure may offer a primitive often
+        hits.reserve(50 * mesh.size());  // a structure may offer a primitive many times
         near.reserve(20);
         found.reserve(50 * mesh.size());
         std::size_t sum = 0;
@@ -111,7 +111,7 @@ TYPED_TEST(Allocation, QueriesDoNone) {
                           sum += closest_point(index, p).has_value() + nearest(index, p, 20, near);
                   }),
                   0u);
-        // Counting may need memory, which the thread keeps: none the second time.
+        // hit_count may allocate memory that the thread keeps, so only a second run must allocate nothing.
         const auto count_all = [&] {
             for (const auto& ray : questions.rays) sum += hit_count(index, ray);
         };
@@ -121,7 +121,7 @@ TYPED_TEST(Allocation, QueriesDoNone) {
     });
 }
 
-/// As many bytes as f had at once, beside those there were.
+/// The most bytes that were allocated at one time during f, beyond those allocated before.
 template <class F>
 std::size_t most_bytes_of(F f) {
     const std::size_t before = live;
@@ -130,7 +130,8 @@ std::size_t most_bytes_of(F f) {
     return most_live - before;
 }
 
-/// By every builder and width, over sets of every kind; also with leaves of one, which take the most.
+/// Builds with every builder and width over four kinds of meshes. Leaves of one triangle take the most
+/// memory.
 TYPED_TEST(Allocation, WideBuildsStayWithinTheirBound) {
     using T = TypeParam;
     TriangleMesh<T> equal = cube<T>(12);
@@ -143,6 +144,7 @@ TYPED_TEST(Allocation, WideBuildsStayWithinTheirBound) {
                     options.width = width;
                     options.builder = builder;
                     options.max_leaf_size = leaf;
+                    // Stay within the bound; for large meshes, use more than a tenth of it.
                     const auto view = mesh.view();
                     const double bound = most_bytes_to_build<T, 3>(mesh.size(), options);
                     const double taken = static_cast<double>(
@@ -151,6 +153,7 @@ TYPED_TEST(Allocation, WideBuildsStayWithinTheirBound) {
                     if (mesh.size() > 10000) {
                         EXPECT_GT(taken, 0.1 * bound) << width << " " << int(builder) << " " << leaf;
                     }
+                    // A budget below the bound is refused before the build allocates.
                     options.budget = bound - 1;
                     EXPECT_LT(most_bytes_of([&] { EXPECT_THROW(build<WideBvh>(view, options), InputError); }),
                               10000u);

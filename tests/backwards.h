@@ -1,4 +1,4 @@
-/// An executor that tests use to see that no result depends on the order of the work.
+/// An executor for tests that no result depends on the order of the work.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace hedgerow {
 
-/// All that an executor may do and few do: small pieces, from the last to the first, and the second before
-/// the first.
+/// Does what an executor may do but few do: it runs small pieces from the last to the first, and the second
+/// task before the first.
 class Backwards final : public Executor {
 public:
     void for_each_piece(std::size_t count, std::size_t,

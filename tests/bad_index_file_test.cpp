@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing_io;
 
-/// What is refused with these words by who verifies so much, or more.
+/// Expects that loading is refused with these words in every way that verifies at least as much as `by`.
 void expect_refused(const std::filesystem::path& path, const std::vector<std::string>& words,
                     Verify by = Verify::header) {
     for (const auto& way : ways_to_load)
@@ -72,14 +72,15 @@ TEST(BadIndexFile, NamesThePlaceOfDamage) {
                    Verify::checksums);
 }
 
-// Files whose checksums are right.
+// ---- Files whose checksums are right
 
 detail::IndexHeader header_of(const std::string& whole) {
     detail::IndexHeader header;
     std::memcpy(&header, whole.data(), sizeof header);
     return header;
 }
-/// A file with this header, and what else stands in `contents` before the checksums, as long as `checked`.
+/// A file of this header and the rest of `contents`, cut or padded with zeros to `checked` bytes, and correct
+/// checksums of them.
 std::string signed_file(detail::IndexHeader header, std::string contents, std::size_t checked) {
     header.checksum = detail::checksum(&header, detail::index_header_checked);
     contents.resize(checked);
@@ -105,6 +106,7 @@ TEST(BadIndexFile, OfAnotherKindIsRefused) {
         return folder.file("other.hedgerow", signed_file(header, whole, checked_part(whole)));
     };
     EXPECT_EQ(load_index<float>(with([](auto&) {})).validate(), "") << "signed here, not changed";
+    // Headers of other versions, byte orders, formats and scalars.
     expect_refused(with([](auto& h) { h.version = 2; }),
                    {"other.hedgerow", "version 2", "this is version 1", "save it again"});
     expect_refused(with([](auto& h) { h.byte_order = 0x04030201; }),
@@ -112,12 +114,14 @@ TEST(BadIndexFile, OfAnotherKindIsRefused) {
     expect_refused(with([](auto& h) { h.magic[0] = 'H'; }), {"other.hedgerow", "no saved index"});
     expect_refused(with([](auto& h) { h.scalar_bytes = 2; }), {"scalar of 2 bytes"});
     expect_refused(with([](auto& h) { h.scalar_bytes = 8; }), {"cut off"});
+    // Indexes of the other scalar type.
     for (const auto& way : ways_to_load)
         expect_input_error([&] { load_index<double>(folder / "small.hedgerow", way); },
                            {"small.hedgerow", "holds floats", "Load it as float"});
     save_index(folder / "double.hedgerow", built(soup<double>(30)));
     expect_input_error([&] { load_index<float>(folder / "double.hedgerow"); },
                        {"holds doubles", "Load it as double"});
+    // A mesh file.
     expect_refused(folder.file("other.hedgerow", "ply\nformat ascii 1.0\n" + std::string(1000, ' ')),
                    {"no saved index"});
 }
@@ -133,6 +137,7 @@ TEST(BadIndexFile, WithAHeaderThatContradictsItselfIsRefused) {
     };
     using H = detail::IndexHeader;
     constexpr std::uint64_t huge = ~std::uint64_t(0);
+    // Counts of 0, and counts that are too large for any file.
     for (std::uint64_t H::*count : {&H::nodes, &H::leaves, &H::triangles, &H::vertices, &H::faces})
         for (const std::uint64_t value :
              {std::uint64_t(0), huge, huge / 64, huge / 320 + 1, std::uint64_t(1) << 40})
@@ -146,6 +151,7 @@ TEST(BadIndexFile, WithAHeaderThatContradictsItselfIsRefused) {
             h.vertices += 100;
         },
         "cut off");
+    // A depth, a box or options that no index has.
     refused([](H& h) { h.depth = 0; }, "contradicts itself");
     refused([](H& h) { h.depth = 100000; }, "contradicts itself");
     refused([](H& h) { h.low[1] = h.high[1] + 1; }, "contradicts itself");
@@ -158,7 +164,8 @@ TEST(BadIndexFile, WithAHeaderThatContradictsItselfIsRefused) {
     refused([](H& h) { h.traversal_cost = -1; }, "traversal_cost");
 }
 
-/// Contents of which a build would never have made an index. Each change is made where a section begins.
+/// Contents that no build makes. Each change is in the first element of a section, in the last node or in the
+/// header.
 TEST(BadIndexFile, WithAnUnsoundTreeOrMeshIsRefused) {
     const TempFolder folder;
     const std::string whole = small_file(folder);
@@ -170,18 +177,22 @@ TEST(BadIndexFile, WithAnUnsoundTreeOrMeshIsRefused) {
         expect_refused(folder.file("bad.hedgerow", signed_file(header, bad, checked_part(whole))),
                        {"bad.hedgerow", word, "save it again"}, Verify::contents);
     };
+    // Change a child or a box of the root.
     const std::uint64_t children = layout.nodes + 4 * 6 * sizeof(float), counts = children + 4 * 4;
     refused(children, std::uint32_t(header.nodes), "a child that is not there");
     refused(children, std::uint32_t(0), "a child before its parent");
     refused(children, 0x80000000u | std::uint32_t(header.leaves), "a leaf that is not there");
-    refused(children, 0x80000000u | (1u << 29), "a leaf that is not there");  // eight times it is 0
+    refused(children, 0x80000000u | (1u << 29), "a leaf that is not there");  // times 8, this overflows to 0
     refused(children, 0xFFFFFFFFu, "an empty place before a child");
     refused(layout.nodes, std::numeric_limits<float>::infinity(), "out of its");
-    std::uint64_t leaf = 0;  // one of the root's children, or of the last node's, which has only leaves
+    // Change the count of the last node's first child. A child node comes after its parent, so the last node
+    // has only leaves as children.
+    std::uint64_t leaf = 0;
     const std::uint64_t last = layout.nodes + (header.nodes - 1) * WideNodes<float, 3>::stride_of(4);
     leaf = last + (counts - layout.nodes);
     refused(leaf, std::uint32_t(0), "a leaf without primitives");
     refused(leaf, std::uint32_t(9), "too many primitives");
+    // Change the first item, block, vertex or triangle.
     refused(layout.items, std::uint32_t(header.triangles), "missing or held twice");
     refused(layout.items, no_primitive, "missing or held twice");
     refused(layout.blocks, 1e-3f, "other triangles");
@@ -191,6 +202,7 @@ TEST(BadIndexFile, WithAnUnsoundTreeOrMeshIsRefused) {
     refused(layout.vertices, -50.0f, "bounds");
     refused(layout.vertices, static_cast<float>(header.high[0]), "out of its leaf's box");
     refused(layout.triangles, std::uint32_t(header.vertices), "names vertex");
+    // Change the header.
     auto wider = header, deeper = header;
     wider.high[0] += 1;
     expect_refused(folder.file("bad.hedgerow", signed_file(wider, whole, checked_part(whole))), {"bounds"},
@@ -200,7 +212,8 @@ TEST(BadIndexFile, WithAnUnsoundTreeOrMeshIsRefused) {
                    {"not as deep"}, Verify::contents);
 }
 
-/// A crafted file is refused, or is an index that answers.
+/// Expects that a crafted file is either refused or a valid index that answers. Returns whether it is an
+/// index.
 bool is_sound(const std::filesystem::path& path) {
     try {
         for (const bool map : {false, true}) {
@@ -222,8 +235,8 @@ bool is_sound(const std::filesystem::path& path) {
     }
 }
 
-/// As many words changed as may be, and signed: headers, with as long a file as they then ask for, and
-/// contents.
+/// Changes one to three random words of the header or of the whole file, and computes the checksums anew. The
+/// file is as long as its changed header asks for, if that is less than 1 MiB.
 TEST(BadIndexFile, CraftedInThousandsDoesNoHarm) {
     const TempFolder folder;
     const std::string whole = small_file(folder);
@@ -236,6 +249,7 @@ TEST(BadIndexFile, CraftedInThousandsDoesNoHarm) {
     for (int i = 0; i < rounds; ++i) {
         std::string bad = whole;
         const std::size_t within = i % 3 == 0 ? sizeof(detail::IndexHeader) : checked;
+        // Set words to special values, or change them by at most two.
         for (std::uint64_t n = 1 + random() % 3; n > 0; --n) {
             const std::size_t at = random() % (within / 4) * 4;
             std::uint32_t word;
@@ -262,7 +276,8 @@ TEST(BadIndexFile, ThatIsNoneIsRefused) {
     expect_refused(folder / "folder.hedgerow", {"folder.hedgerow", "directory"});
 }
 
-/// Files that this process writes may not be longer, as where a disk is full.
+/// Limits the size of files that this process writes, as if the disk were full, and removes the limit at its
+/// end.
 class LittleRoom {
 public:
     explicit LittleRoom(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,4 +1,4 @@
-/// Batches of every question give what single calls do, over any executor; and the short ways to ask.
+/// Batches of every query return what single calls return, over any executor. Also tests the short overloads.
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
@@ -22,6 +22,7 @@ void expect_same_as_alone(const I& index, Executor& executor) {
     const contract::Questions questions(index, 3000);
     const auto alone = contract::answers(index, questions);
 
+    // Query in batches.
     std::vector<Near<T, D>> found(questions.points.size());
     closest_points(index, questions.points, found, executor);
     const auto hits = all_hits(index, questions.rays, executor);
@@ -30,6 +31,7 @@ void expect_same_as_alone(const I& index, Executor& executor) {
     ASSERT_EQ(hits.size(), questions.rays.size());
     ASSERT_EQ(near.size(), questions.points.size());
     ASSERT_EQ(overlaps.size(), questions.boxes.size());
+    // Compare each answer with that of a single call.
     std::size_t answers = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         ASSERT_TRUE(same(hits[i], alone.all[i])) << "ray " << i;
@@ -77,6 +79,7 @@ TEST(Batches, NeedNoExecutorForAFilter) {
     const contract::Questions questions(index, 500);
     const auto odd = [](const Hit<float>& hit) { return hit.element % 2 != 0; };
     const auto of_even_rays = [](std::size_t ray, const Hit<float>&) { return ray % 2 == 0; };
+    // Compare calls with and without an executor.
     const auto expect_same = [&](const auto& filter) {
         const std::size_t n = questions.rays.size();
         std::vector<Hit<float>> want(n), got(n);
@@ -116,7 +119,7 @@ TEST(Batches, KeepToTheDistanceAndTheRoom) {
     EXPECT_EQ(all_hits(index, std::vector<Ray3d>()).size(), 0u);
 }
 
-/// Any structure over an executor, with its own options or yours.
+/// `build` takes an executor with the default options or with given ones.
 TEST(Batches, BuildsTakeAnExecutorAlone) {
     const auto mesh = teapot<float>(300);
     const auto balls = spheres<double>(100);

@@ -1,5 +1,5 @@
-/// `hedgerow bench` as its user sees it: tables, JSON, the page, the chart, messages and exit codes. No time
-/// is judged here, only what is made of times.
+/// `hedgerow bench` as its user sees it: tables, JSON, the page, the chart, messages and exit codes. The
+/// tests judge no times, only what is computed from times.
 #include <cmath>
 #include <set>
 #include <string>
@@ -42,7 +42,7 @@ void expect_close(double a, double b) {
     EXPECT_NEAR(a, b, 1e-9 * std::fabs(b));
 }
 
-/// Everything that follows from other figures does.
+/// Expects that derived figures agree with the figures that they are computed from.
 void expect_consistent(const json& j, const json& rate, const std::string& mode) {
     expect_close(number(rate, "mrays"), 1e3 / number(rate, "ns"));
     const double visits = number(rate, "nodes") + number(rate, "leaves");
@@ -75,6 +75,7 @@ TEST_F(Bench, FiguresFollowFromEachOther) {
         const std::string mode = row["mode"];
         double least = INFINITY;
         ASSERT_EQ(row["ours"].size(), 2u);
+        // The best of our rates is the one of least time.
         for (const json& rate : row["ours"]) {
             expect_consistent(j, rate, mode);
             least = std::min(least, number(rate, "ns"));
@@ -85,6 +86,7 @@ TEST_F(Bench, FiguresFollowFromEachOther) {
         }
         EXPECT_EQ(number(row["best"], "ns"), least);
         EXPECT_LE(number(row, "sample"), 2000);
+        // The ratio compares with the fastest peer that is not robust and makes the same calls.
         EXPECT_EQ(row.contains("ratio"), !j["peers"].empty());
         if (!row.contains("ratio")) continue;
         const json& against = row["against"];

@@ -1,5 +1,5 @@
-/// The BVH's builders: valid trees whatever the scene, the same for any executor, none too deep, their costs
-/// in proportion; improvement by reinsertion.
+/// The BVH's builders: they make valid trees of bounded depth for any scene, the same for any executor, at
+/// costs in proportion to each other. Reinsertion never raises the cost.
 #include <numeric>
 
 #include <hedgerow/structures/bvh/builders/collapse.h>
@@ -13,7 +13,7 @@ using namespace hedgerow::trees;
 
 namespace {
 
-/// Balls around one center, each larger than the one before: to join them by area is to make a chain.
+/// Spheres around one center, each larger than the one before. Joining them by area makes a chain.
 SphereSet<double, 3> nested_balls(std::size_t n) {
     SphereSet<double, 3> set;
     for (std::size_t i = 0; i < n; ++i) set.spheres.push_back({{1, 2, 3}, std::pow(1.001, double(i))});
@@ -70,7 +70,7 @@ TEST(MortonOrder, IsByTheWholeCodeThenById) {
         auto cloud = points<float>(n);
         expect_order(cloud);
         expect_order(points2d<double>(n));
-        for (auto& p : cloud.points) p = p * 1e-6f;  // all in a few cells, but for one
+        for (auto& p : cloud.points) p = p * 1e-6f;  // all but the next point are in a few cells
         cloud.points.emplace_back(1.f, 1.f, 1.f);
         expect_order(cloud);
         for (auto& p : cloud.points) p = {1, 2, 3};
@@ -144,7 +144,7 @@ TEST(Builders, GiveTheSameTreeForAnyNumberOfThreads) {
         [&](const auto& options) { expect_same_tree_for_any_threads<WideBvh>(mesh, options); });
 }
 
-/// A chain: one leaf, and all others below its sibling.
+/// A tree that is a chain: each inner node has one leaf and one child with all remaining leaves.
 struct Chain {
     struct Node {
         std::uint32_t first, last;
@@ -183,7 +183,7 @@ TEST(Collapse, MakesLeavesWhereTheyAreCheaper) {
     options.traversal_cost = 1e6;
     options.max_leaf_size = 16;
     const auto lumps = Collapse<double, 3>(options, serial_executor()).build(Chain{40}, 40);
-    EXPECT_EQ(lumps.leaves, 25u);  // the last 16 are one
+    EXPECT_EQ(lumps.leaves, 25u);  // 24 leaves of one item, and one of the last 16
     options.traversal_cost = 1e-6;
     EXPECT_EQ((Collapse<double, 3>(options, serial_executor()).build(Chain{40}, 40).leaves), 40u);
 }
@@ -223,8 +223,8 @@ TEST(Reinsertion, NeverRaisesTheCost) {
     for (const auto& mesh :
          {teapot_in_stadium<float>(5000), terrain<float>(5000), soup<float>(5000), needles(5000)})
         for (const auto builder : bvh_builders) {
-            // Spatial splits go on to single primitives where these are to be moved, and so spend what they
-            // may duplicate in other places.
+            // Spatial splits continue down to single primitives if these can be moved by reinsertion, so the
+            // duplicates that they may make are spent in other places. The cost may then rise by up to 1%.
             const double rounding = builder == BvhBuilder::spatial_splits ? 1e-2 : 1e-6;
             double last = cost(mesh, options_of(builder));
             for (const int passes : {1, 3, 9}) {

@@ -1,5 +1,5 @@
-/// What the structures that cut space share: clipped parts, mailboxes, and what each stands for in memory.
-/// That their answers are right, the matrix and the properties hold.
+/// Structures that cut space: clipped bounds, mailboxes, memory and visits. The matrix and property tests
+/// check that their answers are right.
 #include <set>
 
 #include <hedgerow/scenes/meshes.h>
@@ -18,7 +18,8 @@ class Cells : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Cells, Scalars);
 
-/// Bounds of the points of a fine net over a triangle that lie in a box: never outside of the clipped part.
+/// The bounds of the points of a fine net on a triangle that are in a box. They are never outside the bounds
+/// of the clipped triangle.
 template <class T>
 Box<T, 3> bounds_by_net(const Triangle<T, 3>& t, const Box<T, 3>& box, int n) {
     Box<T, 3> bounds;
@@ -45,7 +46,7 @@ TYPED_TEST(Cells, ClippedBoundsHoldThePartAndNoMore) {
         ++parts;
         const auto around = enlarged(clipped, T(4) * unit_roundoff<T>);
         ASSERT_TRUE(around.contains(seen)) << i;
-        // A net point lies within two of its steps of any place of the part's border.
+        // Every place on the border of the clipped part has a net point within two steps of the net.
         const T step = T(4) * max_component(t.bounds().extent()) / net;
         if (length(cross(t.b - t.a, t.c - t.a)) > T(0.2) && max_component(clipped.extent()) > 4 * step) {
             ASSERT_TRUE(enlarged(seen, 3 * step).contains(clipped)) << i;
@@ -58,7 +59,7 @@ TYPED_TEST(Cells, ClippedBoundsOfWhatIsInsideAreItsOwn) {
     using T = TypeParam;
     const Triangle<T, 3> t{{0, 0, 0}, {1, 0, 2}, {0, 3, 1}};
     const Box<T, 3> around{{-1, -1, -1}, {4, 4, 4}}, beside{{5, 5, 5}, {6, 6, 6}};
-    // A corner of the box's that the triangle passes by, though the boxes overlap.
+    // A corner of the triangle's bounds that the triangle itself does not touch.
     const Box<T, 3> corner{{T(0.9), T(2.5), 0}, {1, 3, 2}};
     EXPECT_EQ(clipped_bounds(t, around), t.bounds());
     EXPECT_TRUE(clipped_bounds(t, beside).empty());
@@ -69,7 +70,7 @@ TYPED_TEST(Cells, ClippedBoundsOfWhatIsInsideAreItsOwn) {
     EXPECT_TRUE(clipped_bounds(s, Box<T, 2>{{3, 0}, {4, 1}}).empty());
 }
 
-/// Visits of rays between places in the scene, with a structure's options.
+/// The visits of 400 rays between points of the scene, in a structure with these options.
 template <template <class, int> class S, class T>
 Visits visits_of(const TriangleMesh<T>& mesh, const typename S<T, 3>::Options& options) {
     const auto index = build<S>(mesh, options);
@@ -98,7 +99,8 @@ TYPED_TEST(Cells, AMailboxSparesTestsAndNothingElse) {
             visits_of<TwoLevelGrid>(mesh, {.mailbox = false}));
 }
 
-/// Meshes whose ids run in rows, in fans, and anyhow.
+/// Ids run in the rows of a terrain, and in the rings and patches of a stadium with a teapot, upright and
+/// turned.
 TYPED_TEST(Cells, AMailboxSparesNineInTenRepeatedTests) {
     using T = TypeParam;
     const auto spares = [](const auto& index) {
@@ -119,7 +121,8 @@ TYPED_TEST(Cells, AMailboxSparesNineInTenRepeatedTests) {
     };
     for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000), turned_stadium<T>(20000)})
         spares(build<KdTree>(mesh, {.builder = KdBuilder::binned}));
-    // Not the turned stadium: some cells of its grid hold more than a mailbox remembers.
+    // The turned stadium is left out, because some cells of its grid have more primitives than a mailbox
+    // remembers.
     for (const auto& mesh : {terrain<T>(20000), teapot_in_stadium<T>(20000)}) spares(build<Grid>(mesh));
 }
 
@@ -139,16 +142,17 @@ TYPED_TEST(Cells, AGridsMemoryGrowsWithTheOccupiedCells) {
         return build<Grid>(mesh, {.cells = {.resolution = resolution}}).structure();
     };
     const auto coarse = at(64), fine = at(512);
-    // 512 times as many cells; a surface occupies some 64 times as many.
+    // There are 512 times as many cells, but a surface occupies only about 64 times as many.
     EXPECT_LT(fine.leaf_count(), 100 * coarse.leaf_count());
     for (const auto& grid : {coarse, fine})
         EXPECT_LT(grid.bytes(), 4 * grid.items().size() + 56 * grid.leaf_count() + 256);
     EXPECT_LT(fine.bytes(), fine.node_count() / 2);
 }
 
-/// Whole lines, some along an axis or from cell corner to cell corner.
+/// Counts all hits of rays, some of them along an axis or from cell corner to cell corner.
 TYPED_TEST(Cells, AGridStepsOverEmptyBlocksAndMissesNothing) {
     using T = TypeParam;
+    // Compare a grid that steps over empty blocks with one that does not.
     const auto compare = [](const auto& set, auto ray_of) {
         using Set = std::remove_cvref_t<decltype(set)>;
         constexpr int D = Set::dimension;
@@ -169,6 +173,7 @@ TYPED_TEST(Cells, AGridStepsOverEmptyBlocksAndMissesNothing) {
         }
         EXPECT_LT(2 * fast.nodes, slow.nodes);
     };
+    // Rays anywhere, half of them along an axis.
     const auto anywhere = [](const auto& bounds, Random& random) {
         constexpr int D = std::remove_cvref_t<decltype(bounds)>::dimension;
         const auto from = matrix::point_in(bounds, 0.5, random);
@@ -178,6 +183,7 @@ TYPED_TEST(Cells, AGridStepsOverEmptyBlocksAndMissesNothing) {
             if (a != along) to[a] = from[a];
         return Ray<T, D>{from, to - from};
     };
+    // Rays between corners of the lattice.
     const auto on_the_lattice = [](const auto& bounds, Random& random) {
         constexpr int D = std::remove_cvref_t<decltype(bounds)>::dimension;
         Ray<T, D> ray{bounds.low, bounds.extent()};
@@ -213,7 +219,7 @@ TYPED_TEST(Cells, ManyEqualPrimitivesMakeNoDeepTree) {
     EXPECT_EQ(build<TwoLevelGrid>(mesh).validate(), "");
 }
 
-/// What the SAH weighs falls with what the builder looks at.
+/// The more planes a builder compares by the SAH, the less the work of queries, weighed as the SAH weighs it.
 TYPED_TEST(Cells, PlanesByCostVisitFewerThanPlainOnes) {
     const auto mesh = teapot_in_stadium<TypeParam>(3000);
     const auto work = [&](KdBuilder builder) {
@@ -227,7 +233,7 @@ TYPED_TEST(Cells, PlanesByCostVisitFewerThanPlainOnes) {
     EXPECT_LT(sah, 0.8 * work(KdBuilder::midpoint));
 }
 
-/// The teapot, and the grass below it, are all in a few cells of the first level.
+/// The teapot, and the field below it, are in a few cells of the first level. The second level divides these.
 TYPED_TEST(Cells, TwoLevelsRecoverFromATeapotInAStadium) {
     using T = TypeParam;
     const auto mesh = teapot_in_stadium<T>(20000);

@@ -1,4 +1,4 @@
-/// Structures that change: a set, an index over it, and brute force beside it.
+/// For tests of structures that change: a set, an index over it, and a brute-force index to compare with.
 #pragma once
 
 #include <hedgerow/scenes/meshes.h>
@@ -12,7 +12,7 @@ namespace hedgerow::changes {
 using namespace contract;
 using namespace generated;
 
-/// A set that changes, and two indexes that are told.
+/// A set that changes, and two indexes that follow: one of the structure under test and one of brute force.
 template <template <class, int> class S, class P>
 struct Both {
     using Tree = S<typename P::Scalar, P::dimension>;
@@ -26,7 +26,7 @@ struct Both {
           tree(build<S>(set, options, default_executor())),
           oracle(build<BruteForce>(set)) {}
 
-    /// Each returns whether both indexes said the same.
+    /// Each of the changes below returns whether both indexes returned the same.
     bool insert(PrimitiveId id) { return tree.insert(set, id) == oracle.insert(set, id); }
     bool erase(PrimitiveId id) { return tree.erase(set, id) == oracle.erase(set, id); }
     bool append(const Item& item) {
@@ -44,7 +44,8 @@ struct Both {
     PrimitiveId last() const { return static_cast<PrimitiveId>(set.size() - 1); }
 };
 
-/// Change `kind` (of four), and whether both indexes agree on it.
+/// Makes a change of one of four kinds: append, move, insert or erase. Returns whether both indexes agree on
+/// it.
 template <template <class, int> class S, class P>
 bool change(Both<S, P>& both, int kind, std::uint64_t which, const typename Both<S, P>::Item& item) {
     if (kind == 0 || both.set.size() == 0) return both.append(item);
@@ -53,9 +54,9 @@ bool change(Both<S, P>& both, int kind, std::uint64_t which, const typename Both
         case 1:
             return both.move(id, item);
         case 2:
-            return both.insert(id);  // often held
+            return both.insert(id);  // often already inserted
         default:
-            return both.erase(id);  // often not held
+            return both.erase(id);  // often not inserted
     }
 }
 

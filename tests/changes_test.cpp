@@ -1,5 +1,5 @@
-/// Structures that change: what is inserted, erased and moved one by one is answered as by brute force; bad
-/// changes change nothing; depth and the cost of a change are bounded.
+/// Structures that change: after single inserts, erases and moves they answer like brute force. Bad changes
+/// change nothing. The depth of a tree and the visits of its queries stay bounded.
 #include <array>
 #include <limits>
 
@@ -45,7 +45,7 @@ O any_options(O options) {
     }
     return options;
 }
-/// So that trees are as deep as they may be.
+/// Sets options that make trees as deep as possible.
 template <class O>
 void make_deep(O& options) {
     if constexpr (requires { options.mailbox; })
@@ -77,7 +77,8 @@ TYPED_TEST(OfEveryKind, AnyChangesAreAnsweredAsByBruteForce) {
     });
 }
 
-/// Ten thousand steps on one tree, in the long run: first it mostly grows, then it mostly shrinks, and again.
+/// Makes 1,000 changes to one tree, or 10,000 in long runs. Every 250 changes it alternates between mostly
+/// growing and mostly shrinking.
 TYPED_TEST(OfEveryKind, ALongLifeIsAnsweredAsByBruteForce) {
     using P = typename TypeParam::Set;
     rc::Random draw(5);
@@ -94,6 +95,7 @@ TYPED_TEST(OfEveryKind, ALongLifeIsAnsweredAsByBruteForce) {
         const bool grows = i / 250 % 2 == 0;
         const int kind =
             (grows ? std::array{0, 0, 0, 1, 2, 3} : std::array{0, 1, 2, 3, 3, 3})[random.bits() % 6];
+        // Draw a change and compare what both indexes return.
         const auto& item = random.bits() % 16 == 0 ? wild : tame;
         const auto which = random.bits();
         ASSERT_TRUE(change(both, kind, which, item(draw.split(), rc::kNominalSize).value())) << i;
@@ -118,7 +120,7 @@ using Structures = testing::Types<Scaled<Orthtree, float>, Scaled<Orthtree, doub
                                   Scaled<Bvh, double>>;
 TYPED_TEST_SUITE(OfEveryStructure, Structures);
 
-/// Nothing is left to its first place: a third is erased, a third inserted anew, all in a scattered order.
+/// Erases two thirds of each scene in a scattered order, inserts half of these again, and at last erases all.
 TYPED_TEST(OfEveryStructure, ScenesMayBeTakenApartAndPutTogether) {
     with_scenes<typename TypeParam::Scalar>(3000, [](const char* name, auto set) {
         SCOPED_TRACE(name);
@@ -126,17 +128,21 @@ TYPED_TEST(OfEveryStructure, ScenesMayBeTakenApartAndPutTogether) {
         Both<TypeParam::template Structure, P> both(std::move(set));
         const Questions questions(both.oracle, 300);
         const auto n = static_cast<PrimitiveId>(both.set.size());
+        // Erase two thirds.
         for (PrimitiveId i = 0; i < n; ++i) {
             const PrimitiveId id = i * 7919 % n;
             if (id % 3 != 0) both.tree.erase(both.set, id);
         }
         EXPECT_EQ(both.tree.validate(), "");
+        // Insert half of these again, the last first.
         for (PrimitiveId id = n; id-- > 0;)
             if (id % 3 == 1) both.tree.insert(both.set, id);
         EXPECT_EQ(both.tree.validate(), "");
+        // Compare with brute force, from which the other half is erased too.
         for (PrimitiveId id = 2; id < n; id += 3) both.oracle.erase(both.set, id);
         EXPECT_EQ(both.tree.structure().size(), both.oracle.structure().items().size());
         EXPECT_TRUE(both.same(questions));
+        // Erase all.
         for (PrimitiveId id = 0; id < n; ++id) both.tree.erase(both.set, id);
         EXPECT_EQ(both.tree.validate(), "");
         EXPECT_EQ(both.tree.structure().size(), 0u);
@@ -146,7 +152,7 @@ TYPED_TEST(OfEveryStructure, ScenesMayBeTakenApartAndPutTogether) {
     });
 }
 
-// ---- Changes that cannot be
+// ---- Changes that are refused
 
 TYPED_TEST(OfEveryStructure, WhatIsHeldIsNotInsertedAndWhatIsNotHeldIsNotErased) {
     using T = typename TypeParam::Scalar;
@@ -209,7 +215,8 @@ TYPED_TEST(OfEveryStructure, BadPrimitivesAreRefusedAndChangeNothing) {
 
 // ---- Shape
 
-/// Many that no division parts: a build ends, in a sensible tree; more of them can be inserted, and erased.
+/// Primitives that no plane separates: a build ends with a tree of bounded depth, and more of them can be
+/// inserted and erased.
 template <template <class, int> class S, class P>
 void expect_bounded(const char* name, P set) {
     SCOPED_TRACE(name);
@@ -220,6 +227,7 @@ void expect_bounded(const char* name, P set) {
     EXPECT_LE(tree.depth(), tree.max_depth);
     const Questions questions(both.oracle, 100);
     EXPECT_TRUE(both.same(questions));
+    // Insert more of them and erase a third of all.
     for (int i = 0; i < 300; ++i) {
         const auto again = items(both.set)[both.set.size() - 7];
         ASSERT_TRUE(both.append(again));
@@ -266,7 +274,7 @@ TYPED_TEST(OfEveryStructure, WhatCannotBePartedMakesNoDepthBomb) {
     expect_bounded<TypeParam::template Structure>("segments through one point", star);
 }
 
-/// Neighbours that follow each other make a chain, if each is only put beside the last.
+/// Neighbours that are inserted in order make a chain if each is only placed beside the last.
 TEST(BvhChanges, InsertionsInTheOrderOfPlacesMakeNoChains) {
     const auto mesh = turned_stadium<float>(5000);
     auto index = build<Bvh>(mesh);
@@ -277,6 +285,7 @@ TEST(BvhChanges, InsertionsInTheOrderOfPlacesMakeNoChains) {
     };
     const double before = nodes();
     const auto n = static_cast<PrimitiveId>(mesh.size());
+    // Erase and insert again a twentieth of the mesh at a time.
     for (PrimitiveId first = 0; first < n; first += n / 20) {
         const PrimitiveId last = std::min(n, first + n / 20);
         for (PrimitiveId id = first; id < last; ++id) ASSERT_TRUE(index.erase(mesh, id));

@@ -1,4 +1,5 @@
-/// Ctrl-C during each verb, at several moments of its work: the exit code, and what was there before.
+/// Tests Ctrl-C during each verb at several times: the exit code, the earlier output, and what is saved of
+/// the unfinished work.
 #include <hedgerow/io/image.h>
 
 #include "tool.h"
@@ -10,7 +11,7 @@ namespace fs = std::filesystem;
 
 class Interrupted : public ToolTest {
 protected:
-    /// Signals the verb at each of the moments. Whatever it does then, `output` is as before.
+    /// Interrupts a verb after each of several times, in milliseconds. The earlier contents of `output` stay.
     void expect_untouched(const std::vector<std::string>& arguments, const std::string& output) {
         for (const int milliseconds : {5, 60, 400, 1200}) {
             std::ofstream(output) << "precious";
@@ -23,7 +24,7 @@ protected:
     }
 };
 
-// Each works for at least ten seconds where it is not stopped, on any machine.
+// Each command below runs for at least ten seconds on any machine if it is not stopped.
 TEST_F(Interrupted, WhileGenerating) {
     expect_untouched({"generate", "gen:terrain:40M", "-o", file("a.ply"), "--quiet"}, file("a.ply"));
     expect_untouched({"info", "gen:hairball:30M"}, file("nothing"));
@@ -44,7 +45,7 @@ TEST_F(Interrupted, WhileMeasuring) {
     expect_untouched({"bench", "gen:soup:2M", "--html", file("b.html"), "--quiet"}, file("b.html"));
 }
 
-/// What is measured is written, whatever comes after it is not.
+/// An interrupted comparison writes what it has measured, and nothing of what would come after.
 TEST_F(Interrupted, AComparisonKeepsWhatWasMeasured) {
     const std::string page = file("a.html"), unfinished = file("a.unfinished.html");
     // Three sizes are measured in 2.5 s, on a slow or sanitized machine later; the fourth takes longer than

@@ -103,6 +103,7 @@ TEST_F(Cli, ASavedIndexIsDescribedAndRendered) {
         ASSERT_EQ(run("build --quiet --builder high --width 4 -o " + saved + " " + scene).output, "");
         EXPECT_EQ(bytes_of(saved), bytes) << "by any number of threads";
 
+        // `info` prints what the file has.
         const auto facts = run("info --json " + saved).output;
         for (const std::string fact :
              {"\"kind\": \"triangles\"", "\"builder\": \"high\"", "\"width\": 4", "\"format_version\": 1"})
@@ -110,13 +111,15 @@ TEST_F(Cli, ASavedIndexIsDescribedAndRendered) {
         EXPECT_NE(facts.find("\"precision\": \"" + std::string(precision)), std::string::npos) << facts;
         EXPECT_NE(facts.find("\"file_bytes\": " + std::to_string(bytes.size())), std::string::npos) << facts;
 
+        // `compare` reads the file as a scene.
         const auto compared = run("compare --structures bvh --queries 16 --time 0.001 " + saved);
         EXPECT_EQ(compared.code, 0) << compared.output;
 
+        // Pictures of the file are those of the scene.
         ASSERT_EQ(run("render " + scene + view).code, 0);
         const std::string picture = bytes_of(file("saved.png"));
         for (const std::string structure : {"", " --structure wide", " --structure kdtree"}) {
-            // The file does not say what the mesh was made of.
+            // The file does not record the scene that the mesh is from, so the axis that is up is given.
             const auto rendered = run("render --json --up z " + saved + structure + view);
             ASSERT_EQ(rendered.code, 0) << rendered.output;
             EXPECT_EQ(bytes_of(file("saved.png")), picture) << precision << structure;
@@ -126,6 +129,7 @@ TEST_F(Cli, ASavedIndexIsDescribedAndRendered) {
                 << rendered.output;
         }
     }
+    // A damaged file is refused.
     std::string damaged = bytes_of(saved);
     damaged[damaged.size() / 2] ^= 1;
     std::ofstream(file("damaged.hedgerow"), std::ios::binary) << damaged;
@@ -177,7 +181,7 @@ TEST_F(Cli, FilesAreConverted) {
 }
 
 TEST_F(Cli, FormatsAreRefusedBeforeAnyWork) {
-    // None of these scenes fits into memory, and the file is not there.
+    // None of the generated scenes fits into memory, and the file missing.ply does not exist.
     expect_usage("generate gen:terrain:2000M -o " + file("a.xyz"), ".ply .stl .obj .off");
     expect_usage("generate gen:points:2000M -o " + file("a.stl"), ".ply .npy .csv .xyz");
     expect_usage("generate gen:spheres:2000M -o " + file("a.ply"), "no file format here holds spheres");

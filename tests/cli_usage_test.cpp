@@ -1,4 +1,4 @@
-/// What the tool says to wrong usage, to outputs that cannot be written, and when memory is short.
+/// The tool's messages and exit codes for wrong usage, outputs that cannot be written, and too little memory.
 #include <hedgerow/io/image.h>
 
 #include "tool.h"

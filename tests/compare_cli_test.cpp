@@ -21,7 +21,7 @@ struct Result : ToolResult {
 
 class Compare : public ToolTest {
 protected:
-    /// Few queries and little time: figures do not matter here.
+    /// Runs compare with few queries and little time, because figures do not matter here.
     Result run(const std::string& arguments) const {
         const bool timed = arguments.find("--time") != std::string::npos;
         const std::string command =
@@ -29,7 +29,7 @@ protected:
             (arguments.find("--queries") != std::string::npos ? "" : "--queries 50 ") + arguments + " 2>" +
             file("errors");
         Result r{run_shell(command), bytes_of(file("errors"))};
-        // Lines that were broken for the terminal are one again.
+        // Join the lines that were broken for the terminal.
         r.output = std::regex_replace(r.output, std::regex("\n  "), " ");
         return r;
     }
@@ -141,6 +141,7 @@ TEST_F(Compare, SeesInteriorsFromInside) {
     for (const auto& set : from_inside["rays"]) EXPECT_LE(set["missed"], set["rays"]);
     EXPECT_LT(from_inside["rays"][0]["missed"], 100) << "through the windows";
 
+    // Warn of a camera outside a large interior.
     const std::string large = "gen:interior:100000 --queries 100 --counts --for closest-hit --structures bvh";
     const auto warned = run(large + outside), not_warned = run(large);
     EXPECT_NE(warned.output.find("look from inside with --eye"), std::string::npos) << warned.output;

@@ -1,4 +1,4 @@
-/// Questions of every kind, and what an index answers to them: to be held against another index's answers.
+/// Queries of every kind, and the answers of an index to compare with those of another index.
 #pragma once
 
 #include <hedgerow/hedgerow.h>
@@ -7,7 +7,8 @@
 
 namespace hedgerow::contract {
 
-/// Made once: in and around a box, some rays exactly at and from the given points.
+/// Rays, points and boxes in and around a box. Some rays aim exactly at the given points, and some start from
+/// them.
 template <class T, int D>
 struct Questions {
     std::vector<Ray<T, D>> rays;
@@ -32,12 +33,12 @@ struct Questions {
 template <class I>
 Questions(const I&, std::size_t) -> Questions<typename I::Scalar, I::dimension>;
 
-/// What an index says to them.
+/// The answers of an index to `Questions`.
 template <class T, int D>
 struct Answers {
     std::vector<std::optional<Hit<T>>> closest;
     std::vector<std::vector<Hit<T>>> all;
-    std::vector<std::size_t> counts;
+    std::vector<std::size_t> counts;  // 2 · hit count + any hit; any hit alone for an AnyIndex
     std::vector<std::optional<Near<T, D>>> near;
     std::vector<std::vector<Near<T, D>>> nearest;
     std::vector<std::vector<PrimitiveId>> overlapping;
@@ -61,7 +62,7 @@ Answers<T, D> answers(const I& index, const Questions<T, D>& questions) {
     return said;
 }
 
-/// The same of a structure chosen by its name, which counts no hits.
+/// The answers of an index whose structure is chosen by its name. Such an index does not count hits.
 template <class T, int D>
 Answers<T, D> answers(const AnyIndex<T, D>& index, const Questions<T, D>& questions) {
     Answers<T, D> said;

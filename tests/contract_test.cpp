@@ -1,5 +1,5 @@
-/// What the library promises beyond its answers: views of any stride, ownership, filters, a new origin off a
-/// surface, and no regard for the caller's floating-point mode.
+/// Promises of the library beyond its answers: views of any stride, ownership, filters, origins offset from a
+/// surface, and independence of the caller's floating-point mode.
 #include <memory>
 
 #include <hedgerow/scenes/meshes.h>
@@ -34,7 +34,7 @@ struct Interleaved {
     Strided<E> view() const { return Strided<E>(bytes.data() + first, size, stride); }
 };
 
-/// `scattered` looks at the same elements as `set`, otherwise laid out.
+/// Expects the same answers from `set` and `scattered`, a view of equal elements in another layout.
 template <class P, class V>
 void expect_same_bits(const P& set, const V& scattered) {
     const auto plain = build_any("bvh", set);
@@ -54,7 +54,7 @@ TYPED_TEST(Contract, ViewsOfAnyStrideGiveTheSameBits) {
     const auto cloud = points<T>(300);
     const auto balls = spheres<T>(300);
     const auto segments = segments2d<T>(300);
-    // Aligned with something between; unaligned with something between; unaligned in a row.
+    // Aligned elements with gaps, unaligned elements with gaps, and unaligned elements without gaps.
     for (const auto& [before, between] : {std::pair{0, 24}, {1, 7}, {3, 0}}) {
         SCOPED_TRACE(before);
         const auto a = static_cast<std::size_t>(before), b = static_cast<std::size_t>(between);
@@ -95,7 +95,8 @@ TYPED_TEST(Contract, AnLvalueIsBorrowedAndAnRvalueIsOwned) {
 
 // ---- Filters
 
-/// The list of all hits, unfiltered, by brute force, is what every filtered answer follows from.
+/// Compares filtered queries with `all`, the unfiltered hits of the ray by brute force, after filtering
+/// these.
 template <class I, class T, class Filter>
 void expect_filtered(const I& index, const Ray<T, 3>& ray, const std::vector<Hit<T>>& all,
                      const Filter& filter) {
@@ -135,26 +136,30 @@ TYPED_TEST(Contract, FiltersRefuseTheSameInEveryStructure) {
     check(build<Bvh>(mesh, {{.max_leaf_size = 1}, BvhBuilder::midpoint}));
 }
 
-// ---- A new origin
+// ---- Offset origins
 
 struct Resent {
     std::size_t rays = 0, same_triangle = 0, got_out = 0;
 };
-/// From each hit of some rays around a center new ones are sent to all sides that the surface faces.
+/// Casts rays from around a center, and from each hit four new rays to the side that the first ray came from.
+/// Counts the new rays, and those that hit the same triangle or nothing.
 template <class T, class Aim>
 Resent resend(const TriangleMesh<T>& mesh, const Vec3d& center, double spread, Aim aim) {
     const auto index = build(mesh);
     Resent result;
     for (std::uint64_t i = 0; i < 20000; ++i) {
+        // Cast a ray.
         Random random(5, i);
         const Vec<T, 3> from(center + random.direction<3>() * (spread * random.uniform()));
         const Ray<T, 3> ray{from, Vec<T, 3>(aim(random, from))};
         const auto hit = closest_hit(index, ray);
         if (!hit) continue;
+        // Offset the origin to the side that the ray came from.
         const Vec<T, 3> normal = index.primitives().normal(hit->element);
         const Vec<T, 3> back = dot(normal, ray.direction) > 0 ? -normal : normal;
         const auto triangle = index.primitives().triangle(hit->element);
         const Vec<T, 3> origin = offset_origin(ray, hit->t, triangle, back);
+        // Cast four rays from the new origin.
         for (int k = 0; k < 4; ++k) {
             Vec3d to = random.direction<3>();
             const Vec3d n = normalized(Vec3d(back) / static_cast<double>(max_component(abs(back))));
@@ -215,9 +220,9 @@ TYPED_TEST(Contract, AnOffsetOriginIsOnTheRightSideOfTheNeighbours) {
 // ---- Floating-point modes
 
 #if defined(__SSE2__)
-constexpr unsigned modes = 0xE040;
+constexpr unsigned modes = 0xE040;  // MXCSR: flush to zero, rounding control, denormals are zero
 
-/// Another mode for as long as it lives.
+/// Sets a floating-point mode and restores the earlier mode at its end.
 class InMode {
 public:
     explicit InMode(unsigned mode) : before_(_mm_getcsr()) { _mm_setcsr((before_ & ~modes) | mode); }
@@ -229,7 +234,7 @@ private:
     unsigned before_;
 };
 
-/// A pool whose threads are in a mode of their own.
+/// Runs work in a floating-point mode of its own, like a pool whose threads are in that mode.
 class InModeExecutor final : public Executor {
 public:
     explicit InModeExecutor(unsigned mode) : mode_(mode) {}
@@ -247,7 +252,8 @@ private:
     unsigned mode_;
 };
 
-/// Of an index asked in that mode, and of one built in it too.
+/// Expects that a mode changes no answer: of an index queried in it, of one built in it too, and of one built
+/// by threads in it.
 template <class T>
 void expect_no_effect(const std::string& name, const TriangleMesh<T>& mesh, const Questions<T, 3>& questions,
                       unsigned mode) {
@@ -271,7 +277,7 @@ void expect_no_effect(const std::string& name, const TriangleMesh<T>& mesh, cons
 
 TYPED_TEST(Contract, TheCallersFloatingPointModeChangesNothing) {
     using T = TypeParam;
-    // From ordinary sizes down to where products, and then coordinates themselves, are subnormal.
+    // Sizes go from ordinary ones down to those whose products, and then whose coordinates, are subnormal.
     const int least = std::numeric_limits<T>::min_exponent;
     for (const int exponent : {0, least / 2, least + 8, least - 4}) {
         SCOPED_TRACE(exponent);
@@ -279,7 +285,7 @@ TYPED_TEST(Contract, TheCallersFloatingPointModeChangesNothing) {
         for (auto& v : mesh.vertices)
             for (T& x : v.data) x = std::ldexp(x, exponent);
         const Questions<T, 3> questions(build(mesh).bounds(), mesh.vertices, 160);
-        // Flush to zero and denormals are zero; rounding up; both.
+        // Flush to zero and denormals are zero; rounding up; all three.
         for (const unsigned mode : {0x8040u, 0x4000u, 0xC040u}) {
             for (const auto& name : matrix::structures_for<TriangleMesh<T>>())
                 expect_no_effect(name, mesh, questions, mode);

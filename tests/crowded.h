@@ -1,4 +1,4 @@
-/// Scenes that no plane and no cell divides well: everything meets in one place.
+/// Scenes that no plane or cell divides well, because all primitives meet in one place.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace hedgerow::crowded {
 
-/// A disc of n slivers that meet in its middle, across axis z; a cone when its middle is raised.
+/// A disc of n slivers, perpendicular to z, that meet in its middle. With a raised middle it is a cone.
 template <class T>
 TriangleMesh<T> fan(std::uint32_t n, double raised = 0) {
     TriangleMesh<T> mesh;
@@ -30,7 +30,7 @@ TriangleMesh<T> alike(std::uint32_t n) {
     mesh.triangles.assign(n, {0, 1, 2});
     return mesh;
 }
-/// The same box of 12 triangles, until there are n.
+/// The 12 triangles of one box, repeated until there are n.
 template <class T>
 TriangleMesh<T> boxes(std::uint32_t n) {
     TriangleMesh<T> mesh = cube<T>(12);
@@ -38,7 +38,7 @@ TriangleMesh<T> boxes(std::uint32_t n) {
     while (mesh.triangles.size() < n) mesh.triangles.push_back(one[mesh.triangles.size() % one.size()]);
     return mesh;
 }
-/// Triangles whose boxes have their middle at the origin: all of one size, or of n sizes.
+/// Triangles whose boxes are centered at the origin and have one size, or n sizes.
 template <class T>
 TriangleMesh<T> around_origin(std::uint32_t n, bool one_size) {
     TriangleMesh<T> mesh;
@@ -53,7 +53,7 @@ TriangleMesh<T> around_origin(std::uint32_t n, bool one_size) {
     }
     return mesh;
 }
-/// Spheres around one place: all of one size, or of n sizes.
+/// Spheres around the origin that have one size, or n sizes.
 template <class T>
 SphereSet<T, 3> spheres_around_origin(std::uint32_t n, bool one_size) {
     SphereSet<T, 3> set;
@@ -61,7 +61,7 @@ SphereSet<T, 3> spheres_around_origin(std::uint32_t n, bool one_size) {
         set.spheres.push_back({Vec<T, 3>::all(T(0)), T(one_size ? 1 : 1 - double(i) / n)});
     return set;
 }
-/// Segments from one place in the plane to n others around it.
+/// Segments from one point in the plane to n others around it.
 template <class T>
 SegmentSet<T> star(std::uint32_t n) {
     SegmentSet<T> set;

@@ -1,4 +1,5 @@
-/// Where nothing can be parted, every structure and builder keeps to its limit of items, and answers.
+/// On primitives that cannot be separated, every structure and builder keeps to its limit of items and
+/// answers like brute force.
 #include "crowded.h"
 #include "matrix.h"
 
@@ -9,7 +10,7 @@ using namespace hedgerow::matrix;
 
 namespace {
 
-/// A structure or builder, and how many items a primitive it has at most.
+/// A structure or builder, and the most items that it may have per primitive.
 struct Limited {
     const char* structure;
     double items_per_primitive;
@@ -46,7 +47,7 @@ constexpr Limited limited[] = {{"grid", 32},
                                {"wide:builder=fast", 1},
                                {"wide:builder=high", 1}};
 
-/// The sizes that `compare` leaves a BSP tree out of.
+/// Whether `compare` leaves the structure out of scenes of n primitives: a BSP tree above 50,000.
 bool too_large(std::string_view structure, std::size_t n) {
     return structure.starts_with("bsp") && n > 50'000;
 }
@@ -138,14 +139,14 @@ TEST(Crowded, LessThanAnItemAPrimitiveIsRefused) {
         EXPECT_THROW(build<TwoLevelGrid>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
         EXPECT_THROW(build<Orthtree>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
         EXPECT_THROW(build<BspTree>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
-        if (bad == 0) continue;  // by the builder
+        if (bad == 0) continue;  // 0: the limit of the builder
         EXPECT_THROW(build<KdTree>(mesh, {.items_per_primitive = bad}), UsageError) << bad;
     }
 }
 
-// ---- BSP trees beside kd-trees, in cells of many primitives
+// ---- BSP trees compared with kd-trees, in cells of many primitives
 
-/// Planks of 12 triangles, turned any way.
+/// Planks of 12 triangles each, turned in random directions.
 TriangleMesh<float> planks(std::uint32_t n) {
     TriangleMesh<float> mesh;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -189,7 +190,7 @@ TEST(Bsp, InLargeCellsItsPlanesAreNoWorseThanAKdTrees) {
         EXPECT_LT(tests_a_ray(*bsp), 1.1 * tests_a_ray(*kd)) << mesh.size();
     }
 }
-/// A plane just outside of all parts was chosen again and again, down to the last level.
+/// Once, a plane just outside of all parts was chosen again and again, down to the last level.
 TEST(Bsp, NoPlaneIsChosenTwice) {
     const auto mesh = planks(100);
     const auto usual = build_any("bsp", mesh), deep = build_any("bsp:max_depth=64", mesh);

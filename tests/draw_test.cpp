@@ -1,55 +1,19 @@
-/// What `draw` writes: well-formed pictures with as many cells as there are, and tables that tell the truth.
+/// Pictures that `draw` writes are well formed and have every cell, and its tables agree with the library's
+/// traces.
 #include <algorithm>
 #include <vector>
-
-#include <expat.h>
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/io/image.h>
 #include <hedgerow/scenes/generate.h>
 
+#include "svg_elements.h"
 #include "tool.h"
 
 namespace {
 
 using namespace hedgerow;
 using Draw = ToolTest;
-
-/// How many elements of an XML document have a class that begins so. Fails the test if it is not well formed.
-std::size_t elements_with_class(const std::string& xml, const std::string& begins) {
-    struct Seen {
-        std::string begins;
-        std::size_t count = 0;
-    } seen{begins};
-    const auto parser = XML_ParserCreate(nullptr);
-    XML_SetUserData(parser, &seen);
-    XML_SetStartElementHandler(parser, [](void* data, const XML_Char*, const XML_Char** attributes) {
-        auto& s = *static_cast<Seen*>(data);
-        for (; *attributes != nullptr; attributes += 2)
-            s.count +=
-                std::string(attributes[0]) == "class" && std::string(attributes[1]).starts_with(s.begins);
-    });
-    const auto status = XML_Parse(parser, xml.data(), static_cast<int>(xml.size()), 1);
-    EXPECT_EQ(status, XML_STATUS_OK) << XML_ErrorString(XML_GetErrorCode(parser)) << " in line "
-                                     << XML_GetCurrentLineNumber(parser);
-    XML_ParserFree(parser);
-    return seen.count;
-}
-
-/// The boxes of the rectangles whose class begins so.
-std::vector<Box2d> rectangles_with_class(const std::string& svg, const std::string& begins) {
-    std::vector<Box2d> all;
-    for (std::size_t at = svg.find("<rect "); at != svg.npos; at = svg.find("<rect ", at + 1)) {
-        const std::string element = svg.substr(at, svg.find('>', at) - at);
-        if (element.find("class=\"" + begins) == element.npos) continue;
-        const auto number = [&](const std::string& name) {
-            return std::stod(element.substr(element.find(" " + name + "=\"") + name.size() + 3));
-        };
-        const Vec2d low(number("x"), number("y"));
-        all.push_back({low, low + Vec2d(number("width"), number("height"))});
-    }
-    return all;
-}
 
 std::size_t cells_of(const std::string& scene, const std::string& spec) {
     return std::visit([&](const auto& set) { return build_any(spec, set)->outline().size(); },
@@ -81,6 +45,7 @@ TEST_F(Draw, SlicesShowWhatThePlaneCuts) {
         const auto set = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:teapot:300")));
         const auto index = build_any(spec, set);
         const double low = static_cast<double>(index->bounds().low[2]);
+        // Count the cells and triangles that the plane cuts.
         const double z = low + 0.4 * (static_cast<double>(index->bounds().high[2]) - low);
         OutlineLimits<3> limits;
         limits.within.low[2] = limits.within.high[2] = z;
@@ -93,7 +58,7 @@ TEST_F(Draw, SlicesShowWhatThePlaneCuts) {
         EXPECT_EQ(elements_with_class(svg, "cell"), cut);
         EXPECT_EQ(elements_with_class(svg, "line"), crossed);
     }
-    // A position is as good as a fraction.
+    // The position @0.5 in the cube from -1 to 1 makes the same slice as the fraction 0.75.
     ASSERT_EQ(run("draw gen:cube:300 --quiet --slice x=0.75 -o " + file("a.svg")).code, 0);
     ASSERT_EQ(run("draw gen:cube:300 --quiet --slice x=@0.5 -o " + file("b.svg")).code, 0);
     EXPECT_EQ(elements_with_class(bytes_of(file("a.svg")), "cell"),
@@ -134,22 +99,26 @@ TEST_F(Draw, ARaysTableIsItsTrace) {
         const auto r =
             run("draw gen:segments2d:80 --structure " + std::string(spec) + ray + " -o " + file("ray.svg"));
         ASSERT_EQ(r.code, 0) << r.output;
+        // The picture has a cell for each step of the trace, and the table a line.
         EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "cell visited"), trace.steps.size());
         EXPECT_EQ(static_cast<std::size_t>(std::count(r.output.begin(), r.output.end(), '\n')),
                   trace.steps.size() + 2)
             << "a head, a line a step, and the sum";
         ASSERT_TRUE(trace.hit);
         EXPECT_NE(r.output.find("hits primitive " + std::to_string(trace.hit->element)), std::string::npos);
+        // The JSON has the counts of the trace.
         const auto json = run("draw gen:segments2d:80 --json --structure " + std::string(spec) + ray +
                               " -o " + file("ray.svg"));
         EXPECT_NE(json.output.find("\"primitives\": " + std::to_string(trace.visits.primitives)),
                   std::string::npos);
     }
+    // A page shows the steps one by one.
     ASSERT_EQ(run("draw gen:segments2d:80 --quiet --frames" + ray + " -o " + file("ray.html")).code, 0);
     auto page = bytes_of(file("ray.html"));
     const auto begin = page.find("<svg"), end = page.find("</svg>") + 6;
     ASSERT_LT(begin, end);
     EXPECT_GT(elements_with_class(page.substr(begin, end - begin), "step"), 2u);
+    // A ray in space is drawn too.
     const auto space =
         run("draw gen:teapot:400 --structure octree --ray=-5,0.1,1,1,0,0.05 -o " + file("space.svg"));
     EXPECT_EQ(space.code, 0) << space.output;
@@ -250,7 +219,7 @@ TEST_F(Draw, StoppingAtTheFirstHitShowsTheWrongOne) {
     EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "nearest"), 1u);
 }
 
-/// A number of the k-th element that holds some text, by the name of its attribute.
+/// A numeric attribute of the k-th element, from 0, that has `text` in it.
 double attribute(const std::string& xml, const std::string& text, std::size_t k, const std::string& name) {
     std::size_t at = xml.find(text);
     for (; k > 0; --k) at = xml.find(text, at + 1);
@@ -280,7 +249,8 @@ TEST_F(Draw, EachStructureShowsItsOwnFirstHit) {
     EXPECT_NEAR(lengths[1] / lengths[0], t(1) / t(0), 0.01);
 }
 TEST_F(Draw, AnEquallyNearHitIsNotWrong) {
-    // The second triangle is in front, and the first one behind: the ray meets both at their common edge.
+    // The ray hits both triangles at their common edge. The second one slopes towards the ray's origin, the
+    // first one away from it.
     std::ofstream(file("edge.obj")) << "v -1 0 0\nv 1 0 0\nv 0 1 -1\nv 0 -1 1\nf 1 2 3\nf 2 1 4\n";
     for (const char* structure : {"bvh:max_leaf_size=1", "brute-force"}) {
         const auto r = run("draw " + file("edge.obj") + " --structure " + structure +
@@ -306,7 +276,7 @@ TEST_F(Draw, HeightShowsATreeFromItsLeaves) {
     EXPECT_EQ(cells("--height 0 --depth 2"), 0u) << "the children of the root have cells below them";
     EXPECT_EQ(cells("--height 20 --depth 2"), 3u);
 
-    // Of a slice too, heights are those of the whole tree.
+    // In a slice, heights are counted in the whole tree.
     ASSERT_EQ(
         run("draw gen:teapot:300 --quiet --structure bvh --slice z=0.4 --height 0 -o " + file("s.svg")).code,
         0);
@@ -336,8 +306,10 @@ TEST_F(Draw, BoxesAreDrawnOverAPictureOfTheMesh) {
         for (std::size_t i = 0; i < a.pixels.size(); ++i) n += a.pixels[i] != b.pixels[i];
         return n;
     };
+    // Deeper levels draw more boxes.
     EXPECT_GT(differing(pictures[0], pictures[1]), 100u);
     EXPECT_GT(differing(pictures[0], pictures[2]), differing(pictures[0], pictures[1]));
+    // Points are drawn in two structures side by side.
     ASSERT_EQ(
         run("draw gen:points:300 --quiet --size 160x120 --structure octree --beside bsp -o " + file("b.png"))
             .code,
@@ -347,7 +319,7 @@ TEST_F(Draw, BoxesAreDrawnOverAPictureOfTheMesh) {
     EXPECT_NE(r.output.find("\"cells_drawn\": 1"), std::string::npos) << r.output;
 }
 
-/// Two pictures to one scale have the same bar, whatever they show.
+/// Heat maps with the same scale have the same bar, whatever they show.
 TEST_F(Draw, HeatMapsCompareByAFixedScale) {
     const auto map = [&](const std::string& more) {
         const auto r = run("draw gen:teapot:500 --size 320x240 " + more + " -o " + file("h.png"));
@@ -365,7 +337,7 @@ TEST_F(Draw, HeatMapsCompareByAFixedScale) {
     EXPECT_EQ(bar(one), bar(other));
     EXPECT_NE(one, other);
     EXPECT_NE(bar(one), bar(wider));
-    // A long title does not lie on it.
+    // A long title does not overlap the bar.
     const auto right = [](const Image& i) {
         std::vector<Image::Pixel> strip;
         for (int y = i.height / 8; y < i.height / 3; ++y)
@@ -397,7 +369,7 @@ TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {
     EXPECT_EQ(run("draw gen:cube --depth -1" + png).code, 2);
     EXPECT_EQ(run("draw gen:cube --log" + png).code, 2);
     EXPECT_EQ(run("draw gen:points2d:20 --stop-at-first" + svg).code, 2);
-    // Usage is looked at before a scene: this file is not there.
+    // Usage is checked before the scene is read: the file missing.ply does not exist.
     const std::string draw = "draw " + file("missing.ply");
     expect_usage(draw + " --beside bvh --beside grid --beside bsp --beside kdtree" + svg, "--beside");
     expect_usage(draw + " --beside bvh --beside grid --slice x=0.5 --tree" + svg, "trees of two");

@@ -1,4 +1,4 @@
-/// What tests of the engine share.
+/// Shared parts of the tests of the engine.
 #pragma once
 
 #include <hedgerow/ask.h>
@@ -7,7 +7,7 @@
 
 namespace hedgerow {
 
-/// Takes an instruction set, and the one before when it goes.
+/// Selects an instruction set, and restores the earlier one at its end.
 class Using {
 public:
     explicit Using(std::string_view set)
@@ -38,7 +38,7 @@ void for_each_kernel(const TriangleMesh<float>& mesh, F f) {
     }
 }
 
-/// What the engine answers to rays: in a batch, and one at a time.
+/// The engine's answers to rays: in a batch, and one at a time.
 struct Answers {
     std::vector<Hit<float>> batch, one;
     std::vector<char> any_batch, any_one;
@@ -56,7 +56,8 @@ struct Answers {
     }
 };
 
-/// What the plain walk answers, whatever kernels there are: they do not count.
+/// The answers of the plain walk, whatever kernels there are. Queries that count visits use it, because
+/// kernels do not count.
 template <class Index>
 std::vector<Hit<float>> hits_of_the_walk(const Index& index, std::span<const Ray3f> rays) {
     std::vector<Hit<float>> hits;
@@ -78,14 +79,14 @@ inline void expect_hits(std::span<const Hit<float>> want, const Answers& got) {
     }
 }
 
-/// Rays of every kind, which go their own ways.
+/// Incoherent rays of every kind.
 inline std::vector<Ray3f> apart(const Box3f& box, const matrix::Points<float, 3>& targets,
                                 std::size_t count) {
     std::vector<Ray3f> rays;
     for (std::size_t i = 0; i < count; ++i) rays.push_back(matrix::ray_of(box, targets, i));
     return rays;
 }
-/// Rays that go the same way, from beyond a corner of a box through its middle.
+/// Coherent rays from beyond a corner of a box through its middle.
 inline std::vector<Ray3f> together(const Box3f& box, std::size_t count) {
     std::vector<Ray3f> rays;
     const Vec3f size = box.extent();

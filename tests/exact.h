@@ -1,5 +1,5 @@
-/// What tests of geometry measure with: arithmetic that is wider than the library's, and shapes that are
-/// integers.
+/// Tools for tests of geometry: arithmetic that is wider than the library's, and shapes with integer
+/// coordinates.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace hedgerow::exact {
 
 __extension__ using Int = __int128;
 
-/// Vectors of long double, with nothing of the library's.
+/// Vectors of long double, whose arithmetic uses no code of the library.
 using Real = long double;
 struct Real3 {
     Real x, y, z;
@@ -44,7 +44,7 @@ inline Real3 real(const Vec<T, D>& v) {
 inline int integer(Random& random, int reach) {
     return static_cast<int>(random.bits() % static_cast<std::uint64_t>(2 * reach + 1)) - reach;
 }
-/// Integer components, |x| <= reach, times 2^exponent.
+/// A vector of random integers, |x| <= reach, times 2^exponent.
 template <class T, int D>
 Vec<T, D> integers(Random& random, int reach, int exponent = 0) {
     return map(Vec<T, D>(), [&](T) { return std::ldexp(T(integer(random, reach)), exponent); });

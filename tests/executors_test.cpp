@@ -1,4 +1,6 @@
-/// Any executor builds the same index and lets exceptions through, and any number of threads may ask at once.
+/// Any executor builds the same index and lets exceptions through, and any number of threads may query at
+/// once.
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -17,7 +19,8 @@ using namespace hedgerow::contract;
 
 namespace {
 
-/// A pool of the caller's: a list of tasks, threads that take them, and callers that help while they wait.
+/// A thread pool of the caller's: a list of tasks, threads that run them, and callers that run tasks while
+/// they wait.
 class Pool final : public Executor {
 public:
     explicit Pool(int threads) {
@@ -86,8 +89,8 @@ private:
     std::vector<std::thread> threads_;
 };
 
-/// oneTBB is left out under ThreadSanitizer, which does not see how it hands work over and takes that for
-/// races.
+/// Under ThreadSanitizer the serial executor replaces oneTBB: the sanitizer does not see how oneTBB hands
+/// work over, and reports races that are none.
 #if defined(__SANITIZE_THREAD__)
 Executor& threads_of_the_library() {
     return serial_executor();
@@ -147,7 +150,7 @@ struct Refusal : std::runtime_error {
     using runtime_error::runtime_error;
 };
 
-/// Balls, one of which throws when it is looked at or asked.
+/// Spheres, one of which throws when its bounds are computed, and one when a ray is intersected with it.
 struct Touchy {
     using Scalar = float;
     static constexpr int dimension = 3;
@@ -174,26 +177,29 @@ TEST(Exceptions, PassThroughEveryExecutor) {
     Backwards backwards;
     for (Executor* executor :
          std::initializer_list<Executor*>{&pool, &backwards, &threads_of_the_library(), &serial_executor()}) {
+        // Exceptions of pieces and tasks.
         const auto fail = [] { throw Refusal("asked to"); };
         const auto fine = [] {};
         EXPECT_THROW(executor->for_each_piece(100, 10, [&](std::size_t, std::size_t) { fail(); }), Refusal);
         EXPECT_THROW(executor->both(fail, fine), Refusal);
         EXPECT_THROW(executor->both(fine, fail), Refusal);
 
+        // Exceptions of primitives, in a build and in a batch.
         EXPECT_THROW(build<Bvh>(Touchy{balls.view(), 40000}, {}, *executor), Refusal);
         const auto index = build<Bvh>(Touchy{balls.view(), Hit<float>::none, 7}, {}, *executor);
         EXPECT_THROW(closest_hits(index, questions.rays, hits, *executor), Refusal);
-        // Nothing of it stays behind.
+        // The exception leaves nothing behind.
         const auto good = build<Bvh>(Touchy{balls.view()}, {}, *executor);
         EXPECT_NO_THROW(closest_hits(good, questions.rays, hits, *executor));
 
+        // An error message names the first bad primitive, whichever piece found one first.
         auto bad = balls;
         bad.spheres[30001].radius = bad.spheres[9001].radius = bad.spheres[9002].radius =
             std::numeric_limits<float>::quiet_NaN();
         try {
             build<Bvh>(bad, {}, *executor);
             ADD_FAILURE() << "a NaN was let in";
-        } catch (const InputError& e) {  // the first, whoever found one first
+        } catch (const InputError& e) {
             EXPECT_NE(std::string(e.what()).find("primitive 9001 "), std::string::npos) << e.what();
         }
     }
@@ -211,6 +217,49 @@ TYPED_TEST(Executors, ManyThreadsMayAskAtOnce) {
         for (auto& t : threads) t.join();
         for (const auto& s : said) EXPECT_EQ(s, expected);
     });
+}
+
+TEST(Threads, AreAllCoresForLargeWorkAndTheCallersForSmall) {
+    EXPECT_EQ(&Threads().over(worth_a_task), &default_executor());
+    EXPECT_EQ(&Threads().over(worth_a_task - 1), &serial_executor());
+    EXPECT_EQ(&Threads(serial_executor()).over(worth_a_task), &serial_executor());
+    EXPECT_EQ(&Threads(default_executor()).over(1), &default_executor());
+}
+
+TEST(Threads, AreNotStartedInsideOfAWorker) {
+    if (&default_executor() == &serial_executor()) GTEST_SKIP() << "built without threads";
+    EXPECT_FALSE(is_worker());
+    std::atomic<int> pieces{0}, others{0};
+    default_executor().for_each_piece(8, 1, [&](std::size_t begin, std::size_t end) {
+        pieces += static_cast<int>(end - begin);
+        others += &Threads().over(worth_a_task) != &serial_executor();
+        default_executor().both([&] { others += !is_worker(); }, [&] { others += !is_worker(); });
+        others += !is_worker();
+    });
+    EXPECT_EQ(pieces, 8);
+    EXPECT_EQ(others, 0);
+    EXPECT_FALSE(is_worker());
+    EXPECT_THROW(default_executor().for_each_piece(
+                     1, 1, [](std::size_t, std::size_t) { throw std::runtime_error(""); }),
+                 std::runtime_error);
+    EXPECT_FALSE(is_worker());
+}
+
+TEST(Threads, AFilterOfABatchIsCalledInTheCallersThreadUnlessItIsGivenOthers) {
+    const auto mesh = soup<float>(300);
+    const auto index = build(mesh);
+    const std::vector<Ray3f> rays(4 * worth_a_task, Ray3f{{0.5f, 0.5f, -2}, {0.01f, 0.02f, 1}});
+    std::vector<Hit<float>> hits(rays.size());
+    const auto caller = std::this_thread::get_id();
+    std::atomic<int> calls{0}, elsewhere{0};
+    const auto filter = [&](const Hit<float>&) {
+        ++calls, elsewhere += std::this_thread::get_id() != caller;
+        return true;
+    };
+    closest_hits(index, rays, hits, filter);
+    all_hits(index, rays, filter);
+    EXPECT_GT(calls, 0);
+    EXPECT_EQ(elsewhere, 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-/// EXR images: round trips by OpenEXR itself, bad input, and what the tool writes against what the library
-/// answers for the same rays.
+/// EXR images: OpenEXR reads every bit back, bad input is refused, and what the tool writes agrees with the
+/// library's answers for the same rays.
 #include <hedgerow/io/exr.h>
 
 #include <ImfChannelList.h>
@@ -23,7 +23,8 @@ namespace {
 
 using namespace testing_io;
 
-/// What OpenEXR finds in a file, by the names of the channels: FLOAT as its bits, UINT as it is.
+/// The channels that OpenEXR reads from a file, by their names: FLOAT values as their bits, UINT values as
+/// they are.
 struct Read {
     int width = 0, height = 0;
     std::map<std::string, std::vector<std::uint32_t>> words;
@@ -66,13 +67,14 @@ TEST(Exr, EveryBitIsReadBack) {
     TempFolder folder;
     std::mt19937_64 random(3);
     for (int round = 0; round < 50; ++round) {
-        // 40 rows are several blocks of 16, the last one short.
+        // 40 rows are three blocks of 16, the last one short.
         const int width = 1 + static_cast<int>(random() % 40), height = 1 + static_cast<int>(random() % 40);
         const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
         struct Pixel {
             float depth;
             std::uint32_t id;
         };
+        // Draw values of all bits, some of them interleaved, and set an infinity of each sign and a NaN.
         std::vector<Pixel> pixels(count);
         std::vector<float> light(count);
         for (auto& p : pixels)
@@ -81,12 +83,13 @@ TEST(Exr, EveryBitIsReadBack) {
         for (auto& v : light) v = random_coordinate<float>(random);
         pixels[0].depth = std::numeric_limits<float>::infinity();
         pixels[count / 2].depth = -std::numeric_limits<float>::infinity();
-        pixels[count - 1].depth = std::bit_cast<float>(0x7FC12345u);  // a NaN that says something
+        pixels[count - 1].depth = std::bit_cast<float>(0x7FC12345u);  // a NaN with a payload
         save_exr(folder / "a.exr", {width,
                                     height,
                                     {{"R", Strided<float>(light)},
                                      {"depth.Z", Strided<float>(&pixels[0].depth, count, sizeof(Pixel))},
                                      {"id", Strided<std::uint32_t>(&pixels[0].id, count, sizeof(Pixel))}}});
+        // Compare with what OpenEXR reads.
         const Read read(folder / "a.exr");
         ASSERT_EQ(read.width, width);
         ASSERT_EQ(read.height, height);
@@ -120,6 +123,7 @@ TEST(Exr, BadInput) {
         save_exr(folder / name, {width, height, std::move(channels)});
     };
     const Channel good{"R", four};
+    // Images that no file can have.
     expect_input_error([&] { save(2, 2, {}); }, {"a.exr", "without channels"});
     expect_input_error([&] { save(0, 0, {{"R", Strided<float>()}}); }, {"a.exr", "0x0"});
     expect_input_error([&] { save(-2, -2, {good}); }, {"a.exr", "-2x-2"});
@@ -127,9 +131,11 @@ TEST(Exr, BadInput) {
     expect_input_error([&] { save(2, 2, {good, good}); }, {"a.exr", "two channels", "\"R\""});
     for (const std::string& name : {std::string(), std::string(256, 'x'), std::string("a\0b", 3)})
         expect_input_error([&] { save(2, 2, {{name, four}}); }, {"a.exr", "the name of channel 1"});
+    // Files that cannot be written.
     expect_output_error([&] { save(2, 2, {good}, "none/a.exr"); }, {"none/a.exr", "cannot be written"});
     expect_output_error([&] { save(2, 2, {good}, "."); }, {"directory"});
     EXPECT_EQ(folder.file_count(), 0u);
+    // A save that fails leaves the earlier file.
     save(2, 2, {good});
     const std::string before = contents(folder / "a.exr");
     expect_input_error([&] { save(2, 2, {{"R", three}}); }, {"3 values"});
@@ -144,7 +150,7 @@ TEST(Exr, BadInput) {
     }
 }
 
-/// The layers of a picture against the rays through its pixels' first samples.
+/// Compares the layers of a picture with the answers for the rays through its pixels' first samples.
 template <class T>
 void expect_what_rays_see(const Read& read, const AnyIndex<T, 3>& index, const TriangleMesh<T>& mesh,
                           const std::vector<Ray<T, 3>>& rays, bool counts) {
@@ -186,7 +192,7 @@ std::vector<Ray<T, 3>> rays_through_middles(const RenderOptions& o) {
 
 class ExrTool : public ToolTest {
 protected:
-    /// What the tool writes, which must do it.
+    /// Runs the tool, which must succeed, and reads the file that it writes.
     Read written(const std::string& arguments) {
         const auto r = run(arguments + " --quiet -o " + file("a.exr"));
         EXPECT_EQ(r.code, 0) << r.output;
@@ -262,7 +268,7 @@ TEST_F(ExrTool, AnInterruptedRenderSavesWhatIsDone) {
     constexpr auto infinity = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
     int missing = 0;
     for (std::size_t y = 0; y < 1200; ++y) {
-        // Brute force tests all primitives, so that a ray that was cast shows.
+        // Brute force tests all primitives, so the count of a ray that was cast is not 0.
         const bool done = tested[y * 1600] != 0;
         missing += !done;
         for (std::size_t i = y * 1600; i < (y + 1) * 1600; ++i) {
@@ -285,6 +291,7 @@ TEST(RaycastLayers, OfManySamplesTheFirstIsSeenAndCountsAreMeans) {
     options.layers = true;
     const Picture picture = raycast(*index, mesh, options, default_executor());
 
+    // Make the rays of the first of four samples as the renderer does.
     std::vector<Ray3f> rays;
     const RayMaker maker(options.camera, options.width, options.height);
     for (int y = 0; y < options.height; ++y)
@@ -297,6 +304,7 @@ TEST(RaycastLayers, OfManySamplesTheFirstIsSeenAndCountsAreMeans) {
     save_exr(folder / "a.exr", picture.layers());
     const Read read(folder / "a.exr");
     expect_what_rays_see(read, *index, mesh, rays, false);
+    // The counts of a pixel are means over its four samples.
     double nodes = 0, leaves = 0, primitives = 0;
     for (const Seen& s : picture.seen) nodes += s.nodes, leaves += s.leaves, primitives += s.primitives;
     EXPECT_EQ(picture.rays, 4 * rays.size());

@@ -1,16 +1,19 @@
-/// The counts that documents print are those that the commands beside them print.
+/// Checks that the counts in documents are those that the commands beside them print.
 ///
-/// A comment before a table, or before a paragraph, says what its figures are:
+/// A comment before a table or a paragraph describes its figures:
 ///
 ///   <!-- figures: column 2: nodes / leaves / primitives; column 3: memory; except row 2 -->
 ///   <!-- figures: row 1: coherent nodes of 2; "tests {} triangles" = coherent primitives @grid -->
 ///
-/// `column` and `row` are those of the next table, counted from 1 without its head; the structure is what
-/// stands at the other end, in the first cell of the row or in the table's head. A template is looked for in
-/// the text that follows. A figure is `[ask] [set] name [@structure]`: nodes, leaves, primitives, skipped,
-/// items and bytes (a primitive), memory, depth; of a command with --scale `name[size]` at the size of its
-/// column. Of `render` it is a name in its JSON. `cell 2 3` is one cell. `of N` chooses a command of the next
-/// block, else it is the first; `of hedgerow ...` is another.
+/// - `column N`, `row N` and `cell ROW COLUMN` are those of the next table, counted from 1 without its head.
+///   The structure of a figure is at the other end: for a column in the first cell of the row, for a row or a
+///   cell in the table's head. `except row N` and `except column N` leave figures out.
+/// - A template in quotes is searched in the text that follows.
+/// - A figure is `[ask] [set] name [@structure]`. Its name is nodes, leaves, primitives, skipped, items or
+///   bytes (both per primitive), memory or depth. A figure of a command with --scale is `name[size]`, at the
+///   size of its column. A figure of `render` is a name in its JSON.
+/// - `of N` chooses command N of the next block of commands instead of the first, and `of hedgerow ...`
+///   another command.
 ///
 /// HEDGEROW_REWRITE=1 corrects the documents instead (scripts/figures).
 #include <cmath>
@@ -44,7 +47,7 @@ Strings split(const std::string& text, const std::string& separator) {
     return parts;
 }
 
-/// What a document says of a figure: where it comes from.
+/// The source of a figure, as a document describes it.
 struct Figure {
     std::string ask = "closest-hit", set, name, structure;
 };
@@ -66,9 +69,10 @@ Figure figure_of(const std::string& text) {
     return f;
 }
 
-/// The JSON of a command of the tool, run once.
+/// The JSON that a command of the tool prints. Each command runs once.
 const json& result_of(std::string command, const std::string& ask) {
     static std::map<std::string, json> known;
+    // Ask for counts alone, and write pictures to a temporary file.
     command = std::regex_replace(command, std::regex("(^hedgerow |\\s+#.*$| --time [0-9.]+| --json)"), "");
     const auto picture =
         std::filesystem::temp_directory_path() / ("figures." + std::to_string(getpid()) + ".png");
@@ -86,7 +90,8 @@ const json& result_of(std::string command, const std::string& ask) {
     return known[command] = result.code == 0 ? json::parse(result.output) : json();
 }
 
-/// By its name, by the value of the option that a sweep changes, or "grid, density=1" for grid:density=1.
+/// The structure in a result that has a name, a value of the option that a sweep changes, or "grid,
+/// density=1" for grid:density=1. Null if there is none.
 const json* structure_of(const json& result, std::string name) {
     if (std::smatch m; std::regex_search(name, m, std::regex("`([^`]*)`"))) name = m[1];
     name = name.substr(0, name.find(" ("));
@@ -128,6 +133,7 @@ std::optional<double> value_of(const json& result, const Figure& f, const std::s
     if (f.name == "bytes") return double((*s)["bytes"]) / size;
     if (f.name == "memory") return (*s)["bytes"];
     if (f.name == "depth") return (*s)["depth"];
+    // Take the mean over the kinds of queries that fit.
     double sum = 0, kinds = 0;
     for (const json& q : (*s)["queries"])
         if (q["ask"] == f.ask && q.contains(f.name) &&
@@ -138,7 +144,7 @@ std::optional<double> value_of(const json& result, const Figure& f, const std::s
 
 const std::string number_pattern = "[0-9][0-9,]*(?:\\.[0-9]+)?";
 
-/// The value, written as the document writes it: as many decimals, commas if it had them.
+/// The value in the format of the document's sample: as many decimals, and commas if the sample has them.
 std::string written_as(const std::string& sample, double value) {
     const auto point = sample.find('.');
     char text[64];
@@ -162,6 +168,7 @@ public:
     void check() {
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             if (!lines_[i].starts_with("<!-- figures: ")) continue;
+            // Join the lines of the comment.
             std::string mark;
             for (;; ++i) {
                 mark += lines_.at(i) + " ";
@@ -186,7 +193,7 @@ private:
         return lines;
     }
 
-    /// The commands of the first block of them from a line on.
+    /// The commands of the first block of commands after a line.
     Strings commands_after(std::size_t line) const {
         Strings commands;
         while (line < lines_.size() && lines_[line] != "```sh") ++line;
@@ -210,7 +217,7 @@ private:
             s.command = commands.at(std::stoul(which) - 1);
         for (const std::string& f : split(text, text.find(", ") != text.npos ? ", " : " / "))
             s.figures.push_back(figure_of(f));
-        // The structure is said once, behind the last of several figures.
+        // If several figures share a structure, it is given once, after the last of them.
         for (Figure& f : s.figures)
             if (f.structure.empty()) f.structure = s.figures.back().structure;
         return s;
@@ -219,11 +226,13 @@ private:
     void marked(const std::string& mark, std::size_t line) {
         const Strings commands = commands_after(line);
         const Strings items = split(mark, ";");
+        // Collect the exceptions.
         std::vector<std::pair<std::string, std::size_t>> except;
         std::smatch m;
         for (const std::string& item : items)
             if (std::regex_match(item, m, std::regex("except (row|column) ([0-9]+)")))
                 except.emplace_back(m[1], std::stoul(m[2]));
+        // Check the figures of each item.
         for (const std::string& item : items) {
             if (item.empty() || item.starts_with("except ")) continue;
             if (std::regex_match(item, m, std::regex("(row|column) ([0-9]+): (.*)"))) {
@@ -238,7 +247,7 @@ private:
         }
     }
 
-    /// One row or column of the table that follows.
+    /// Checks one row, column or cell of the next table.
     void table(bool is_row, std::size_t number, const Source& source, std::size_t line,
                const std::vector<std::pair<std::string, std::size_t>>& except, std::size_t only_column = 0) {
         while (line < lines_.size() && !lines_[line].starts_with("|")) ++line;
@@ -272,10 +281,12 @@ private:
     void prose(const std::string& pattern, const Source& source, std::size_t line) {
         Strings parts = split_raw(pattern);
         std::string expression;
+        // Make an expression that finds the text with a number in place of each {}.
         for (std::size_t i = 0; i < parts.size(); ++i)
             expression += (i > 0 ? "(" + number_pattern + "(?: [kM]?B)?)" : "") +
                           std::regex_replace(parts[i], std::regex("[\\^$.|?*+()\\[\\]{}\\\\]"), "\\$&");
         const std::regex wanted(expression);
+        // Check the numbers of the first line that matches.
         for (std::size_t i = line; i < lines_.size(); ++i) {
             std::smatch m;
             if (!std::regex_search(lines_[i], m, wanted)) continue;
@@ -298,7 +309,8 @@ private:
         return parts;
     }
 
-    /// A cell with its figures as they should be; complains where they are not.
+    /// Returns a cell with its figures corrected. Fails the test if they differ, unless documents are
+    /// rewritten.
     std::string compared(const std::string& cell, const Source& source, const std::string& structure,
                          std::size_t line) {
         Strings parts = split(cell, " / ");

@@ -1,4 +1,4 @@
-/// What filtered queries are held against.
+/// Expected answers of filtered queries.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 namespace hedgerow {
 
-/// All hits of every ray by an oracle, unfiltered: what every filtered answer follows from.
+/// All hits of every ray by an oracle, without a filter. Every filtered answer follows from them.
 template <class T>
 struct Expected {
     std::vector<Ray<T, 3>> rays;
@@ -17,7 +17,7 @@ struct Expected {
     Expected(const Oracle& oracle, std::vector<Ray<T, 3>> asked) : rays(std::move(asked)), all(rays.size()) {
         for (std::size_t i = 0; i < rays.size(); ++i) all_hits(oracle, rays[i], all[i]);
     }
-    /// The closest of those that the filter keeps.
+    /// The closest of the hits of ray i that the filter keeps.
     template <class Filter>
     Hit<T> closest(std::size_t i, const Filter& filter) const {
         for (const auto& hit : all[i])
@@ -29,7 +29,7 @@ struct Expected {
     }
 };
 
-/// A filter that is seen to be asked of hits only, each as the ray's answer would have it.
+/// A filter that fails the test if it is called with anything but an expected hit of the ray.
 template <class T, class Filter>
 struct Watched {
     const Expected<T>& expected;
@@ -43,7 +43,8 @@ struct Watched {
     }
 };
 
-/// Batches and single rays by one filter. `by_hits` is the same for who knows all hits.
+/// Compares the answers of batches and single rays with a filter to the expected hits. `by_hits` is the same
+/// filter for a caller that knows all hits.
 template <class Index, class T, class Filter, class ByHits>
 void expect_filtered(const char* name, const Index& index, const Expected<T>& expected, const Filter& filter,
                      const ByHits& by_hits) {

@@ -1,4 +1,5 @@
-/// Filters, one ray at a time and in batches: what they refuse changes nothing, whichever kernel asks them.
+/// Filters of single rays and of batches: a hit that is refused changes nothing else, whichever kernel calls
+/// the filter.
 #include "engine.h"
 #include "filtered.h"
 
@@ -73,7 +74,7 @@ TEST(Filters, OfBatchesInOtherStructuresAndInDouble) {
     expect_all_filters(wide, Expected<double>(build<BruteForce>(of_double), rays));
 }
 
-/// Rays have the same numbers in the pieces that threads take.
+/// The filter gets a ray's number in the whole batch, also from the pieces that threads work on.
 TEST(Filters, AreAskedByAllThreads) {
     const auto mesh = teapot_in_stadium<float>(1000);
     const auto index = build<WideBvh>(mesh);
@@ -96,7 +97,7 @@ TEST(Filters, AreAskedByAllThreads) {
     }
 }
 
-/// What a filter throws comes out, and the next question is answered as ever.
+/// An exception of a filter reaches the caller, and the next query is answered as usual.
 TEST(Filters, MayThrow) {
     struct Refusal {};
     const auto mesh = soup<float>(1000);
@@ -105,6 +106,7 @@ TEST(Filters, MayThrow) {
         std::vector<Hit<float>> want(rays.size()), hits(rays.size());
         const std::unique_ptr<bool[]> any(new bool[rays.size()]);
         closest_hits(index, rays, want);
+        // Find the last ray that hits.
         std::size_t last = rays.size() - 1;
         while (!want[last]) --last;
         const auto throws_once = [&](std::size_t i, const Hit<float>&) {

@@ -1,4 +1,4 @@
-/// What the hunter has found, each as the test that failed then.
+/// Faults that the hunter has found, each as the test that failed then.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ using namespace hedgerow::hunter;
 
 namespace {
 
-/// A ray from so far away that its error spans the whole grid visited all cells again from each cell on its
-/// way.
+/// A ray that starts so far away that its error spans the whole grid once visited all cells again from each
+/// cell on its way.
 TEST(Found, RaysFromFarAwayVisitACellOfAGridOnce) {
     std::vector<Sphere<float, 3>> shapes;
     for (int i = 0; i < 8; ++i) shapes.push_back({{float(i & 1), float(i >> 1 & 1), float(i >> 2)}, 0.1f});
@@ -29,7 +29,7 @@ TEST(Found, RaysFromFarAwayVisitACellOfAGridOnce) {
     EXPECT_TRUE(as_brute_force("grid:resolution=20", shapes, ray));
 }
 
-// ---- Overlaps with boxes, before they were exact (docs/design/013-exact-overlaps.md)
+// ---- Box overlaps, from the time before they were exact (docs/design/013-exact-overlaps.md)
 
 TEST(Found, Round1x7) {
     const std::vector<Triangle<double, 3>> shapes = {

@@ -1,6 +1,6 @@
-/// Scenes and questions that RapidCheck draws, and shrinks when a property fails. Most numbers are small
-/// integers, so that primitives coincide, share corners, lie in one plane and along axes; in wild scenes they
-/// are any within 2^60.
+/// Scenes and queries that RapidCheck draws, and shrinks when a property fails. Most numbers are small
+/// integers, so that primitives coincide, share corners, and lie in one plane or along axes. In wild scenes
+/// they may be any numbers within 2^60.
 #pragma once
 
 #include <iomanip>
@@ -68,12 +68,13 @@ rc::Gen<Box<T, D>> boxes(bool wild) {
     return gen::map(gen::pair(vectors<T, D>(wild), vectors<T, D>(wild)),
                     [](const auto& p) { return Box<T, D>().expand(p.first).expand(p.second); });
 }
-/// Of every kind: at a corner or the middle of two, anywhere, along an axis; with −0 and subnormal
-/// components, long and short, beginning and ending on the way.
+/// A ray of any kind: towards a corner, towards the middle of two corners, anywhere, or along an axis with −0
+/// or subnormal components. Some directions are long or short, and some intervals begin or end on the way.
 template <class T, int D>
 Ray<T, D> any_ray(const std::vector<Vec<T, D>>& corners, bool wild) {
     const auto corner = [&] { return corners[*gen::inRange<std::size_t>(0, corners.size())]; };
     Ray<T, D> ray{*vectors<T, D>(wild), *vectors<T, D>(wild)};
+    // Aim at a corner, at the middle of two, or along an axis.
     switch (*gen::inRange(0, 5)) {
         case 1:
             ray.direction = corner() - ray.origin;
@@ -93,13 +94,14 @@ Ray<T, D> any_ray(const std::vector<Vec<T, D>>& corners, bool wild) {
             if (*gen::arbitrary<bool>()) ray.origin = corner() - ray.direction * T(0.5);
         }
     }
+    // Change the length of the direction and the interval.
     if (*gen::inRange(0, 4) == 3) ray.direction = ray.direction * std::exp2(T(*integers(30)));
     if (*gen::inRange(0, 4) == 3) ray.t_min = T(*gen::inRange(0, 4)) / 2;
     if (*gen::inRange(0, 4) == 3) ray.t_max = T(*gen::inRange(0, 8)) / 2;
     return ray;
 }
 
-/// What a set holds, and the same to be changed.
+/// The primitives of a set, which may be changed: of a mesh, its triangles.
 template <class T>
 auto& items(TriangleMesh<T>& set) {
     return set.triangles;
@@ -129,7 +131,7 @@ auto corners_of(const P& set) {
     return corners;
 }
 
-/// One primitive; a triangle over 10 vertices.
+/// One primitive. A triangle has its corners among 10 vertices.
 template <class P>
 auto any_item(bool wild) {
     using T = typename P::Scalar;
@@ -162,8 +164,8 @@ P any_set(bool wild) {
     return set;
 }
 
-/// Checks a property on generated cases, the same in every run: 300, or with HEDGEROW_LONG=1 more; or, where
-/// a case is little work, so many times as many.
+/// Checks a property on 300 generated cases, or on 20,000 with HEDGEROW_LONG=1. `times` multiplies this where
+/// a case is little work. The cases are the same in every run.
 template <int times = 1, class Property>
 void expect_always(Property property) {
     rc::detail::TestParams params;
@@ -171,7 +173,7 @@ void expect_always(Property property) {
     params.maxSuccess = static_cast<int>(matrix::in_long_runs(20000, 300)) * times;
     rc::detail::TestListenerAdapter silent;
     const auto cases =
-        gen::resize(rc::kNominalSize, rc::detail::toProperty(property));  // all of full variety
+        gen::resize(rc::kNominalSize, rc::detail::toProperty(property));  // full variety in all cases
     const auto result = rc::detail::checkProperty(cases, rc::detail::TestMetadata(), params, silent, {});
     std::ostringstream message;
     rc::detail::printResultMessage(result, message);

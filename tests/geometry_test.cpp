@@ -1,4 +1,4 @@
-/// The floor of geometry against exact or wider arithmetic: rounding, vectors and boxes, closest points.
+/// The basics of geometry against exact or wider arithmetic: rounding, vectors and boxes, closest points.
 #include "exact.h"
 
 #include <hedgerow/geometry/overlap.h>
@@ -53,8 +53,8 @@ TYPED_TEST(Geometry, DifferencesOfProductsHaveTheExactSign) {
     EXPECT_GT(zeros, 100);
 }
 
-/// Functions of their own, so that the compiler keeps what they return in registers side by side. At -O1 it
-/// drops no conversion: this program has to be compiled as the library is.
+/// Not inlined, so that the compiler keeps the numbers they return side by side in registers. At -O1 it drops
+/// no conversion, so this program has to be compiled as the library is.
 template <int D>
 [[gnu::noinline]] Vec<double, D> to_float_and_back(const Vec<double, D>& p) {
     return Vec<double, D>(Vec<float, D>(p));
@@ -92,9 +92,10 @@ TYPED_TEST(Geometry, InIeeeModeSubnormalsLiveAndTheModeIsRestored) {
     using T = TypeParam;
     const volatile T least = std::numeric_limits<T>::min();
     const unsigned before = _mm_getcsr();
-    const unsigned flushing = before | 0xC040;  // to zero, also on the way in; rounding up
+    const unsigned flushing = before | 0xC040;  // flush to zero, denormals are zero, rounding up
     const auto half = [&] { return least * T(0.5); };
     struct Thrown {};
+    // Halve the least normal number in a mode that flushes, with and without in_ieee_mode.
     _mm_setcsr(flushing);
     const T outside = half();
     const T inside = in_ieee_mode(half);
@@ -106,6 +107,7 @@ TYPED_TEST(Geometry, InIeeeModeSubnormalsLiveAndTheModeIsRestored) {
         after_throw = _mm_getcsr();
     }
     _mm_setcsr(before);
+    // Compare in the mode of before.
     EXPECT_EQ(outside, 0);
     EXPECT_EQ(inside, std::numeric_limits<T>::min() / 2);
     EXPECT_EQ(after & 0xFFC0, flushing & 0xFFC0);
@@ -157,7 +159,7 @@ Real distance_to(Real3 p, Real3 a, Real3 b) {
     const Real l = dot(ab, ab);
     return size(p - a - ab * (l > 0 ? std::clamp(dot(p - a, ab) / l, Real(0), Real(1)) : Real(0)));
 }
-/// The least over the edges and the foot on the plane, where it lies inside.
+/// The distance to the nearest edge, or to the foot on the plane if it is inside and nearer.
 Real distance_to(Real3 p, Real3 a, Real3 b, Real3 c) {
     const Real3 ab = b - a, ac = c - a, ap = p - a;
     const Real xx = dot(ab, ab), xy = dot(ab, ac), yy = dot(ac, ac), x = dot(ap, ab), y = dot(ap, ac);
@@ -166,7 +168,7 @@ Real distance_to(Real3 p, Real3 a, Real3 b, Real3 c) {
     return v >= 0 && w >= 0 && v + w <= 1 ? std::min(edges, size(ap - ab * v - ac * w)) : edges;
 }
 
-/// `q` was answered for a shape to which `distance` measures in long double.
+/// Expects that the closest point of a shape is right. `distance` measures to the shape in long double.
 template <class T, int D, class Shape, class Distance>
 void expect_closest(const Vec<T, D>& p, const Shape& shape, Real slack, Distance distance) {
     const Vec<T, D> q = closest_point(p, shape);
@@ -178,9 +180,9 @@ void expect_closest(const Vec<T, D>& p, const Shape& shape, Real slack, Distance
     EXPECT_LE(distance2(p, merged(box, Box<T, D>().expand(p * T(0.5)))), distance2(p, box));
 }
 
-/// Triangles and segments of all shapes, down to needles and points, at a scale: an answer is good to a few
-/// roundings of the largest number that went in. In a sliver the foot may slip along it, but no farther off
-/// than its edges are.
+/// Triangles and segments of all shapes, down to needles and points, times 2^scale. An answer may err by 16
+/// roundings of the largest number in the query and the shape. In a sliver the foot may slip along it, but no
+/// farther off than the sliver is thick.
 template <class T, int D>
 void expect_closest_points(int scale, bool slivers) {
     for (std::uint64_t i = 0; i < 50000 && !testing::Test::HasFailure(); ++i) {
@@ -188,6 +190,7 @@ void expect_closest_points(int scale, bool slivers) {
         Random random(12, i);
         const auto within = [&](double radius) { return in_ball<T, D>(random, std::ldexp(radius, scale)); };
         const Vec<T, D> at = within(i % 4 == 0 ? 30 : 1);
+        // Draw a triangle. In a sliver the third corner is near the line of the first two, or on it.
         Triangle<T, D> tri{at + within(1), at + within(1), at + within(1)};
         const T u = T(random.uniform(-0.2, 1.2)), v = T(random.uniform(-0.2, 1.2));
         if (slivers) {
@@ -196,12 +199,15 @@ void expect_closest_points(int scale, bool slivers) {
             if (i % 10 == 1) tri.c = tri.b;
             if (i % 30 == 1) tri.a = tri.b;
         }
+        // Draw a query in or near the triangle's plane.
         Vec<T, D> p = tri.a + (tri.b - tri.a) * u + (tri.c - tri.a) * v;
         if (i % 2 == 0) p = p + within(i % 16 == 0 ? 100 : 1);
         const Real3 a = real(tri.a), b = real(tri.b), c = real(tri.c);
         const Real largest = max_component(max(max(abs(p), abs(tri.a)), max(abs(tri.b), abs(tri.c))));
         const Real slack = 16 * unit_roundoff<T> * largest;
         expect_closest(p, Segment<T, D>{tri.a, tri.b}, slack, [&](Real3 x) { return distance_to(x, a, b); });
+        // Allow a sliver to err by its thickness, and other triangles by 2^16 roundings in double of the
+        // query's distance.
         const Real longest = std::max({size(b - a), size(c - a), size(c - b)});
         const Real thickness = longest > 0 ? size(cross(b - a, c - a)) / longest : 0;
         const Real slip =
@@ -246,6 +252,7 @@ void expect_closest_on_spheres_and_boxes() {
         const Vec<T, D> p = i % 7 == 0 ? ball.center : in_ball<T, D>(random, 20);
         expect_closest(p, ball, 200 * unit_roundoff<T>,
                        [&](Real3 x) { return std::fabs(size(x - real(ball.center)) - ball.radius); });
+        // Compare the box with a distance in long double.
         const auto box = box_of(in_ball<T, D>(random, 9), in_ball<T, D>(random, 9));
         const Real3 q = real(clamped(p, box));
         Real d2 = 0;

@@ -1,4 +1,4 @@
-/// glTF files from their parts, and a table of files with the triangles that they hold.
+/// Makes glTF files from their parts, and a table of files with the triangles that they have.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace hedgerow::testing_gltf {
 
-/// Numbers as a buffer holds them.
+/// The bytes of numbers in a buffer.
 template <class U>
 std::string packed(std::initializer_list<U> numbers) {
     std::string bytes;
@@ -44,10 +44,11 @@ struct Gltf {
     std::string views, accessors;
     std::string more;                // members of the root, each after a comma
     std::string buffer;              // bytes
-    std::optional<std::string> uri;  // of the buffer; a data URI where there is none
+    std::optional<std::string> uri;  // of the buffer; without one, a data URI has it
     int view_count = 0;
 
-    /// Appends bytes to the buffer, and a view of them. `members` each follow a comma.
+    /// Appends bytes to the buffer, and a view of them. `members` are further members of the view, each after
+    /// a comma.
     Gltf& view(const std::string& bytes, const std::string& members = "") {
         views += std::string(view_count++ == 0 ? "" : ",") + R"({"buffer":0,"byteOffset":)" +
                  std::to_string(buffer.size()) + R"(,"byteLength":)" + std::to_string(bytes.size()) +
@@ -103,7 +104,8 @@ private:
 
 constexpr int i1 = 5120, u1 = 5121, i2 = 5122, u2 = 5123, u4 = 5125, f4 = 5126;  // component types
 
-/// (0, 0, 0), (1, 0, 0), (0, 1, 0). The accessor may lie about the number of its corners.
+/// A triangle with corners at (0, 0, 0), (1, 0, 0) and (0, 1, 0). The accessor's `count` of corners may be
+/// wrong.
 inline Gltf triangle(const std::string& count = "3") {
     return Gltf()
         .view(packed<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}))
@@ -144,6 +146,7 @@ inline std::vector<GltfCase> gltf_cases() {
         fan{{a, b, c}, {a, c, d}, {a, d, e}}, strip_back{{e, d, c}, {c, d, b}, {c, b, a}},
         fan_back{{e, d, c}, {e, c, b}, {e, b, a}};
 
+    // Triangles, strips and fans, with and without indices and mirrors.
     std::vector<GltfCase> all{
         {"triangles", corners(), one},
         {"strip", of_mode(5), strip},
@@ -170,6 +173,7 @@ inline std::vector<GltfCase> gltf_cases() {
     all.push_back(
         {"matrix", on_nodes(corners(), R"({"mesh":0,"matrix":[0,2,0,0,0,0,3,0,4,0,0,0,10,0,0,1]})"), turned});
 
+    // Numbers of every type, as they are and normalized.
     const auto numbers = [&]<class U>(const std::string& name, int type, U most, U least) {
         const std::string bytes = packed<U>({0, 0, 0, most, 0, 0, 0, least, U(least / 2)});
         const double low = least, half = U(least / 2);
@@ -190,10 +194,12 @@ inline std::vector<GltfCase> gltf_cases() {
     numbers("u4", u4, std::uint32_t(4294967295u), std::uint32_t(77777777));
     numbers("f4", f4, 0.5f, -0.25f);
 
+    // Indices of the other types.
     const std::vector<ThreeCorners> around{{b, c, a}};
     all.push_back({"u1 indices", corners().indices(packed<std::uint8_t>({1, 2, 0}), u1, 3), around});
     all.push_back({"u4 indices", corners().indices(packed<std::uint32_t>({1, 2, 0}), u4, 3), around});
 
+    // A stride with an offset, sparse accessors and a buffer in a file of its own.
     const std::string stripes =
         packed<float>({-1, 1, 2, 3, -1, -1, 4, 2, 3, -1, -1, 1, 7, 3, -1});  // each between other numbers
     all.push_back(
@@ -218,7 +224,7 @@ inline std::vector<GltfCase> gltf_cases() {
     return all;
 }
 
-/// Writes the buffer of a file that has it elsewhere.
+/// Writes the buffer of a file that refers to it by a URI.
 inline void write_buffer(const testing_io::TempFolder& folder, const Gltf& gltf) {
     if (gltf.uri) folder.file("corners of.bin", gltf.buffer);
 }

@@ -1,5 +1,5 @@
-/// Files that were made to hurt, read by the tool under limits of time and memory: each is refused with exit
-/// code 3 and a sentence that names the file, and none ends the tool by a signal.
+/// Files made to do harm, which the tool reads under limits of time and memory. It refuses each with exit
+/// code 3 and a sentence that names the file, and none ends it by a signal.
 #include <cstdint>
 
 #include <zlib.h>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace hedgerow;
 
-/// Address space of a run, in KiB. Sanitizers map terabytes, so they go without.
+/// Limits the address space of a run, in KiB. Sanitizers map terabytes, so they run without a limit.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr const char* limits = "";
 #else
@@ -35,7 +35,7 @@ protected:
         write(name, bytes);
         expect_refused(name, said);
     }
-    /// `start`, then `part` so many times, compressed.
+    /// Writes a compressed file of `start` and then `part`, `times` times.
     void gzip(const std::string& name, const std::string& start, const std::string& part, int times) const {
         gzFile out = gzopen(file(name).c_str(), "wb6");
         gzwrite(out, start.data(), static_cast<unsigned>(start.size()));
@@ -54,14 +54,14 @@ std::string little(std::uint32_t value) {
     return testing_gltf::packed<std::uint32_t>({value});
 }
 
-/// A triangle on `nodes`, with `more` behind the other members of the root.
+/// A triangle on `nodes`, with further members `more` of the root, and `count` corners in its accessor.
 testing_gltf::Gltf gltf(const std::string& nodes = R"({"mesh":0})", const std::string& more = "",
                         const std::string& count = "3") {
     auto file = testing_gltf::triangle(count);
     file.nodes = nodes, file.more = more;
     return file;
 }
-/// A triangle with a buffer elsewhere.
+/// A triangle whose buffer is at a URI.
 std::string gltf_at(const std::string& uri) {
     auto file = gltf();
     file.uri = uri;
@@ -107,7 +107,7 @@ TEST_F(HostileFiles, NestedDeeply) {
     refuse("arrays.gltf", repeated("[", 1000000), "nested more than 64 deep");
     refuse("objects.gltf", repeated("{\"a\":", 200000), "nested more than 64 deep");
     refuse("closed.gltf", repeated("[", 500000) + repeated("]", 500000), "nested more than 64 deep");
-    std::string chain;  // of nodes, each in the one before
+    std::string chain;  // each node is a child of the one before
     for (int i = 1; i < 100000; ++i) chain += "{\"children\":[" + std::to_string(i) + "]},";
     refuse("chain.gltf", gltf(chain + R"({"children":[0],"mesh":0})").text(), "reached twice");
     write("long.gltf", gltf(chain + R"({"mesh":0})").text());
@@ -115,6 +115,7 @@ TEST_F(HostileFiles, NestedDeeply) {
 }
 
 TEST_F(HostileFiles, PathsThatLeaveTheFolder) {
+    // Refuse URIs that leave the folder, also by a symbolic link.
     write("secret.bin", std::string(36, '\1'));
     std::filesystem::create_directory(folder / "scene");
     for (const std::string uri :
@@ -129,6 +130,7 @@ TEST_F(HostileFiles, PathsThatLeaveTheFolder) {
     const auto here = run_shell("cd '" + file("scene") + "' && " HEDGEROW_TOOL_PATH " info a.gltf 2>&1");
     EXPECT_EQ(here.code, 3) << here.output;
     EXPECT_NE(here.output.find("leaves the folder"), std::string::npos) << here.output;
+    // Read URIs inside the folder.
     write("scene/here it is.bin", std::string(36, '\1'));
     write("scene/a.gltf", gltf_at("./here%20it%20is.bin"));
     EXPECT_EQ(run("info " + file("scene/a.gltf")).code, 0);
@@ -151,7 +153,7 @@ TEST_F(HostileFiles, GltfThatLies) {
     refuse("nan.gltf", gltf(R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1e999,0,0,0,0,1]})").text(), "JSON");
 }
 
-/// As many nodes with the same mesh.
+/// The file with `count` copies of its node, which all have the same mesh.
 testing_gltf::Gltf with_instances(testing_gltf::Gltf file, int count) {
     file.nodes += repeated("," + file.nodes, count - 1);
     for (int i = 1; i < count; ++i) file.roots += "," + std::to_string(i);
@@ -160,7 +162,7 @@ testing_gltf::Gltf with_instances(testing_gltf::Gltf file, int count) {
 
 TEST_F(HostileFiles, BombsOfInstances) {
     if (*limits == '\0') GTEST_SKIP() << "without a limit of memory the triangles may fit";
-    // 100 KB name a mesh of 10^6 triangles three thousand times.
+    // Some 50 KB of JSON use a mesh of 10^6 triangles three thousand times.
     auto mesh = testing_gltf::Gltf().array(std::string(12000000, '\0'), "VEC3", testing_gltf::f4, 1000000);
     mesh.primitive += R"(,"mode":5)";
     mesh.uri = "zeros.bin";
@@ -168,7 +170,7 @@ TEST_F(HostileFiles, BombsOfInstances) {
     refuse("bomb.gltf", with_instances(mesh, 3000).text(), "triangles, all instances written out");
 }
 
-/// Nodes and primitives that make no triangle, but 9 · 10^8 pairs.
+/// 30,000 nodes of 30,000 empty primitives: 9 · 10^8 pairs, but no triangle.
 TEST_F(HostileFiles, BombsOfPrimitives) {
     auto empty = testing_gltf::triangle("0");
     empty.primitive += repeated("},{" + empty.primitive, 29999);

@@ -1,5 +1,5 @@
 /// Rays made of NaN, infinities, zeros and numbers at the ends of the range: every kernel, structure and
-/// level answers as brute force does. What is read out of bounds on the way is for the sanitizers to find.
+/// level answers like brute force. Reads out of bounds are for sanitizers to find.
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
@@ -15,7 +15,7 @@ namespace {
 template <class T>
 constexpr T nan_of = std::numeric_limits<T>::quiet_NaN();
 
-/// A number that few rays are made of.
+/// A random choice of numbers that few rays have.
 template <class T>
 T nasty(Random& random) {
     using limits = std::numeric_limits<T>;
@@ -36,7 +36,7 @@ T nasty(Random& random) {
     return all[random.bits() % std::size(all)];
 }
 
-/// Rays of every kind with some of their numbers exchanged for nasty ones: mostly of the direction.
+/// Rays of every kind in which some numbers, mostly of the direction, are replaced by nasty ones.
 template <class T, int D>
 std::vector<Ray<T, D>> hostile_rays(const Box<T, D>& box, const Points<T, D>& targets, std::size_t count) {
     std::vector<Ray<T, D>> rays;
@@ -55,7 +55,7 @@ std::vector<Ray<T, D>> hostile_rays(const Box<T, D>& box, const Points<T, D>& ta
     return rays;
 }
 
-/// Coherent rays, so that packets are made, and among every `apart` of them one that is hostile.
+/// Replaces one ray in every `apart` by a hostile one. The other rays are coherent, so that packets are made.
 std::vector<Ray3f> with_hostile_among(std::vector<Ray3f> rays, std::span<const Ray3f> hostile,
                                       std::size_t apart) {
     for (std::size_t i = 0; i < rays.size(); i += apart) rays[i] = hostile[i % hostile.size()];
@@ -123,7 +123,7 @@ TEST(HostileRays, ByEveryStructure) {
     expect_equal_of_every_structure(segments2d<float>(200));
 }
 
-/// Copies of one set, placed in every way, in an index of a kind.
+/// An index over one set, and an instance of it for each transform.
 template <template <class, int> class Inner, class P>
 struct Placements {
     decltype(build<Inner>(std::declval<const P&>())) index;
@@ -156,7 +156,7 @@ void expect_hits_of(const char* name, const std::vector<H>& want, const Index& i
     }
 }
 
-/// Two levels of many kinds against brute force over brute force.
+/// Compares two-level indexes of many kinds with brute force over brute force.
 template <template <class, int> class Inner, class P, class Rays>
 void expect_equal_of_instances(const P& set, const std::vector<Transform<P::dimension>>& transforms,
                                const Rays& rays) {
@@ -202,7 +202,7 @@ TEST(HostileRays, AgainstInstances) {
     expect_hostile_rays_against_instances<Grid>(segments2d<double>(60));
 }
 
-/// Directions ever shorter, down to where no number is left. All levels agree on where a hit ends to be one.
+/// Short directions, down to those that round to zero. All levels agree on where hits end.
 template <template <class, int> class Inner, class P>
 void expect_short_directions_against_instances(const P& set) {
     using T = typename P::Scalar;
@@ -212,11 +212,13 @@ void expect_short_directions_against_instances(const P& set) {
     std::vector<Ray<T, P::dimension>> rays;
     for (std::size_t i = 0; i < in_long_runs(30000, 3000); ++i) {
         Random random(32, i);
+        // Aim at a point of the scene or the middle of a primitive.
         const auto target = i % 2 == 0 ? point_in(box, 0.0, random) : middles[random.bits() % middles.size()];
-        // Far off t would be beyond what T holds.
+        // Half of the origins are near the target, because t of a far target may be larger than any T.
         Ray<T, P::dimension> ray{target, {}};
         if (i % 4 < 2) ray.origin += Vec<T, P::dimension>(random.template in_cube<P::dimension>());
         if (i % 4 >= 2) ray.origin = point_in(box, 1.0, random);
+        // Give the direction a length near the smallest that T has.
         const auto way = normalized(Vec<double, P::dimension>(target - ray.origin));
         const int shorter = static_cast<int>(random.bits() % (i % 3 == 0 ? 80 : 20)) - 8;
         const double unit = std::ldexp(1.0, std::numeric_limits<T>::min_exponent + shorter);

@@ -1,4 +1,4 @@
-/// Saved indexes: what is loaded answers with the bits of what was saved.
+/// Saved indexes: a loaded index answers with the same bits as the index that was saved.
 #include <hedgerow/io/scene_file.h>
 
 #include "index_files.h"
@@ -33,7 +33,7 @@ void expect_same_facts(const MeshIndex<T>& want, const MeshIndex<T>& got) {
     EXPECT_EQ(a.options().reinsertion, b.options().reinsertion);
 }
 
-/// Every query, by kernels and by the walk.
+/// Compares the answers of two indexes to every query, by kernels and by the plain walk.
 template <class T>
 void expect_same_answers(const TriangleMesh<T>& mesh, MeshIndex<T> want, MeshIndex<T> got) {
     const auto targets = matrix::targets_of(mesh);
@@ -131,7 +131,7 @@ TYPED_TEST(IndexFile, OfEveryBuilderKeepsItsOptions) {
     }
 }
 
-/// What the caller's arrays have between their elements is not saved.
+/// Bytes between the elements of the caller's arrays are not saved.
 TYPED_TEST(IndexFile, OfStridedArraysIsAsOfPlainOnes) {
     using T = TypeParam;
     const auto mesh = with_faces(soup<T>(200));
@@ -144,6 +144,7 @@ TYPED_TEST(IndexFile, OfStridedArraysIsAsOfPlainOnes) {
         TriangleIndices corners;
         std::uint32_t face, material;
     };
+    // Put other data beside each vertex and each triangle.
     std::vector<Vertex> vertices;
     for (const auto& v : mesh.vertices) vertices.push_back({1, v, 'x'});
     std::vector<Corners> triangles;
@@ -168,6 +169,7 @@ TYPED_TEST(IndexFile, IsNotChangedByARefit) {
         const std::string before = contents(path);
         auto loaded = load_index<T>(path, way);
         const auto copy = loaded;
+        // A refit changes the loaded index, but neither the file nor a copy of the index.
         EXPECT_EQ(index.refit(after.view()), loaded.refit(after.view()));
         expect_same_facts(index, loaded);
         expect_same_answers(after, index, loaded);
@@ -175,7 +177,7 @@ TYPED_TEST(IndexFile, IsNotChangedByARefit) {
         expect_same_answers(mesh, built(mesh), copy);
         expect_same_answers(mesh, built(mesh), load_index<T>(path, way));
 
-        save_index(path, loaded);  // the file that its nodes are in part still mapped from
+        save_index(path, loaded);  // replaces the file that some of the nodes are still mapped from
         auto saved_later = load_index<T>(path, way);
         expect_same_facts(index, saved_later);
         expect_same_answers(after, index, loaded);

@@ -1,4 +1,4 @@
-/// What tests of saved indexes share.
+/// Helpers for tests of saved indexes.
 #pragma once
 
 #include <hedgerow/io/index_file.h>
@@ -36,7 +36,7 @@ TriangleMesh<T> one_triangle() {
     return {{{0, 0, 0.25f}, {1, 0, 0.5f}, {0, 1, 0.75f}}, {{0, 1, 2}}, {}};
 }
 
-/// Of a small index of triangles with face ids.
+/// The bytes of a saved index of 30 triangles with face ids.
 inline std::string small_file(const TempFolder& folder) {
     save_index(folder / "small.hedgerow", built(with_faces(soup<float>(30)), 4));
     return contents(folder / "small.hedgerow");

@@ -11,7 +11,7 @@ using namespace hedgerow;
 
 namespace {
 
-/// What an index of instances answers.
+/// The answers of an index of instances.
 template <class T, int D>
 struct Answers {
     std::vector<std::optional<Hit<T>>> closest;
@@ -70,7 +70,7 @@ void expect_same(const Answers<T, D>& want, const Answers<T, D>& got) {
     }
 }
 
-/// A scene: some indexes of one kind, placed again and again.
+/// A scene: some indexes of one structure, and the instances that place them again and again.
 template <template <class, int> class Inner, class P>
 struct Scene {
     using I = decltype(build<Inner>(std::declval<const P&>()));
@@ -128,7 +128,8 @@ struct Case {
         else
             expect<KdTree, Bvh>("bvh in kdtree");
     }
-    /// Many structures outside and inside, in float, which spares the compiler some minutes.
+    /// In float, many pairs of an outer and an inner structure. In double only one pair, which spares the
+    /// compiler some minutes.
     void expect_all() const {
         expect_some();
         if constexpr (std::is_same_v<T, float>) {
@@ -164,7 +165,7 @@ TYPED_TEST(Instances, FarAndFlat) {
     auto far = teapot<T>(100);
     for (auto& v : far.vertices) v = v + Vec<T, 3>(T(3e4), T(-1e5), T(2e4));
     auto all = transforms<3>(20, Scales::any, 20);
-    for (std::size_t i = 1; i < all.size(); i += 2)  // brought back from where it lies
+    for (std::size_t i = 1; i < all.size(); i += 2)  // moves the far mesh back to the origin
         all[i] = all[i] * Transform<3>::translation({-3e4, 1e5, -2e4});
     all.push_back({});
     Case<TriangleMesh<T>>({floor, far}, all, true, 400).expect_all();
@@ -192,7 +193,7 @@ TYPED_TEST(Instances, OfOtherPrimitives) {
     Case<SegmentSet<T>>({segments2d<T>(60)}, transforms<2>(20, Scales::any, 4), true, 500).expect_some();
 }
 
-/// A mesh that is moved by whole numbers is met as if it stood there.
+/// A mesh that is translated by whole numbers is hit exactly as if its vertices were there.
 TYPED_TEST(Instances, SayWhatIsHit) {
     using T = TypeParam;
     const auto mesh = cube<T>(12);
@@ -206,11 +207,12 @@ TYPED_TEST(Instances, SayWhatIsHit) {
     EXPECT_EQ(hit->instance, 1u);
     const auto alone = closest_hit(grid, Ray<T, 3>{{T(0.25), T(0.5), T(8)}, {T(0), T(0), T(-2)}});
     EXPECT_EQ(hit->element, alone->element);
-    // Two in one place: the first counts, and both are hit.
+    // Of two instances in one place the first is the closest hit. Both are counted.
     const Ray<T, 3> left{{T(0.25), T(0.5), T(8)}, {T(0), T(0), T(-1)}};
     EXPECT_EQ(closest_hit(index, left)->instance, 0u);
     EXPECT_EQ(hit_count(index, left), 4u);
     EXPECT_EQ(closest_hit(index, left, Except{closest_hit(index, left)->element})->instance, 2u);
+    // Closest points and overlaps name the instance too.
     const auto near = closest_point(index, Vec<T, 3>(T(4), T(0), T(3)));
     EXPECT_EQ(near->instance, 1u);
     EXPECT_EQ(near->distance2, T(4));
@@ -227,14 +229,14 @@ TEST(Transforms, GoThereAndBack) {
         const Vec3d p = random.in_cube<3>() * 10.0, q = t.back().point(t.there().point(p));
         EXPECT_LT(length(p - q), 1e-10);
         EXPECT_LT(t.residual(), 1e-12);
-        // A box's box holds the points of what it holds, to the bit.
+        // The transformed box contains the transformed points of the box, with no tolerance.
         Box3d box;
         for (int c = 0; c < 2; ++c) box.expand(random.in_cube<3>() * 10.0);
         const auto world = t.there().box(box);
         for (int k = 0; k < 8; ++k)
             EXPECT_TRUE(world.contains(t.there().point(matrix::point_in(box, 0.0, random))));
         EXPECT_TRUE(world.contains(t.there().point(box.low)) && world.contains(t.there().point(box.high)));
-        // Nothing is stretched more than the greatest stretch, or less than the least.
+        // No vector is stretched by more than the greatest stretch or by less than the least.
         const Vec3d s = t.there().stretches(), v = random.direction<3>();
         const double by = length(t.there().vector(v));
         EXPECT_LE(by, max_component(s) * (1 + 1e-12));

@@ -1,5 +1,5 @@
-/// Work that is asked to stop: builds, generators and writers. The token is raised at chosen moments, and how
-/// often it is looked at is counted.
+/// Cancellation of builds, generators and writers. The tests raise the token at chosen moments, and count how
+/// often it is checked.
 #include <hedgerow/any_index.h>
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/io/point_file.h>
@@ -60,7 +60,8 @@ const char* const structures[] = {"bvh",
                                   "bsp",
                                   "grid",
                                   "two-level-grid"};
-constexpr std::size_t count = 12'000, written = 20'000;  // primitives that are built over, and others
+// Primitives of the indexes that are built, and of the scenes and files that are written.
+constexpr std::size_t count = 12'000, written = 20'000;
 
 const TriangleMesh<float>& mesh() {
     static const auto made = soup<float>(count);
@@ -104,10 +105,12 @@ TEST(Interruption, ATokenRaisedAtAnySplitEndsTheBuild) {
     for (Executor* const threads : {static_cast<Executor*>(&serial_executor()), &default_executor()})
         for (const char* const structure : structures) {
             std::atomic<bool> token{false};
+            // Count the splits of a whole build.
             RaisingExecutor never(*threads, 0, token);
             WatchedExecutor whole(never, {{}, &token});
             const std::uint64_t nodes = build_any(structure, mesh(), whole)->node_count();
             const std::uint64_t splits = never.splits();
+            // Raise the token at some of the splits, ever farther apart.
             const std::uint64_t growth = threads == &serial_executor() ? 3 : 30;
             for (std::uint64_t k = 1; k <= splits; k += 1 + growth * k) {
                 token = false;
@@ -117,6 +120,7 @@ TEST(Interruption, ATokenRaisedAtAnySplitEndsTheBuild) {
                     << structure << ", split " << k << " of " << splits;
                 EXPECT_LE(raising.splits(), splits);
             }
+            // A build after the cancelled ones is whole again.
             token = false;
             EXPECT_EQ(build_any(structure, mesh(), whole)->node_count(), nodes) << structure;
         }

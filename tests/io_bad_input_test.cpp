@@ -1,4 +1,4 @@
-/// Bad mesh files: each is an InputError that names the file, the place and what to do.
+/// Bad mesh files: each throws an InputError that names the file, the place and the remedy.
 #include <hedgerow/io/validate.h>
 
 #include "io_support.h"

@@ -11,7 +11,8 @@ namespace {
 
 using namespace testing_io;
 
-/// One to four flipped bits, replaced bytes, cuts, insertions, repetitions or swapped digits.
+/// A file with one to four damages: a flipped bit, a replaced byte, a cut, a removed piece, an inserted
+/// extreme, a repeated piece, or a byte replaced by a digit.
 std::string damaged(std::string bytes, std::mt19937_64& random) {
     for (std::uint64_t n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) {
         const std::size_t at = random() % bytes.size(), length = 1 + random() % 16;
@@ -54,7 +55,8 @@ std::string damaged(std::string bytes, std::mt19937_64& random) {
     return bytes;
 }
 
-/// How many of the damaged files could still be read.
+/// Reads `rounds` damaged versions of a file. Returns how many could still be read; the others must throw an
+/// InputError that names the file.
 template <class F>
 int survivors(const TempFolder& folder, const std::string& name, const std::string& whole, int rounds,
               F read) {

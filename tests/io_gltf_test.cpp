@@ -1,4 +1,4 @@
-/// glTF: every way to say where triangles are, and what is refused.
+/// glTF: every way to describe where triangles are, and the files that are refused.
 #include "gltf_text.h"
 
 namespace hedgerow {

@@ -1,4 +1,4 @@
-/// Images: round trips of PNG, bad input, and writers that are stopped.
+/// Images: round trips of PNG, bad input, and cancelled writers.
 #include <atomic>
 
 #include <hedgerow/io/exr.h>
@@ -67,7 +67,7 @@ TEST(Png, BadInput) {
     expect_input_error([&] { load_png(folder.file("a.png", "GIF89a")); }, {"not a sound PNG"});
     save_png(folder / "b.png", Image(50, 50, {1, 2, 3}));
     const std::string whole = contents(folder / "b.png");
-    const std::size_t data_end = whole.size() - 16;  // of the image: its checksum and IEND follow
+    const std::size_t data_end = whole.size() - 16;  // its checksum (4 bytes) and IEND (12) follow
     for (std::size_t n = 1; n < data_end; ++n)
         expect_input_error([&] { load_png(folder.file("a.png", whole.substr(0, n))); }, {"a.png"});
 }

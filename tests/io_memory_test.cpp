@@ -1,4 +1,4 @@
-/// What control groups leave, from files as the system has them.
+/// The memory that control groups leave to a process, read from files like those of the system.
 #include "../src/io/memory.h"
 #include "io_support.h"
 
@@ -8,7 +8,7 @@ namespace {
 using testing_io::TempFolder;
 constexpr std::uint64_t unlimited = ~std::uint64_t(0);
 
-/// A folder in the place of /sys/fs/cgroup, and a list of groups beside it.
+/// A folder in place of /sys/fs/cgroup, and beside it a file in place of /proc/self/cgroup.
 class Groups {
 public:
     void set(const std::string& group, const std::string& file, const std::string& text) const {

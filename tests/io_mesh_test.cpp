@@ -1,4 +1,4 @@
-/// Mesh files: what is written is read back, and every variant of a format means the same.
+/// Mesh files: saved meshes are read back, and every variant of a format gives the same mesh.
 #include <atomic>
 #include <charconv>
 #include <cmath>
@@ -23,9 +23,10 @@ protected:
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(MeshFile, Scalars);
 
-/// The mesh as PLY, with more properties and elements than anyone asks for, in an order that nobody uses.
+/// The mesh as PLY, with properties and elements that no reader needs, in an unusual order.
 template <class T>
 std::string odd_ply(const TriangleMesh<T>& mesh, const std::string& format) {
+    // Write the header. The element `nothing` has 10^18 entries, but no properties and so no bytes.
     const std::string type = sizeof(T) == 4 ? "float32" : "double";
     std::string s = "ply\r\nformat " + format + " 1.0\ncomment x y z\nobj_info none\n";
     s += "element face " + std::to_string(mesh.size()) + "\nproperty short flags\n";
@@ -41,6 +42,7 @@ std::string odd_ply(const TriangleMesh<T>& mesh, const std::string& format) {
         char digits[64];
         s.append(digits, std::to_chars(digits, digits + 64, value).ptr) += ' ';
     };
+    // Write the values: faces, materials, vertices.
     for (const auto& t : mesh.triangles) {
         put(std::int16_t(-5)), put(std::uint16_t(3));
         for (const auto v : t) put(v);
@@ -167,6 +169,7 @@ TEST(Obj, AgreesWithTinyobjloader) {
     TempFolder folder;
     std::mt19937_64 random(3);
     for (int round = 0; round < 200; ++round) {
+        // Write a random file: vertices, and faces with absolute and relative indices in every form.
         std::string text = "# random\nmtllib none.mtl\no thing\n";
         int vertices = 0;
         for (int i = 0; i < 30; ++i) {
@@ -187,6 +190,8 @@ TEST(Obj, AgreesWithTinyobjloader) {
             text += random() % 2 == 0 ? "\n" : "\r\n";
         }
         text += "f 1 2 3\n";
+        // Read it with tinyobjloader. List the corners and the number of the face of each triangle of its
+        // fan.
         tinyobj::attrib_t attributes;
         std::vector<tinyobj::shape_t> shapes;
         std::vector<tinyobj::material_t> materials;
@@ -194,7 +199,7 @@ TEST(Obj, AgreesWithTinyobjloader) {
         std::istringstream in(text);
         ASSERT_TRUE(
             tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in, nullptr, false));
-        std::vector<std::vector<std::uint32_t>> expected;  // the face of each triangle
+        std::vector<std::vector<std::uint32_t>> expected;
         std::vector<std::uint32_t> ids;
         std::uint32_t face = 0;
         for (const auto& shape : shapes) {
@@ -209,6 +214,7 @@ TEST(Obj, AgreesWithTinyobjloader) {
                 at += n, ++face;
             }
         }
+        // Compare: triangles in their face, vertices and face ids.
         const auto mesh = load_mesh<double>(folder.file("a.obj", text));
         ASSERT_EQ(mesh.size(), expected.size());
         for (std::size_t i = 0; i < mesh.size(); ++i) {

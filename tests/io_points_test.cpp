@@ -81,6 +81,7 @@ TEST(PointFile, BadInput) {
               (std::vector<Vec3f>{{1, 2, 3}}));
     expect_input_error([&] { load_points(folder.file("a.csv", "1,nan,2\n"), {.drop_bad = true}); },
                        {"none is left"});
+    // PLY files with integer coordinates, read into the plane: z must be absent or 0.
     const std::string flat = "ply\nformat ascii 1.0\nelement vertex 2\nproperty int x\nproperty int y\n";
     EXPECT_EQ((load_points<float, 2>(folder.file("a.ply", flat + "end_header\n1 2\n3 4\n")).size()), 2u);
     expect_input_error(
@@ -88,6 +89,7 @@ TEST(PointFile, BadInput) {
             load_points<float, 2>(folder.file("a.ply", flat + "property int z\nend_header\n1 2 0\n3 4 1\n"));
         },
         {"line 9", "z is not 0", "3D"});
+    // The shape of an array must fit the dimension.
     save_npy<double>(folder / "a.npy", std::vector<double>(8), {4, 2});
     expect_input_error([&] { load_points<float, 3>(folder / "a.npy"); }, {"shape (4, 2)", "(N, 3)"});
     EXPECT_EQ((load_points<float, 2>(folder / "a.npy").size()), 4u);

@@ -1,4 +1,4 @@
-/// What the tests of files share: folders that vanish, files from text, and how errors are expected.
+/// Helpers for tests of files: temporary folders, files from text, and expected errors.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/mesh_file.h>
 
 namespace hedgerow::testing_io {
 
-/// A folder of its own, removed with all that is in it.
+/// A new temporary folder. The destructor removes it and all that is in it.
 class TempFolder {
 public:
     TempFolder() {
@@ -39,8 +39,8 @@ public:
 
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     std::filesystem::path file(const std::string& name, const std::string& bytes) const {
-        std::filesystem::remove(path_ /
-                                name);  // some file systems flush a file that is truncated and written
+        // Remove the file first: some file systems flush a file that is truncated and written.
+        std::filesystem::remove(path_ / name);
         std::ofstream(path_ / name, std::ios::binary) << bytes;
         return path_ / name;
     }
@@ -72,7 +72,7 @@ void append(std::string& bytes, U value, std::endian order = std::endian::little
     bytes.append(raw, sizeof(U));
 }
 
-/// f throws an E with all these parts in its message.
+/// Expects that f throws an E whose message contains all the parts.
 template <class E, class F>
 void expect_error(F f, const std::vector<std::string>& parts) {
     try {
@@ -94,7 +94,7 @@ void expect_output_error(F f, const std::vector<std::string>& parts) {
     expect_error<OutputError>(f, parts);
 }
 
-/// Coordinates of every magnitude that is allowed, −0 and subnormals among them.
+/// A random coordinate of any magnitude that is allowed, at times 0, −0 or subnormal.
 template <class T>
 T random_coordinate(std::mt19937_64& random) {
     if (random() % 16 == 0) return random() % 2 == 0 ? T(0) : -T(0);
@@ -117,7 +117,7 @@ TriangleMesh<T> random_mesh(std::mt19937_64& random) {
     return mesh;
 }
 
-/// Equal bits: −0 differs from 0.
+/// Whether two arrays have equal bits. −0 differs from 0.
 template <class V>
 bool same_bits(const V& a, const V& b) {
     return a.size() == b.size() &&

@@ -1,4 +1,4 @@
-/// What the matrix of tests is made of: structures, rays of every kind, and the comparison with brute force.
+/// The parts of the test matrix: structures, rays of every kind, and the comparison with brute force.
 #pragma once
 
 #include <cstdlib>
@@ -11,8 +11,8 @@
 
 namespace hedgerow::matrix {
 
-/// Every structure and builder, by the names that they have in space; the last ones show or stress something
-/// and are slow on large scenes.
+/// Structures with their builders and options, by their names in space. Those after the first
+/// `fast_structures` show or stress something and are slow on large scenes.
 inline constexpr const char* structures[] = {
     "wide",
     "wide:width=4",
@@ -56,7 +56,7 @@ inline constexpr const char* structures[] = {
     "bvh:volume=hull,builder=agglomerative"};
 inline constexpr std::size_t fast_structures = 18;
 
-/// What is called that in space, or stands for it in the plane, among sets of P.
+/// The spec for sets of P: `spec` itself in space, the corresponding structure or volume in the plane.
 template <class P>
 std::string named_for(std::string spec) {
     if (P::dimension == 3) return spec;
@@ -71,16 +71,16 @@ std::string named_for(std::string spec) {
     return spec;
 }
 
-/// Every structure that holds sets of P, as it is when nothing more is said.
+/// The names of all structures that answer rays over sets of P. Their options are the defaults.
 template <class P>
 std::vector<std::string> structures_for() {
     std::vector<std::string> names;
     for (const auto& s : structure_list())
-        if (s.holds(P::dimension, PointSet<ViewOf<P>>)) names.emplace_back(s.name);
+        if (s.rays && s.holds(P::dimension, PointSet<ViewOf<P>>)) names.emplace_back(s.name);
     return names;
 }
 
-/// HEDGEROW_LONG=1 in the environment asks for the long suites.
+/// `many` if HEDGEROW_LONG is set in the environment, which chooses the long suites; else `few`.
 inline std::size_t in_long_runs(std::size_t many, std::size_t few) {
     return std::getenv("HEDGEROW_LONG") != nullptr ? many : few;
 }
@@ -98,19 +98,21 @@ Vec<T, D> point_in(const Box<T, D>& box, double beyond, Random& random) {
     return p;
 }
 
-/// Ray i of a scene. From near and far; aimed exactly at targets (vertices, middles of edges) and starting on
-/// them; parallel to axes with 0, −0 and subnormal components; very short and very long directions; intervals
-/// that begin or end on the way.
+/// Ray i of a scene. Origins are near, far or on a target (a vertex, the middle of an edge). Some rays aim
+/// exactly at a target. Others are parallel to an axis, with components of 0, −0 or a subnormal, or have a
+/// very short or very long direction, or an interval that begins or ends on the way.
 template <class T, int D>
 Ray<T, D> ray_of(const Box<T, D>& box, const Points<T, D>& targets, std::uint64_t i) {
     Random random(3, i);
     const auto any_target = [&] { return targets[random.bits() % targets.size()]; };
     Ray<T, D> ray;
+    // Choose the origin and the point to aim at.
     ray.origin = point_in(box, i % 3 == 0 ? 2.0 : 0.1, random);
     const Vec<T, D> target = i % 4 == 1 ? any_target() : point_in(box, 0.0, random);
     if (i % 16 == 5) ray.origin = any_target();
     if (i % 64 == 7) ray.origin = ray.origin + Vec<T, D>::all(T(1000) * length(box.extent()));
     ray.direction = target - ray.origin;
+    // Make the ray parallel to an axis, half of these rays through a target.
     if (i % 8 == 2) {
         constexpr T small[] = {T(0), T(-0.0), std::numeric_limits<T>::denorm_min()};
         const int axis = static_cast<int>(random.bits() % D);
@@ -121,6 +123,7 @@ Ray<T, D> ray_of(const Box<T, D>& box, const Points<T, D>& targets, std::uint64_
             ray.origin[axis] -= ray.direction[axis];
         }
     }
+    // Change the length of the direction, or the interval.
     if (i % 32 == 9) ray.direction = ray.direction * T(1e-20);
     if (i % 32 == 11) ray.direction = ray.direction * T(1e15);
     if (i % 32 == 13) ray.t_min = T(0.5);
@@ -128,7 +131,7 @@ Ray<T, D> ray_of(const Box<T, D>& box, const Points<T, D>& targets, std::uint64_
     return ray;
 }
 
-/// What an index answers to some rays: closest hit and any hit of each, all hits of every eighth.
+/// The answers of an index to some rays: closest hit and any hit of each ray, all hits of every eighth.
 template <class T, int D>
 struct RayAnswers {
     std::vector<Hit<T>> closest;
@@ -161,17 +164,18 @@ void expect_same(const RayAnswers<T, D>& want, const RayAnswers<T, D>& got, std:
 template <class T, int D>
 using Indexes = std::vector<std::unique_ptr<AnyIndex<T, D>>>;
 
-/// Rays `begin` to `end` of the scene: the answers of the first index against those of all others.
+/// Compares all other indexes with the first, on rays `begin` to `end` of the scene.
 template <class T, int D>
 void expect_equal_rays(const Indexes<T, D>& indexes, const Points<T, D>& targets, std::size_t begin,
                        std::size_t end) {
-    constexpr std::size_t at_once = 1 << 16;  // whole eighths
+    constexpr std::size_t at_once = 1 << 16;  // a multiple of 8, for RayAnswers
     for (; begin < end; begin += at_once) {
         std::vector<Ray<T, D>> rays(std::min(at_once, end - begin));
         for (std::size_t i = 0; i < rays.size(); ++i)
             rays[i] = ray_of(indexes[0]->bounds(), targets, begin + i);
         const RayAnswers<T, D> want(*indexes[0], rays);
         for (std::size_t s = 1; s < indexes.size(); ++s) {
+            if (!indexes[s]->answers_rays()) continue;
             SCOPED_TRACE(indexes[s]->structure());
             expect_same(want, RayAnswers<T, D>(*indexes[s], rays), begin);
             if (testing::Test::HasFatalFailure()) return;
@@ -179,21 +183,27 @@ void expect_equal_rays(const Indexes<T, D>& indexes, const Points<T, D>& targets
     }
 }
 
-/// What an index answers to some points and boxes in and around its scene.
+/// The answers of an index to `count` points and boxes in and around its scene.
 template <class T, int D>
 struct RegionAnswers {
     std::vector<Near<T, D>> closest;
-    std::vector<std::vector<Near<T, D>>> nearest;
+    std::vector<std::vector<Near<T, D>>> nearest, within;
     std::vector<std::vector<PrimitiveId>> overlapping;
 
     RegionAnswers(const AnyIndex<T, D>& index, std::size_t count)
-        : closest(count), nearest(count), overlapping(count) {
+        : closest(count), nearest(count), within(count), overlapping(count) {
         default_executor().for_each_piece(count, 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 Random random(9, i);
                 const auto p = point_in(index.bounds(), i % 2 == 0 ? 0.0 : 3.0, random);
                 index.closest_points({&p, 1}, {&closest[i], 1});
                 index.nearest(p, i % 20, nearest[i]);
+                // Six radii from twice the scene's diagonal down, each by a factor of 2^1.5 smaller. Then
+                // exactly the distance of the closest point.
+                const T extent = length(index.bounds().extent());
+                const T radius2 =
+                    i % 7 == 6 ? closest[i].distance2 : extent * extent * std::ldexp(T(4), -3 * int(i % 7));
+                hedgerow::within(index, p, radius2, within[i]);
                 Box<T, D> box;
                 for (int corner = 0; corner < 2; ++corner) box.expand(point_in(index.bounds(), 0.2, random));
                 index.overlapping(box, overlapping[i]);
@@ -207,11 +217,12 @@ void expect_same(const RegionAnswers<T, D>& want, const RegionAnswers<T, D>& got
     for (std::size_t i = 0; i < want.closest.size(); ++i) {
         ASSERT_EQ(want.closest[i], got.closest[i]) << "closest point of " << i;
         ASSERT_EQ(want.nearest[i], got.nearest[i]) << "nearest of " << i;
+        ASSERT_EQ(want.within[i], got.within[i]) << "within a distance of " << i;
         ASSERT_EQ(want.overlapping[i], got.overlapping[i]) << "overlap of " << i;
     }
 }
 
-/// The answers of the first index against those of all others.
+/// Compares all other indexes with the first, on `count` points and boxes.
 template <class T, int D>
 void expect_equal_regions(const Indexes<T, D>& indexes, std::size_t count) {
     const RegionAnswers<T, D> want(*indexes[0], count);
@@ -222,7 +233,7 @@ void expect_equal_regions(const Indexes<T, D>& indexes, std::size_t count) {
     }
 }
 
-/// Every structure's answers over a set, to every query, against those of brute force.
+/// Compares every structure over a set with brute force, on every query.
 template <class P>
 void expect_equal(const char* name, const P& set, const Points<typename P::Scalar, P::dimension>& targets) {
     SCOPED_TRACE(name);
@@ -232,19 +243,23 @@ void expect_equal(const char* name, const P& set, const Points<typename P::Scala
         indexes.push_back(build_any(named_for<P>(spec), set));
         EXPECT_EQ(indexes.back()->validate(), "") << spec;
     }
-    if constexpr (PointSet<ViewOf<P>>) {
-        indexes.push_back(build_any("point-kdtree", set));
-        EXPECT_EQ(indexes.back()->validate(), "");
-    }
+    // Add the structures that hold only points.
+    if constexpr (PointSet<ViewOf<P>>)
+        for (const char* spec : {"point-kdtree", "hash-grid", "hash-grid:cell=0.01", "hash-grid:cell=1e-9",
+                                 "hash-grid:cell=7"}) {
+            indexes.push_back(build_any(spec, set));
+            EXPECT_EQ(indexes.back()->validate(), "") << spec;
+        }
     if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));
     if (targets.empty()) return;
+    // Compare all structures on some rays, and in long runs the fast ones on many more.
     const std::size_t for_all = in_long_runs(100000, 1500);
     expect_equal_rays(indexes, targets, 0, for_all);
     indexes.resize(1 + fast_structures);
     expect_equal_rays(indexes, targets, for_all, in_long_runs(1000000, for_all));
 }
 
-/// The vertices, and a middle of each triangle's first edge.
+/// The vertices, and the middle of each triangle's first edge.
 template <class T>
 Points<T, 3> targets_of(const TriangleMesh<T>& mesh) {
     auto targets = mesh.vertices;

@@ -1,9 +1,9 @@
-/// Indexes that were moved: what is left is empty and may be asked anything, changed, saved or assigned to.
+/// Indexes that were moved from are empty. They can be queried, changed, saved and assigned to.
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
-#include <hedgerow/structures/fold.h>
 #include <hedgerow/trace.h>
+#include <hedgerow/walks/fold.h>
 
 #include "contract.h"
 #include "engine.h"
@@ -25,7 +25,7 @@ bool finds_nothing(const contract::Answers<T, D>& said) {
            empty(said.nearest) && empty(said.overlapping);
 }
 
-/// Whether nothing is in an index, whoever asks.
+/// Expects that an index is empty for every query and every instruction set.
 template <class I, class Questions>
 void expect_empty(const I& index, const Questions& questions) {
     using T = typename I::Scalar;
@@ -37,6 +37,7 @@ void expect_empty(const I& index, const Questions& questions) {
     EXPECT_EQ(index.structure().leaf_count(), 0u);
     EXPECT_EQ(index.structure().depth(), 0);
     EXPECT_TRUE(outline(index.structure()).empty());
+    // Single queries and batches find nothing.
     for (const auto set : instruction_sets()) {
         SCOPED_TRACE(set);
         const Using use(set);
@@ -53,6 +54,7 @@ void expect_empty(const I& index, const Questions& questions) {
         EXPECT_TRUE(nearest(index, questions.points, 3).all().empty());
         EXPECT_TRUE(overlapping(index, questions.boxes).all().empty());
     }
+    // Counted queries and traces find nothing.
     Visits visits;
     EXPECT_FALSE(closest_hit(index, questions.rays[0], KeepAll{}, visits));
     EXPECT_EQ(trace(index, questions.rays[0]).hit, std::nullopt);
@@ -67,7 +69,7 @@ void expect_moved(I index) {
     I other = std::move(index);
     EXPECT_TRUE(contract::answers(other, questions) == expected);
     expect_empty(index, questions);
-    I after_it = index;  // what is empty can be copied and moved again
+    I after_it = index;  // an empty index can be copied and moved again
     I and_again = std::move(after_it);
     expect_empty(and_again, questions);
 
@@ -126,7 +128,7 @@ TEST(Moved, TakesPrimitivesUpAgain) {
     check(build<BruteForce>(cloud));
 }
 
-/// Instances whose index was moved away have nothing in them.
+/// Instances of an index that was moved from are empty.
 TEST(Moved, InstancesOfItAreEmpty) {
     const auto mesh = teapot<float>(200);
     auto index = build(mesh);

@@ -1,4 +1,4 @@
-/// Numbers that rounding errors live on: a few units in the last place apart, powers of two, multiples of
+/// Numbers that provoke rounding errors: a few units in the last place apart, powers of two, multiples of
 /// 0.1, huge, tiny, cancelling, equal.
 #pragma once
 
@@ -33,7 +33,7 @@ public:
 
     T operator()() {
         switch (kind_) {
-            case Kind::noise: {  // few places, each with the noise of its last digits
+            case Kind::noise: {  // one of four numbers, 0 to 3 units in the last place up
                 const T base = base_[below(4)];
                 return nudged(base, static_cast<int>(below(4)));
             }
@@ -64,7 +64,7 @@ public:
     }
 
 private:
-    /// Exponents within the contract's bounds on coordinates.
+    /// The largest exponent of `wide`, within the library's bounds on coordinates.
     static constexpr int reach = std::is_same_v<T, float> ? 59 : 479;
 
     std::uint64_t below(std::uint64_t n) { return random_.bits() % n; }

@@ -1,5 +1,5 @@
-/// Every structure over walls that are flat but for the last digits of their coordinates, as turning a box
-/// and turning it back leaves them, against brute force.
+/// Every structure against brute force, over walls that are flat but for the last digits of their
+/// coordinates. A box that is turned and turned back has such walls.
 #include "matrix.h"
 
 #include <numbers>
@@ -23,7 +23,8 @@ T noise(Random& random) {
     return static_cast<T>(random.bits() % 4);
 }
 
-/// Small triangles at two corners of a cube that stands at `place`: they make the scene deep.
+/// Adds small triangles at two opposite corners of a unit cube whose low corner is `place`, so that the scene
+/// has depth.
 template <class T>
 void add_far_corners(TriangleMesh<T>& mesh, T place) {
     for (const T corner : {place, place + 1}) {
@@ -37,8 +38,8 @@ void add_far_corners(TriangleMesh<T>& mesh, T place) {
     }
 }
 
-/// A wall of 8×8 squares of two triangles, three tenths into a cube, whose corners are 0 to 3 units in the
-/// last place out of its plane.
+/// A wall of 8×8 squares, two triangles each, across a unit cube at three tenths of its width. The vertices
+/// are 0 to 3 units in the last place out of the plane.
 template <class T>
 TriangleMesh<T> wall(int axis, T place) {
     constexpr std::uint32_t n = 8;
@@ -62,7 +63,8 @@ TriangleMesh<T> wall(int axis, T place) {
     return mesh;
 }
 
-/// A box of 4×4 squares a side, turned about an axis and back: its walls are noisy as CAD files are.
+/// A box of 4×4 squares a side, turned about an axis and back. Its walls are noisy, as those of CAD files
+/// are.
 template <class T>
 TriangleMesh<T> turned_and_turned_back(int axis, double degrees, T place) {
     TriangleMesh<T> mesh = cube<T>(192);
@@ -95,7 +97,7 @@ TYPED_TEST(NoisyWalls, OfTurnedBoxes) {
     expect_equal("by 30 degrees and back, away", turned_and_turned_back<T>(1, 30, T(0.7)));
     expect_equal("by a right angle", turned_and_turned_back<T>(2, 90, T(0.1)));
 }
-/// A plane of a grid or an octree through the wall, and next to it.
+/// The wall is in and next to planes between the cells of grids and octrees.
 TYPED_TEST(NoisyWalls, AtPlanesOfCells) {
     using T = TypeParam;
     TriangleMesh<T> mesh = wall<T>(0, T(0));
@@ -113,6 +115,7 @@ TYPED_TEST(NoisyWalls, InThePlane) {
             Random random(32, 0);
             for (int i = 0; i < 200; ++i) {
                 Segment<T, 2> s;
+                // The ends are 0 to 3 units in the last place beside a line across the axis.
                 for (auto* end : {&s.a, &s.b}) {
                     (*end)[axis] =
                         nasty::nudged(place + T(0.1) * T(1 + i % 9), static_cast<int>(noise<T>(random)));
@@ -121,6 +124,7 @@ TYPED_TEST(NoisyWalls, InThePlane) {
                 }
                 lines.segments.push_back(s);
             }
+            // Small segments at two opposite corners give the scene depth.
             lines.segments.push_back({Vec<T, 2>::all(place), Vec<T, 2>::all(place + T(0.01))});
             lines.segments.push_back({Vec<T, 2>::all(place + 1), Vec<T, 2>::all(place + T(0.99))});
             expect_equal("segments", lines, ends);

@@ -1,4 +1,4 @@
-/// What structures show of themselves: outlines (structures/outline.h) and traces of rays (trace.h).
+/// Outlines of structures (walks/outline.h) and traces of rays through them (trace.h).
 #include <algorithm>
 #include <map>
 #include <set>
@@ -46,6 +46,7 @@ void expect_sound_outline(const P& set, const std::string& spec) {
     int depth = 0;
     for (const auto& c : cells) {
         ASSERT_TRUE(by_id.emplace(c.id, &c).second) << "cell " << c.id << " is listed twice";
+        // A child is listed after its parent, one level below, and within the parent.
         if (c.parent == c.id) {
             EXPECT_EQ(c.level, 1);
         } else {
@@ -53,8 +54,8 @@ void expect_sound_outline(const P& set, const std::string& spec) {
             ASSERT_NE(parent, by_id.end()) << "cell " << c.id << " comes before its parent";
             EXPECT_EQ(c.level, parent->second->level + 1);
             EXPECT_FALSE(parent->second->leaf);
-            // A two-level grid's inner ones hold what is within the pad of a cell; other volumes than boxes
-            // hold what is below them, and not each other.
+            // Inner cells of a two-level grid may reach out of their cell by its pad. Volumes other than
+            // boxes contain the primitives below them, but not always the volumes below them.
             const auto& around = parent->second->box;
             const double beyond = spec.starts_with("two-level") ? 0.01 * length(around.extent()) : 0;
             EXPECT_TRUE(spec.find("volume=") != std::string::npos ||
@@ -64,8 +65,8 @@ void expect_sound_outline(const P& set, const std::string& spec) {
         leaves += c.leaf, occupied += c.leaf && !c.items.empty(), items += c.items.size();
         depth = std::max(depth, c.level);
         for (const PrimitiveId id : c.items) {
-            // Grids enter primitives a little beyond the cells of their first level, the others within a
-            // margin.
+            // Grids insert a primitive also into cells of the first level that it misses by a little; other
+            // structures within a margin.
             const auto reach =
                 enlarged_by(c.box, 0.02 * length(by_id.at(c.parent)->box.extent()) + 1e-4 * extent);
             EXPECT_TRUE(overlap(reach, detail::box_in_double(view_of(set).bounds(id))))
@@ -90,7 +91,8 @@ TYPED_TEST(Outline, CellsLieInTheirParentsAndHoldWhatMeetsThem) {
     });
 }
 
-/// As much volume as the whole, and no place outside of them: so they overlap nowhere.
+/// The leaves have the volume of the root together, and each point of the root is in a leaf. So leaves do not
+/// overlap.
 TYPED_TEST(Outline, LeavesOfPartitionsTileTheRoot) {
     for_each_set<TypeParam>([](const auto& set) {
         using P = std::remove_cvref_t<decltype(set)>;
@@ -152,6 +154,7 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
             for (std::uint64_t i = 0; i < 60; ++i) {
                 SCOPED_TRACE(i);
                 const Ray<T, D> ray = matrix::ray_of(index->bounds(), targets, i);
+                // Query the index with counts, and brute force.
                 Hit<T> hit, best;
                 Visits visits;
                 index->closest_hits({&ray, 1}, {&hit, 1}, {&visits, 1});
@@ -159,6 +162,7 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
                 const auto trace = index->trace(ray);
                 EXPECT_EQ(trace.visits, visits);
                 EXPECT_EQ(trace.hit.value_or(Hit<T>{}), best);
+                // Sum up the steps of the trace: its tests, and whether one of them found the hit.
                 std::size_t tested = 0, skipped = 0, leaves = 0;
                 bool found = false;
                 T limit = std::numeric_limits<T>::infinity();
@@ -171,6 +175,7 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
                         found = found || (t.id == best.element && t.t == best.t && !t.skipped);
                     }
                 }
+                // The sums equal the counts of the query.
                 EXPECT_EQ(tested, visits.primitives);
                 EXPECT_EQ(skipped, visits.skipped);
                 EXPECT_LE(leaves, visits.leaves);
@@ -181,7 +186,7 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
     });
 }
 
-/// Between the planes of a BVH's boxes and of a kd-tree's cells the ray is where its interval says.
+/// The middle of a step's interval is a point of the ray in the step's cell.
 TEST(Trace, IntervalsAreTheRaysPartsInTheCells) {
     const auto set = soup<float>(200);
     const Ray3f ray{{-0.5f, 0.4f, 0.45f}, {1, 0.1f, 0.05f}};
@@ -204,9 +209,9 @@ TEST(Polytope, ItsPartsMakeUpTheWhole) {
     const auto [low, high] = cube.cut(corner);
     EXPECT_NEAR(low.volume(), 1.0 / 6, 1e-12);
     EXPECT_NEAR(high.volume(), 8 - 1.0 / 6, 1e-12);
-    EXPECT_EQ(cube.section(corner).size() / 2, 3u);  // each corner from two faces
+    EXPECT_EQ(cube.section(corner).size() / 2, 3u);  // each corner is listed by two faces
     EXPECT_EQ(cube.section({{1, 0, 0}, 5, 0}).size(), 0u);
-    // Along a face: it is not counted twice.
+    // A cut along a face does not count the face twice.
     const auto [all, face] = cube.cut({{1, 0, 0}, 2, 0});
     EXPECT_DOUBLE_EQ(all.volume(), 8);
     EXPECT_DOUBLE_EQ(all.surface(), 24);

@@ -16,7 +16,8 @@ class Overlap : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Overlap, Scalars);
 
-/// Compares the three shapes' overlaps with boxes and counts what the bounds of triangles leave open.
+/// Compares the overlaps of triangles, segments and spheres with boxes against rational arithmetic. Counts
+/// the triangles whose bounds overlap the box: in `yes` those that overlap it themselves, in `no` the others.
 /// `source(random)` gives a function that draws vectors.
 template <class T, class Source>
 void expect_exact(int count, Source source, int& yes, int& no) {
@@ -64,19 +65,18 @@ TYPED_TEST(Overlap, OfTheLargestAndLeastShapes) {
 }
 TYPED_TEST(Overlap, IsExactOnNastyNumbers) {
     using Numbers = nasty::Numbers<TypeParam>;
-    const auto numbers =
-        [](Random& random) {  // of one kind along the first axis, of another along the others
-            return [x = Numbers::any(random), y = Numbers::any(random)]() mutable {
-                return Vec<TypeParam, 3>{x(), y(), y()};
-            };
+    const auto numbers = [](Random& random) {  // one kind along the first axis, another along the others
+        return [x = Numbers::any(random), y = Numbers::any(random)]() mutable {
+            return Vec<TypeParam, 3>{x(), y(), y()};
         };
+    };
     int yes = 0, no = 0;
     expect_exact<TypeParam>(30000, numbers, yes, no);
     EXPECT_GT(yes, 500);
     EXPECT_GT(no, 500);
 }
 
-/// A wall that is flat but for the last digits, and boxes through its middle.
+/// Triangles in walls that are flat but for the last digits, and boxes around a point inside the triangle.
 TYPED_TEST(Overlap, OfAlmostFlatWalls) {
     using T = TypeParam;
     Random random(16, 0);

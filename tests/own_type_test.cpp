@@ -1,4 +1,4 @@
-/// A type that the library has never heard of, in every structure: the bits of brute force again.
+/// A primitive type that is not the library's, in every structure: its answers have the bits of brute force.
 #include "../src/any/build_any.h"
 
 #include <hedgerow/scenes/sets.h>
@@ -9,7 +9,7 @@ using namespace hedgerow;
 
 namespace {
 
-/// Discs that face z.
+/// Discs across the z axis.
 template <class T>
 struct Discs {
     using Scalar = T;
@@ -42,7 +42,7 @@ private:
         from[2] = 0;
         return from;
     }
-    /// Whether a place, seen along z, is in the disc.
+    /// Whether a point, projected along z, is in the disc.
     bool holds(std::size_t i, const Vec<T, 3>& p) const {
         return length2(from_axis(i, p)) <= product(radius, radius);
     }

@@ -1,4 +1,4 @@
-/// What a page must be: well formed, and whole by itself.
+/// Checks of pages: well formed, and without other files.
 #pragma once
 
 #include <string>
@@ -6,7 +6,8 @@
 
 namespace hedgerow {
 
-/// What is wrong with a page as XML: tags that are not closed in their order, signs that are not escaped.
+/// The first fault of a page as XML: a tag that is not closed in order, or a sign that is not escaped. Empty
+/// if there is none.
 inline std::string ill_formed(const std::string& page) {
     std::vector<std::string> open;
     for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at)) {
@@ -28,7 +29,7 @@ inline std::string ill_formed(const std::string& page) {
             return "a bare '&'";
     return open.empty() ? "" : "<" + open.back() + "> is not closed";
 }
-/// The first thing by which a page asks for another file.
+/// The first construct by which a page refers to another file. Empty if there is none.
 inline std::string asked_for(const std::string& page) {
     for (const char* outside : {"<script", "<link", "<img", "src=", "href=", "@import", "url("})
         if (page.find(outside) != std::string::npos) return outside;

@@ -1,5 +1,5 @@
-/// The rays of pictures, which a batch takes in blocks of 8 by 8: rows of any length, whole and cut short,
-/// give the bits that single rays give, and each ray keeps its number.
+/// Rays of pictures, which a batch answers in blocks of 8 by 8. Rows of any length, whole or cut short, give
+/// the bits of single rays, and each ray keeps its number.
 #include "engine.h"
 
 #include <hedgerow/scenes/meshes.h>
@@ -10,7 +10,7 @@ namespace {
 
 enum class Kind { pinhole, parallel, to_a_light, jittered };
 
-/// Row after row, from beyond a corner of the box.
+/// The rays of a picture, row by row, from beyond a corner of the box.
 std::vector<Ray3f> picture(const Box3f& box, Kind kind, int columns, int rows) {
     const Vec3f size = box.extent(), center = box.center(), eye = center + size * 0.9f;
     const Vec3f forward = normalized(center - eye), right = normalized(cross(forward, Vec3f(0, 1, 0)));
@@ -37,10 +37,11 @@ std::vector<Ray3f> picture(const Box3f& box, Kind kind, int columns, int rows) {
 struct Shape {
     int columns, rows;
 };
-// Multiples of 8 and others, of which the long ones are taken by blocks too; bands of 8 rows and a rest.
+// Columns are multiples of 8 and others; long rows of the others are answered in blocks too. Rows are bands
+// of 8, some with a rest.
 constexpr Shape shapes[] = {{16, 40}, {24, 33}, {100, 20}, {130, 17}, {132, 24}, {200, 16}, {521, 17}};
 
-/// f(rays) for each instruction set and shape.
+/// Calls f(rays) for each instruction set and shape.
 template <class F>
 void for_each_picture(const Box3f& box, Kind kind, F f) {
     for (const auto set : instruction_sets())
@@ -80,7 +81,7 @@ TEST(Pictures, OfAnyRowsGiveTheBitsOfSingleRays) {
     }
 }
 
-/// From the midst of a row, with rays between that hit nothing, and two pictures one after the other.
+/// Batches that begin in the middle of a row, contain rays that hit nothing, and join two pictures.
 TEST(Pictures, CutAndJoined) {
     const auto mesh = teapot_in_stadium<float>(2000);
     const auto index = build<WideBvh>(mesh);
@@ -96,14 +97,14 @@ TEST(Pictures, CutAndJoined) {
     }
 }
 
-/// Packets give way where they do not pay, and come back.
+/// Packets pause where they do not pay, and resume after that.
 TEST(Pictures, BetweenRaysThatGoTheirOwnWays) {
     const auto mesh = soup<float>(20000);
     const auto index = build<WideBvh>(mesh);
     const auto targets = matrix::targets_of(mesh);
     auto rays = picture(index.bounds(), Kind::pinhole, 128, 64);
     const auto between = apart(index.bounds(), targets, 6000);
-    const auto far = picture(index.bounds(), Kind::to_a_light, 16, 512);  // a triangle apart, and farther
+    const auto far = picture(index.bounds(), Kind::to_a_light, 16, 512);  // rays a triangle apart, or farther
     const auto last = rays;
     for (const auto* more : {&between, &far, &last}) rays.insert(rays.end(), more->begin(), more->end());
     for (const auto set : instruction_sets()) {
@@ -129,14 +130,14 @@ TEST(Pictures, RaysKeepTheirNumbersForFilters) {
     });
 }
 
-/// Where many of a picture's rays meet each triangle they are answered in packets, whatever its rows, but for
-/// what is left of the last.
+/// Where many rays of a picture hit each triangle, packets answer them, whatever the length of a row. Only
+/// the last rays, fewer than 64, may be left over. (Every thread's piece of a batch would have such a rest.)
 TEST(Pictures, GoInPackets) {
     const auto mesh = soup<float>(12);
     const auto index = build<WideBvh>(mesh);
     for_each_picture(index.bounds(), Kind::parallel, [&](const std::vector<Ray3f>& rays) {
         std::vector<Hit<float>> hits(rays.size());
-        const std::size_t packets = closest_hits(index, rays, std::span(hits)).packets;
+        const std::size_t packets = closest_hits(index, rays, std::span(hits), serial_executor()).packets;
         if (wide_kernels() == nullptr)
             EXPECT_EQ(packets, 0u);
         else

@@ -1,4 +1,4 @@
-/// Transforms of every kind, for scenes in two levels.
+/// Transforms of every kind, for two-level scenes.
 #pragma once
 
 #include <cmath>
@@ -19,8 +19,9 @@ Transform<D> turned(Random& random) {
         return Transform<3>::rotation(random.direction<3>(), random.uniform(-pi, pi));
 }
 
-/// Transform i of a scene: turned and moved; or also scaled evenly, or unevenly (and mirrored), and now and
-/// then only moved, or as another was.
+/// Transform i of a scene: a rotation and a translation; with Scales::even also an even scale, with
+/// Scales::any an uneven scale that may mirror. Every fifth is only a translation. Every seventh draws the
+/// numbers of the one before, and so mostly repeats it.
 enum class Scales { none, even, any };
 template <int D>
 Transform<D> transform_of(std::uint64_t i, Scales scales, double far) {

@@ -1,4 +1,4 @@
-/// Polygons of files: what lies in the polygon is covered once, and the face's id is kept.
+/// Polygons in files: triangles cover the inside of a polygon once, and keep the face's id.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -29,7 +29,7 @@ std::string vertex_list(const Polygon& polygon, const std::string& word) {
     return text;
 }
 
-/// A triangle of its own stands before the polygon, which is face 1.
+/// The corners of a separate triangle, then those of the polygon, which is face 1.
 Polygon behind_a_triangle(const Polygon& polygon) {
     Polygon all{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     all.insert(all.end(), polygon.begin(), polygon.end());
@@ -45,7 +45,7 @@ std::filesystem::path off_of(const TempFolder& folder, const Polygon& polygon) {
         "a.off", "OFF\n" + std::to_string(all.size()) + " 2 0\n" + vertex_list(all, "") + face_list(polygon));
 }
 
-/// A file of every format that has polygons.
+/// Writes the polygon to a file of every format that has polygons.
 std::vector<std::filesystem::path> files_of(const TempFolder& folder, const Polygon& polygon) {
     const Polygon all = behind_a_triangle(polygon);
     return {off_of(folder, polygon),
@@ -59,7 +59,7 @@ std::vector<std::filesystem::path> files_of(const TempFolder& folder, const Poly
                             face_list(polygon) + vertex_list(all, ""))};
 }
 
-/// Twice the area with its direction.
+/// Twice the area of the polygon, as a vector along its normal.
 Vec3d area_of(const Polygon& polygon) {
     Vec3d sum;
     for (std::size_t i = 2; i < polygon.size(); ++i)
@@ -68,11 +68,11 @@ Vec3d area_of(const Polygon& polygon) {
 }
 
 struct Filled {
-    double signed_area = 0, area = 0;  // twice, along the polygon's normal and by absolute value
+    double signed_area = 0, area = 0;  // doubled: along the polygon's normal, and absolute
     std::size_t flat = 0;
 };
 
-/// The triangles of face 1, which must be as many as the polygon has corners, less two.
+/// Sums up the triangles of face 1. There must be two fewer than the polygon has corners.
 Filled filled(const std::filesystem::path& path, const Polygon& polygon) {
     const auto mesh = load_mesh<double>(path);
     EXPECT_EQ(mesh.size(), polygon.size() - 1) << path;
@@ -89,8 +89,9 @@ Filled filled(const std::filesystem::path& path, const Polygon& polygon) {
     return sum;
 }
 
-/// Covered once: the triangles' areas sum up to the polygon's only if none lies outside of it or on another,
-/// since together they wind around each place as often as the polygon does.
+/// Expects that triangles cover the polygon once, and that `flat` of them have no area. Together the
+/// triangles wind around each point as often as the polygon does. So their areas sum up to the polygon's only
+/// if no triangle is outside of it or on another.
 void expect_filled(const Polygon& polygon, std::size_t flat = 0) {
     TempFolder folder;
     const double area = std::sqrt(length2(area_of(polygon)));
@@ -126,7 +127,7 @@ TEST(Polygons, AnLHasTheAreaOfAnL) {
 }
 
 TEST(Polygons, WhereABoundaryTouchesItself) {
-    // A hole joined to the outside by a bridge, which is two edges over each other.
+    // A hole joined to the outside by a bridge: two edges in one place.
     expect_filled({{0, 0, 0},
                    {4, 0, 0},
                    {4, 4, 0},
@@ -158,8 +159,8 @@ TEST(Polygons, RandomOnesAroundACentre) {
     }
 }
 
-/// Outlines of 100,000 corners of the kinds that make ear clipping slow: spikes to a centre, a comb that
-/// leans, a spiral, and facing arcs.
+/// Outlines of 100,000 corners that make ear clipping slow: spikes to a centre, a leaning comb, a spiral, and
+/// facing arcs.
 TEST(Polygons, OfAHundredThousandCorners) {
     constexpr int n = 100000;
     std::mt19937_64 random(12);
@@ -171,6 +172,7 @@ TEST(Polygons, OfAHundredThousandCorners) {
     for (int i = 0; i < n / 2; ++i)
         comb.insert(comb.end(), {{double(i), double(i), 0}, {i + 0.5, i - 1000.0, 0}});
     comb.insert(comb.end(), {{n / 2.0, n / 2.0 + 10, 0}, {0, 10, 0}});
+    // The spiral and the arcs have two sides: one there, the other back.
     for (int i = 0; i < n; ++i) {
         const double angle = 1e-3 * (i < n / 2 ? i : n - 1 - i), reach = (i < n / 2 ? 2 : 1) + angle;
         spiral.push_back({reach * std::cos(angle), reach * std::sin(angle), 0});
@@ -185,7 +187,7 @@ TEST(Polygons, OfAHundredThousandCorners) {
     }
 }
 
-/// One that crosses itself and touches itself everywhere.
+/// A polygon that crosses and touches itself everywhere.
 Polygon lattice(int corners) {
     std::mt19937_64 random(13);
     Polygon polygon;
@@ -223,7 +225,8 @@ TEST(Polygons, AreNotFilledOnceReadingIsCancelled) {
     user.join();
 }
 
-/// The last place decides: one corner is moved by one unit in it, across the line between its neighbours.
+/// The last places decide. A corner is moved by one unit in the last place across the diagonals of a square,
+/// or by 2^-60 across the line between its neighbours.
 TEST(Polygons, SignsAreExact) {
     const double unit = 0x1p-53;
     for (const double shift : {-unit, unit}) {

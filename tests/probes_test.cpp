@@ -1,4 +1,4 @@
-/// Probes enter boxes in rows with the bits that they enter each of them with.
+/// A probe enters boxes in rows with the bits with which it enters each box alone.
 #include <gtest/gtest.h>
 
 #include <hedgerow/hedgerow.h>
@@ -8,7 +8,8 @@ using namespace hedgerow;
 
 namespace {
 
-/// Often a small integer, so that planes, points and rays meet at borders; at times huge, tiny or infinite.
+/// A random number. It is often a small integer, so that planes, points and rays coincide at borders; at
+/// times it is huge, tiny, infinite or NaN.
 template <class T>
 T number(Random& random) {
     const auto small = static_cast<T>(std::floor(random.uniform(-3, 4)));
@@ -55,7 +56,7 @@ struct Boxes {
     }
     BoxRows<T, D> rows() const { return {planes.data(), places, count}; }
 };
-/// Calls f(random, boxes) for many, until a test fails.
+/// Calls f(random, boxes) for many rows of boxes, until a test fails.
 template <class T, int D, class F>
 void for_many(F f) {
     for (std::uint64_t i = 0; i < 100000 && !testing::Test::HasFatalFailure(); ++i) {

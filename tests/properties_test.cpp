@@ -1,4 +1,4 @@
-/// What holds of every scene and every question, tried on generated ones, which shrink when they fail.
+/// Properties of every scene and every query, tested on generated cases, which shrink when they fail.
 #include <numeric>
 
 #include "generated.h"
@@ -12,7 +12,7 @@ namespace {
 
 // ---- Structures
 
-/// Brute force first.
+/// An index of each structure over the set, some with several options. Brute force is the first.
 template <class P>
 auto every_index(const P& set) {
     std::vector<std::string> specs = structures_for<P>();
@@ -79,8 +79,8 @@ TYPED_TEST(OfEverySet, StructuresAnswerWithTheBitsOfBruteForce) {
     });
 }
 
-/// What was found once, shrunk: rays that graze the scene's own faces and lean outward by less than the error
-/// of the primitives' tests.
+/// Cases that failed once, shrunk: rays that graze the scene's own faces and lean outward by less than the
+/// error of the primitives' tests.
 TEST(Structures, RaysThatGrazeTheFacesOfTheSceneAreAnsweredToTheirEnd) {
     const auto expect_hit = [](const auto& set, const auto& ray) {
         for (const auto& index : every_index(set)) {
@@ -97,7 +97,7 @@ TEST(Structures, RaysThatGrazeTheFacesOfTheSceneAreAnsweredToTheirEnd) {
     expect_hit(fan, Ray3f{{1, 3, 4}, {0x1p-126f, 0x1p-126f, -0x1p24f}});
 }
 
-/// Orders `list` by its key, then by the primitives' places before they were shuffled.
+/// Gives the primitives in `list` their ids from before the shuffle, and sorts the list by `key`, then by id.
 template <class List, class Key>
 List as_before(List list, const std::vector<std::uint32_t>& before, Key key) {
     for (auto& x : list) x.element = x.primitive = before[x.element];
@@ -112,6 +112,7 @@ TYPED_TEST(OfEverySet, TheOrderOfPrimitivesChangesOnlyTheirIds) {
     constexpr int D = TypeParam::dimension;
     expect_always([] {
         AnyCase<TypeParam> one;
+        // Shuffle the primitives by random keys.
         auto shuffled = one.set;
         const std::size_t n = shuffled.size();
         const auto keys = *gen::container<std::vector<int>>(n, gen::inRange(0, 1000)).as("order");
@@ -119,12 +120,14 @@ TYPED_TEST(OfEverySet, TheOrderOfPrimitivesChangesOnlyTheirIds) {
         std::iota(before.begin(), before.end(), 0u);
         std::stable_sort(before.begin(), before.end(), [&](auto a, auto b) { return keys[a] < keys[b]; });
         for (std::size_t i = 0; i < n; ++i) items(shuffled)[i] = items(one.set)[before[i]];
+        // Query the primitives in their first order.
         const auto oracle = build_any("brute-force", one.set);
         const auto ray = one.ray();
         const auto point = one.point();
         const auto box = one.box();
         const Answers<T, D> hits(*oracle, ray), regions(*oracle, point, n, box);
         for (const auto& index : every_index(shuffled)) {
+            // The shuffled primitives give the same answers under their former ids.
             const Answers<T, D> got(*index, ray);
             RC_ASSERT(as_before(got.all, before, [](const auto& h) { return h.t; }) == hits.all);
             RC_ASSERT(got.closest.t == hits.closest.t);
@@ -139,7 +142,7 @@ TYPED_TEST(OfEverySet, TheOrderOfPrimitivesChangesOnlyTheirIds) {
     });
 }
 
-/// Other primitives under the same ids, where the old ones lie.
+/// Overwrites the primitives of `set` in place by those of `other`. The ids stay.
 template <class P>
 void move_to(P& set, P& other) {
     if constexpr (requires { set.vertices; })
@@ -160,11 +163,13 @@ TYPED_TEST(OfEverySet, RefitsAnswerWithTheBitsOfBruteForce) {
         const auto leaf = std::to_string(*gen::inRange(1, 9).as("max_leaf_size"));
         const auto index = build_any(structure + ",max_leaf_size=" + leaf, one.set);
         for (int step = 0; step < 4; ++step) {
+            // Move the primitives and refit.
             AnyCase<TypeParam> now;
             items(now.set).resize(one.set.size());
             move_to(one.set, now.set);
             RC_ASSERT(index->refit() >= 0);
             RC_ASSERT(index->validate() == "");
+            // Compare with brute force over the moved primitives.
             const auto oracle = build_any("brute-force", one.set);
             for (int i = 0; i < 4; ++i) {
                 const auto ray = one.ray();
@@ -182,6 +187,7 @@ TYPED_TEST(OfEverySet, APowerOfTwoInTheDirectionDividesT) {
     expect_always([] {
         const T least = std::numeric_limits<T>::min(), most = std::numeric_limits<T>::max();
         const AnyCase<TypeParam> one;
+        // Multiply the direction by 2^k and divide the interval by it.
         auto ray = one.ray(), longer = ray;
         const int k = *integers(20).as("exponent");
         for (T& x : longer.direction.data) {
@@ -194,8 +200,10 @@ TYPED_TEST(OfEverySet, APowerOfTwoInTheDirectionDividesT) {
             std::vector<Hit<T>> hits, scaled;
             index->all_hits(ray, hits);
             index->all_hits(longer, scaled);
-            // What lies at 0 may lie just before it, where a t of the other ray does not underflow.
+            // Leave out hits at t = 0: for the other ray, whose t does not underflow, they may be just before
+            // 0.
             for (auto* list : {&hits, &scaled}) std::erase_if(*list, [](const auto& h) { return h.t == 0; });
+            // Compare the hits where no t is near overflow or underflow.
             const auto tame = [=](const Hit<T>& h) {
                 return std::abs(h.t) > least * (1 << 21) && std::abs(h.t) < most / (1 << 21);
             };
@@ -219,10 +227,12 @@ TYPED_TEST(OfEveryRay, IntervalsCountsAndFiltersFollowFromTheListOfHits) {
         const AnyCase<TypeParam> one;
         const auto ray = one.ray();
         const auto expect_of = [&](const auto& index) {
+            // all_hits and hit_count return the length of the list of all hits.
             std::vector<Hit<T>> all;
             const auto count = all_hits(index, ray, all);
             RC_ASSERT(count == all.size());
             RC_ASSERT(hit_count(index, ray) == all.size());
+            // A ray with a smaller interval has the hits in that interval.
             const auto expect = [&](const Ray<T, TypeParam::dimension>& part) {
                 std::vector<Hit<T>> got, kept;
                 all_hits(index, part, got);
@@ -239,11 +249,12 @@ TYPED_TEST(OfEveryRay, IntervalsCountsAndFiltersFollowFromTheListOfHits) {
                 expect(part);
                 part.t_max = std::nextafter(hit.t, T(-1));
                 expect(part);
-                if (std::is_same_v<TypeParam, SphereSet<T, 3>>) continue;  // which may be left, too
+                if (std::is_same_v<TypeParam, SphereSet<T, 3>>) continue;  // spheres are hit from inside too
                 part.t_max = ray.t_max;
                 part.t_min = std::nextafter(hit.t, std::numeric_limits<T>::infinity());
                 expect(part);
             }
+            // A filter that refuses the first hits leaves the next ones.
             for (std::size_t i = 0; i < all.size(); ++i) {  // refuse the first i + 1
                 const auto beyond = [&](const Hit<T>& h) {
                     return h.t > all[i].t || (h.t == all[i].t && h.element > all[i].element);

@@ -1,5 +1,5 @@
-/// Shapes and boxes in rational numbers (GMP): what exact arithmetic says of the coordinates as they are
-/// given.
+/// Overlaps of shapes and boxes in rational numbers (GMP): the results of exact arithmetic on the given
+/// coordinates.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace hedgerow::rational {
 
 using Number = mpq_class;
-using Point = std::array<Number, 3>;  // in the plane z = 0
+using Point = std::array<Number, 3>;  // 2D points have z = 0
 
 template <class T, int D>
 Point point(const Vec<T, D>& v) {
@@ -21,7 +21,8 @@ Point point(const Vec<T, D>& v) {
     return p;
 }
 
-/// What a box leaves of a convex polygon, one plane after the other (Sutherland and Hodgman 1974).
+/// The part of a convex polygon inside a box, clipped by one plane after the other (Sutherland and Hodgman
+/// 1974).
 template <class T, int D>
 std::vector<Point> clipped(std::vector<Point> polygon, const Box<T, D>& box) {
     for (int k = 0; k < D; ++k)

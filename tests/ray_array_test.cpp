@@ -1,4 +1,4 @@
-/// Rays of batches in every layout give the bits of a span of them, and nothing beside them is read.
+/// Batches of rays in every layout give the bits of a span of rays, and no byte beside the rays is read.
 #include "engine.h"
 
 #include <hedgerow/scenes/meshes.h>
@@ -12,15 +12,15 @@ namespace {
 template <class T>
 constexpr std::size_t words = RayArray<T, 3>::words;
 
-/// Number w of a ray, in Ray's order.
+/// Number w of a ray's eight, in the order of Ray's members.
 template <class T>
 T word_of(const Ray<T, 3>& ray, std::size_t w) {
     const auto k = static_cast<int>(w % 3);
     return w < 3 ? ray.origin[k] : w < 6 ? ray.direction[k] : w == 6 ? ray.t_min : ray.t_max;
 }
 
-/// Some numbers of every ray, in an order, in memory of exactly their size: whatever is read beside them is
-/// for the address sanitizer to find. Between and before them are bytes that are NaN, if read.
+/// The numbers `order` of every ray, in that order, in memory of exactly their size, so that the address
+/// sanitizer finds reads beyond it. The bytes `before` and `between` the rays read as NaN.
 template <class T>
 class Bytes {
 public:
@@ -36,7 +36,7 @@ public:
                 std::memcpy(data_.get() + before + i * stride_ + w * sizeof(T), &value, sizeof value);
             }
     }
-    /// From number w of the order on.
+    /// A view that begins with number w of the order.
     template <class E>
     Strided<E> view(std::size_t w = 0) const {
         return {size_ == 0 ? nullptr : data_.get() + before_ + w * sizeof(T), size_, stride_};
@@ -104,7 +104,7 @@ TEST(RayArrays, EveryLayoutGivesTheSameBits) {
     });
 }
 
-/// Packets are taken of rays that go together, however they lie.
+/// Rays that go the same way are answered in packets, whatever their layout.
 TEST(RayArrays, PacketsAreTakenInEveryLayout) {
     const auto mesh = teapot_in_stadium<float>(3000);
     const auto index = build<WideBvh>(mesh);
@@ -163,7 +163,7 @@ TEST(RayArrays, WithoutIntervalsRaysGoOnForEver) {
     EXPECT_EQ(flat.part(1, 1)[0].origin, Vec2f(2, 4));
 }
 
-/// What is taken for an array of rays, in calls that name no type of view.
+/// The containers that convert to an array of rays, in calls that name no type of view.
 TEST(RayArrays, AreMadeOfWhatHoldsRays) {
     const auto mesh = soup<float>(100);
     const auto index = build<WideBvh>(mesh);

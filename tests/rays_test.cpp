@@ -1,5 +1,5 @@
-/// Rays that meet shapes, against exact or wider arithmetic, and the premise of every structure: that the
-/// probe enters each box around a hit.
+/// Intersections of rays and shapes against exact or wider arithmetic, and the premise of every structure:
+/// that the probe enters each box around a hit.
 #include "exact.h"
 
 #include <hedgerow/probes/ray.h>
@@ -16,10 +16,11 @@ TYPED_TEST_SUITE(Rays, Scalars);
 
 // ---- Ray meets triangle
 
-/// The meeting of a ray's line with a triangle's plane, in long double. The three ways may differ from it and
-/// from one another by some roundings: with L the longest edge, A twice the area, R the farthest corner from
-/// the origin, D the direction's length and N = |normal · direction|, by plane the normal carries u·L², hence
-/// t u·L²·R / N, the point u·(|o| + L²·R·D / N), and u and v that times L / A; the others carry less.
+/// The intersection of a ray's line and a triangle's plane, in long double. The three tests may differ from
+/// it and from one another by some roundings. Let L be the longest edge, A twice the area, R the distance of
+/// the farthest corner from the origin o, D the direction's length, N = |normal · direction| and ε the unit
+/// roundoff. In the test by plane the normal errs by ε·L², hence t by ε·L²·R / N, the point by ε·(|o| +
+/// L²·R·D / N), and the coordinates u and v by the point's error times L / A. The other tests err less.
 template <class T>
 struct Crossing {
     Real t, u, v, slack_t, slack_uv;
@@ -52,6 +53,7 @@ TYPED_TEST(Rays, TheThreeWaysToMeetATriangleAgree) {
     int clear = 0, hits = 0;
     for (std::uint64_t i = 0; i < 100000; ++i) {
         Random random(3, i);
+        // Choose a triangle and a ray to a point in or near it.
         const Vec<T, 3> at = in_ball<T, 3>(random, 10);
         const double s = std::exp2(integer(random, 4));
         Triangle<T, 3> tri{at + in_ball<T, 3>(random, s), at + in_ball<T, 3>(random, s),
@@ -62,6 +64,7 @@ TYPED_TEST(Rays, TheThreeWaysToMeetATriangleAgree) {
         const T longer = T(std::exp2(integer(random, 8)));
         Ray<T, 3> ray{origin, (target - origin) * (i % 4 == 0 ? -longer : longer)};
         if (i % 16 == 1) ray.direction[integer(random, 1) + 1] = T(-0.0);
+        // Compare the tests, with both windings, where roundings cannot decide.
         for (int winding = 0; winding < 2; ++winding, std::swap(tri.b, tri.c)) {
             const Crossing<T> exact(ray, tri);
             if (!exact.clear()) continue;
@@ -85,12 +88,14 @@ TYPED_TEST(Rays, TheWatertightWayIsExactOnIntegers) {
     int at_edges = 0;
     for (std::uint64_t i = 0; i < 300000; ++i) {
         Random random(4, i);
+        // Choose a ray and a triangle with integer coordinates.
         using V = Vec<T, 3>;
         const V o = integers<T, 3>(random, 3);
         const Triangle<T, 3> tri{integers<T, 3>(random, 3), integers<T, 3>(random, 3),
                                  integers<T, 3>(random, 3)};
         V d = integers<T, 3>(random, 2);
         d[integer(random, 1) + 1] = i % 2 == 0 ? T(2) : T(-2);
+        // Compute the exact result from the volumes of ray and edges.
         const Real3 a = real(tri.a - o), b = real(tri.b - o), c = real(tri.c - o), along = real(d);
         const Real u = dot(along, cross(b, c)), v = dot(along, cross(c, a)), w = dot(along, cross(a, b));
         const bool hit = ((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0)) && u + v + w != 0;
@@ -110,6 +115,7 @@ TYPED_TEST(Rays, NoRayLeaksThroughAFan) {
     using T = TypeParam;
     for (std::uint64_t i = 0; i < 100000; ++i) {
         Random random(5, i);
+        // Make a fan of triangles around a center.
         const int n = 5 + static_cast<int>(random.bits() % 6);
         const Vec<T, 3> center = in_ball<T, 3>(random, 0.3);
         std::vector<Vec<T, 3>> rim;
@@ -117,6 +123,7 @@ TYPED_TEST(Rays, NoRayLeaksThroughAFan) {
             const double angle = (k + random.uniform(-0.2, 0.2)) * 2 * 3.14159265 / n;
             rim.emplace_back(T(2 * std::cos(angle)), T(2 * std::sin(angle)), T(random.uniform(-0.5, 0.5)));
         }
+        // Aim at the center or at an inner edge.
         const T s = i % 3 == 0 ? T(0) : T(random.uniform(0, 0.9));
         const Vec<T, 3> target = center + (rim[random.bits() % rim.size()] - center) * s;
         const Vec<T, 3> origin(T(random.uniform(-9, 9)), T(random.uniform(-9, 9)), T(i % 2 == 0 ? 40 : -40));
@@ -185,16 +192,19 @@ TYPED_TEST(Rays, BothEndsOfTheIntervalBelongToIt) {
 
 // ---- Ray meets box
 
-/// A ray's parameters where it crosses a plane of the box or ends, of those the least and the greatest whose
-/// point lies in the box: exact, for integers, as fractions. Infinity is beyond all.
+/// A parameter of a ray. Infinity is 1 / 0.
 struct Fraction {
     std::int64_t top, bottom;  // bottom >= 0
     friend bool operator<(Fraction a, Fraction b) { return a.top * b.bottom < b.top * a.bottom; }
 };
+/// The interval of a ray in a box, exact for integers. The candidates are the parameters at which the ray
+/// begins, ends or crosses a plane of the box. The interval is from the least to the greatest whose point is
+/// in the box.
 template <int D>
 std::optional<std::pair<Fraction, Fraction>> exact_interval(const Ray<double, D>& ray,
                                                             const Box<double, D>& box) {
     const auto i64 = [](double x) { return static_cast<std::int64_t>(x); };
+    // List the candidates. 2^20 is beyond all crossings and stands for infinity.
     const bool endless = !(ray.t_max < 1e9);
     const Fraction begin{i64(ray.t_min), 1},
         end = endless ? Fraction{1 << 20, 1} : Fraction{i64(ray.t_max), 1};
@@ -204,6 +214,7 @@ std::optional<std::pair<Fraction, Fraction>> exact_interval(const Ray<double, D>
             const std::int64_t d = i64(ray.direction[k]), to = i64(plane - ray.origin[k]);
             if (d != 0) ts.push_back(d > 0 ? Fraction{to, d} : Fraction{-to, -d});
         }
+    // Remove those beyond the ray or outside of the box.
     std::erase_if(ts, [&](Fraction t) {
         bool outside = t < begin || end < t;
         for (int k = 0; k < D; ++k) {
@@ -253,6 +264,7 @@ TYPED_TEST(Rays, RaysEnterAndLeaveBoxesOnTheirSurface) {
     constexpr T u = unit_roundoff<T>;
     for (std::uint64_t i = 0; i < 100000; ++i) {
         Random random(10, i);
+        // Aim at a point of a box, in some cases of a flat one.
         auto box = box_of(in_ball<T, 3>(random, 5), in_ball<T, 3>(random, 5));
         if (i % 5 == 0) box.high[integer(random, 1) + 1] = box.low[integer(random, 1) + 1];
         if (box.empty()) continue;
@@ -261,7 +273,8 @@ TYPED_TEST(Rays, RaysEnterAndLeaveBoxesOnTheirSurface) {
         const Vec<T, 3> origin = in_ball<T, 3>(random, 20);
         const Ray<T, 3> ray{origin, (target - origin) * T(std::exp2(integer(random, 9)))};
         const auto in = meet(ray, box);
-        if (!in) continue;  // only by rounding, at a face
+        if (!in) continue;  // missed only by rounding, at a face
+        // Both ends of the interval are at a face, or the origin is in the box.
         for (const T t : {in->entry, in->exit}) {
             if (t == 0) {
                 ASSERT_TRUE(box.contains(origin));
@@ -283,13 +296,15 @@ TYPED_TEST(Rays, RaysEnterAndLeaveBoxesOnTheirSurface) {
     EXPECT_FALSE(meet(Ray<T, 3>{{0, 0, 0}, {0, T(-0.0), -1}}, Box<T, 3>()));
 }
 
-/// The premise of every structure: where the watertight test hits, no box around the triangle says no, and
-/// none is entered after the hit; nor is a side of a plane that holds the triangle left before it.
+/// The premise of every structure. Where the watertight test hits, the probe enters every box around the
+/// triangle, and at or before the hit. On the side of a plane that contains the triangle, the interval
+/// contains the hit.
 TYPED_TEST(Rays, TheProbeEntersEveryBoxAroundAHit) {
     using T = TypeParam;
     int hits = 0;
     for (std::uint64_t i = 0; i < 300000; ++i) {
         Random random(11, i);
+        // Choose a triangle of any size, some thin, in a larger scene.
         const int scale = integer(random, std::is_same_v<T, float> ? 40 : 300);
         const auto within = [&](double radius) { return in_ball<T, 3>(random, std::ldexp(radius, scale)); };
         const Vec<T, 3> at = within(i % 4 == 0 ? 1000 : 1);
@@ -299,6 +314,7 @@ TYPED_TEST(Rays, TheProbeEntersEveryBoxAroundAHit) {
         if (i % 7 == 0) tri.b[integer(random, 1) + 1] = tri.a[0];
         Box<T, 3> scene = tri.bounds();
         scene.expand(at + within(i % 8 == 0 ? 1e4 : 2));
+        // Aim at a point of the triangle, some rays in its plane or across an axis.
         const T u = i % 2 == 0 ? T(0) : T(random.uniform()),
                 v = i % 9 == 0 ? T(0) : T(random.uniform()) * (1 - u);
         const Vec<T, 3> target = tri.a * (1 - u - v) + tri.b * u + tri.c * v;
@@ -312,6 +328,7 @@ TYPED_TEST(Rays, TheProbeEntersEveryBoxAroundAHit) {
         const auto m = meet(probe.watertight(), tri);
         if (!m || !(m->t >= 0 && m->t <= std::numeric_limits<T>::max())) continue;
         ++hits;
+        // Enter the triangle's own box and a larger one, alone and as a pair.
         const Box<T, 3> own = tri.bounds(), larger = merged(own, Box<T, 3>().expand(at + within(1)));
         BoxPair<T, 3> pair;
         pair.set(0, own), pair.set(1, larger);
@@ -323,6 +340,7 @@ TYPED_TEST(Rays, TheProbeEntersEveryBoxAroundAHit) {
             ASSERT_LE(entry[k], m->t) << i;
             ASSERT_EQ(entry[k], entries[k]) << i;
         }
+        // Cut at the planes of the own box. The triangle's side contains the hit.
         for (int axis = 0; axis < 3; ++axis)
             for (const bool above : {false, true}) {
                 const auto cut = probe.cut(probe.root(scene),

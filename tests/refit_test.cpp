@@ -1,4 +1,4 @@
-/// Refits: trees fitted to primitives that moved answer as brute force does, and tell how far they drifted.
+/// Refits: trees that are refitted to moved primitives answer as brute force does, and report their drift.
 #include "trees.h"
 
 using namespace hedgerow;
@@ -52,7 +52,7 @@ TYPED_TEST(Refit, AnswersAsBruteForceDoes) {
             const double drift = index.refit(default_executor());
             EXPECT_EQ(index.validate(), "");
             EXPECT_EQ(drift, index.structure().drift());
-            // What was cut is fitted whole again.
+            // A refit fits cut primitives whole. So drift returns to 1 only where nothing was cut.
             if (by == 0 && index.structure().exclusive()) {
                 EXPECT_EQ(drift, 1);
             }
@@ -170,7 +170,7 @@ TYPED_TEST(Refit, HoldsForNoneOneAndOtherPrimitives) {
     const auto oracle = build<BruteForce>(cloud);
     const Questions questions(oracle, 100);
     EXPECT_EQ(answers(many, questions), answers(oracle, questions));
-    for (auto& p : cloud.points) p = {3, 3};  // no area: no line meets it
+    for (auto& p : cloud.points) p = {3, 3};  // one point has no area, so no random line meets it
     EXPECT_GT(many.refit(), 0);
 }
 

@@ -1,4 +1,5 @@
-/// The premise of the SAH: of the uniformly random lines that meet a node, S_child/S_node meet its child.
+/// The premise of the SAH: a share S_child/S_node of the uniformly random lines that meet a node meets its
+/// child.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ TEST(SahPremise, LinesThatMeetANodeMeetItsChildByTheRatioOfAreas) {
     const auto index = build(mesh);
     const auto& tree = index.structure();
     constexpr int lines = 200000;
-    // The root's children and grandchildren: six ratios, all to be within three sigma.
+    // Checks the root's children and grandchildren: six ratios, each within three sigma.
     const auto check = [&](const Box3d& node, const Box3d& child) {
         double met = 0, both = 0;
         for (int i = 0; i < lines; ++i) {

@@ -1,4 +1,4 @@
-/// The matrix on scanned meshes: brute force for some rays, structures built independently for the rest.
+/// The matrix on scanned meshes. Some rays are compared with brute force, the others between the structures.
 /// scripts/fetch-scenes brings the scans.
 #include "matrix.h"
 

@@ -1,4 +1,4 @@
-/// What each generated scene is: closed or open where it should be, how large, which way it faces.
+/// The shape of each generated scene: where it is closed or open, its size, and the way it faces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,8 @@ double signed_volume(const TriangleMesh<double>& mesh) {
     return sum;
 }
 
-/// Edges without a neighbour. Fails where neighbours are turned against each other or more than two meet.
+/// Counts the edges of only one triangle. Fails if neighbours face opposite ways, or if more than two
+/// triangles share an edge.
 std::size_t open_edges(const TriangleMesh<double>& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
     for (const auto& t : mesh.triangles)
@@ -63,8 +64,8 @@ TEST(Teapot, IsATeapot) {
 }
 
 TEST(Teapot, IsOpenOnlyAtItsSixRims) {
-    // In 10 × 10 pieces a patch: the rim and the lid's edge, four quarters each, and both ends of handle and
-    // spout, two halves each.
+    // Each patch has 10 × 10 pieces. The rim and the lid's edge have four quarters each, both ends of handle
+    // and spout two halves each.
     EXPECT_EQ(open_edges(teapot<double>(6320)), 10u * (2 * 4 + 4 * 2));
 }
 
@@ -91,7 +92,7 @@ TEST(Stadium, IsHugeAroundASmallTeapot) {
     EXPECT_EQ(box.low[2], 0);
     EXPECT_EQ(box.low[0], -box.high[0]);
     EXPECT_EQ(box.low[1], -box.high[1]);
-    // The bowl's foot, 216 segments, and the teapot's rims.
+    // Open are the bowl's foot, with 216 segments, and the teapot's rims, with 160.
     EXPECT_EQ(open_edges(mesh), 216u + 160u);
 }
 
@@ -144,12 +145,14 @@ TEST(Hairball, IsLongStrandsBetweenTwoRadii) {
     const auto mesh = hairball<double>(32'000);
     EXPECT_EQ(mesh.size(), 32'000u);
     EXPECT_EQ(open_edges(mesh), 1000u * (2 * 16 + 2));
+    // Strands are between the radii 0.5 and 1, on all sides.
     Vec3d sum;
     for (const Vec3d& p : mesh.vertices) {
         ASSERT_TRUE(length(p) > 0.49 && length(p) < 1.01);
         sum = sum + p / static_cast<double>(mesh.vertices.size());
     }
     EXPECT_LT(length(sum), 0.05) << "all around";
+    // Strands are much longer than wide. Each has 34 vertices in pairs.
     double longest = 0;
     for (std::size_t strand = 0; strand < 1000; ++strand) {
         double along = 0, across = 0;
@@ -169,7 +172,7 @@ TEST(Cube, IsClosed) {
         EXPECT_EQ(open_edges(mesh), 0u) << size;
         EXPECT_NEAR(signed_volume(mesh), 8, 1e-12);
         EXPECT_EQ(bounds(mesh), (Box3d{{-1, -1, -1}, {1, 1, 1}}));
-        EXPECT_EQ(mesh.vertices.size(), mesh.size() / 2 + 2);  // Euler
+        EXPECT_EQ(mesh.vertices.size(), mesh.size() / 2 + 2);  // Euler's formula: V = F / 2 + 2 if closed
     }
     EXPECT_EQ(cube<double>(12).size(), 12u);
 }
@@ -177,7 +180,7 @@ TEST(Cube, IsClosed) {
 TEST(CornellBox, IsOpenOnlyToTheFrontAndTheFloor) {
     const auto mesh = cornell_box<double>(32);
     EXPECT_EQ(mesh.size(), 32u);
-    // The room's front, the light's edge, the feet of two blocks.
+    // Open are the room's front, the light's edge, and the feet of two blocks.
     EXPECT_EQ(open_edges(mesh), 4u * 4);
     EXPECT_EQ(bounds(mesh), (Box3d{{0, 0, 0}, {556, 548.8, 559.2}}));
     EXPECT_EQ(open_edges(cornell_box<double>(32 * 25)), 5u * 4 * 4);
@@ -249,11 +252,11 @@ TEST(Interior, IsClosedButForItsWindows) {
 }
 
 TEST(Interior, GainsThingsAndThenRoundness) {
-    // The first things are the slabs and the walls, whatever the size.
+    // The first things are the slabs and the walls, for every size.
     const auto few = interior<double>(500), more = interior<double>(5000);
     EXPECT_TRUE(std::equal(few.triangles.begin(), few.triangles.begin() + 300, more.triangles.begin()));
     EXPECT_TRUE(std::equal(few.vertices.begin(), few.vertices.begin() + 150, more.vertices.begin()));
-    // Things that are round are divided more finely, so that area grows by little.
+    // A larger size divides round things more finely, so the area grows only a little.
     const auto area = [](const TriangleMesh<double>& mesh) {
         double sum = 0;
         for (const auto& t : mesh.triangles) sum += length(triangle(mesh, t).normal()) / 2;

@@ -1,4 +1,4 @@
-/// The scene generators: same bits everywhere, sizes, soundness of the meshes, and scenes by name.
+/// The scene generators: equal bits everywhere, sizes, sound meshes, and scenes by name.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/generate.h>
 #include <hedgerow/scenes/random.h>

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include <hedgerow/spelling.h>
+#include <hedgerow/base/spelling.h>
 
 namespace hedgerow {
 namespace {

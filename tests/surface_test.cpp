@@ -1,4 +1,4 @@
-/// Where hits lie and how surfaces face there: on every kind of primitive, and in instances.
+/// Positions of hits and normals of surfaces there, on every kind of primitive and in instances.
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
@@ -16,7 +16,7 @@ class Surface : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Surface, Scalars);
 
-/// Calls f(ray, hit) for rays from all around that hit, and says how many did.
+/// Shoots 500 rays from all around and calls f(ray, hit) for each that hits. Returns the number of hits.
 template <class I, class F>
 std::size_t for_each_hit(const I& index, F f) {
     using T = typename I::Scalar;
@@ -40,7 +40,7 @@ double error_of(const Vec<T, D>& a, const Vec<double, D>& b) {
     return length(Vec<double, D>(a) - b);
 }
 
-/// ray.at(t) without its roundings.
+/// ray.at(t), computed in double.
 template <class T, int D>
 Vec<double, D> exactly_at(const Ray<T, D>& ray, T t) {
     return Vec<double, D>(ray.origin) + Vec<double, D>(ray.direction) * double(t);
@@ -68,7 +68,8 @@ TYPED_TEST(Surface, OfTriangles) {
               100u);
 }
 
-/// ray.at(t) errs by roundings of the way, the place by u and v by roundings of the triangle alone.
+/// ray.at(t) errs by roundings of the distance travelled. The position from u and v errs only by roundings of
+/// the triangle's coordinates.
 TEST(Surface, IsMetAsExactlyFromAfar) {
     const TriangleMesh<float> mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
     const auto index = build(mesh);
@@ -87,7 +88,8 @@ TEST(Surface, IsMetAsExactlyFromAfar) {
     EXPECT_GT(off_the_plane, 20);
 }
 
-/// A sphere's, too: t is rounded by as much as the way is long, and the ball is smaller than that.
+/// Positions on spheres do not err with the distance travelled either, although t does: the ray goes 10^4,
+/// and the radius is 0.01.
 TEST(Surface, OfSpheresIsMetAsExactlyFromAfar) {
     const SphereSet<float, 3> set{{{{0, 0, 0}, 0.01f}}};
     const auto index = build<Bvh>(set);
@@ -105,7 +107,7 @@ TEST(Surface, OfSpheresIsMetAsExactlyFromAfar) {
     EXPECT_GT(hits, 100);
 }
 
-/// The rounded product of this triangle's edges is 0, and still rays hit it.
+/// The rounded cross product of this triangle's edges is 0, yet rays hit it.
 TEST(Surface, OfASliverHasADirection) {
     const double u = 0x1p-53;
     const TriangleMesh<double> mesh{{{0, 0, 0}, {1, 1 - u, 0}, {1 - u, 1 - 2 * u, 0}}, {{0, 1, 2}}, {}};
@@ -115,7 +117,7 @@ TEST(Surface, OfASliverHasADirection) {
     EXPECT_EQ(std::abs(normal(mesh, ray, *hit)[2]), 1);
 }
 
-/// Triangles at both ends of the range have normals, though their areas' squares are beyond it.
+/// Triangles of the largest and the smallest size have normals, though their squared areas are out of range.
 TYPED_TEST(Surface, OfTinyAndHugeTriangles) {
     using T = TypeParam;
     for (const T size : {largest_coordinate<T>, T(1) / largest_coordinate<T>}) {
@@ -165,7 +167,7 @@ TYPED_TEST(Surface, OfSegments) {
               100u);
 }
 
-/// In the world, hits on instances lie on the triangles there and face as these do; mirrored ones keep their
+/// Hits on instances lie on the transformed triangles and face as these do. Mirrored instances keep their
 /// outside.
 TYPED_TEST(Surface, OfInstances) {
     using T = TypeParam;

@@ -1,4 +1,4 @@
-/// Runs the tool as its user does.
+/// Helpers that run the tool as its user does.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ struct ToolResult {
     std::string output;
 };
 
-/// What a command of the shell prints to stdout.
+/// Runs a shell command. Returns its exit code and what it prints to stdout.
 inline ToolResult run_shell(const std::string& command) {
     FILE* pipe = popen(command.c_str(), "r");
     ToolResult result{-1, {}};
@@ -32,13 +32,13 @@ inline ToolResult run_shell(const std::string& command) {
     result.code = WEXITSTATUS(pclose(pipe));
     return result;
 }
-/// Both streams of the tool.
+/// Runs the tool. Returns its exit code and what it prints to both streams.
 inline ToolResult run(const std::string& arguments) {
     return run_shell(HEDGEROW_TOOL_PATH " " + arguments + " 2>&1");
 }
 
-/// The exit code of the tool when it gets a SIGINT after so many milliseconds, as a shell has it: 130 too
-/// where the process was not yet listening.
+/// Runs the tool and sends it SIGINT after so many milliseconds. Returns the exit code as a shell reports it:
+/// 130 also if the signal killed the process before it handled signals.
 inline int run_interrupted(std::vector<std::string> arguments, int milliseconds = 1500) {
     const pid_t child = fork();
     if (child == 0) {
@@ -57,10 +57,11 @@ inline int run_interrupted(std::vector<std::string> arguments, int milliseconds 
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// The exit code of a picture of 1600 x 1200 that is interrupted once some rows of it are done.
+/// Renders a picture of 1600 x 1200 and interrupts it once some of its rows are done. Returns the exit code.
 inline int run_interrupted_render(const std::string& output) {
     std::filesystem::path unfinished = output;
     unfinished.replace_extension(".unfinished" + unfinished.extension().string());
+    // Wait longer and longer until the tool leaves an unfinished picture.
     for (int milliseconds = 1500;; milliseconds *= 4) {
         const int code = run_interrupted({"render", "gen:teapot:6000", "--structure", "brute-force", "--size",
                                           "1600x1200", "--quiet", "-o", output},
@@ -83,7 +84,7 @@ protected:
     void SetUp() override { std::filesystem::create_directories(folder); }
     void TearDown() override { std::filesystem::remove_all(folder); }
     std::string file(const std::string& name) const { return (folder / name).string(); }
-    /// The tool ends with this code, and says this.
+    /// Expects that the tool exits with `code` and that its output contains `said`.
     static void expect_failure(int code, const std::string& arguments, const std::string& said) {
         const auto r = run(arguments);
         EXPECT_EQ(r.code, code) << arguments << "\n" << r.output;

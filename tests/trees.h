@@ -1,4 +1,4 @@
-/// What the tests of BVHs, binary and wide, share.
+/// Helpers for tests of binary and wide BVHs.
 #pragma once
 
 #include <hedgerow/scenes/meshes.h>
@@ -15,7 +15,7 @@ inline BvhOptions options_of(BvhBuilder builder, int reinsertion = 0) {
     options.reinsertion = reinsertion;
     return options;
 }
-/// Every builder, bare and improved.
+/// Calls f(options) for every builder of binary trees, with and without reinsertion.
 template <class F>
 void with_each_builder(F f) {
     for (const auto builder : bvh_builders)
@@ -25,7 +25,7 @@ void with_each_builder(F f) {
         }
 }
 
-/// Of wide trees every builder and width.
+/// Calls f(options) for every builder and width of wide trees.
 template <class F>
 void with_each_wide_builder(F f) {
     for (const auto builder : wide_builders)
@@ -37,7 +37,7 @@ void with_each_wide_builder(F f) {
         }
 }
 
-/// Long and thin, and of very different lengths.
+/// Long and thin triangles of very different lengths.
 inline TriangleMesh<float> needles(std::size_t n) {
     TriangleMesh<float> mesh;
     for (std::size_t i = 0; i < n; ++i) {

@@ -1,5 +1,5 @@
-/// Pictures of files stand upright without a flag: by the rule of their format, and where that leaves it open
-/// by the flat base on which a mesh stands.
+/// Pictures of files are upright without a flag. The format defines the upward axis, or else a flat base on
+/// which the mesh stands.
 #include <cstdlib>
 #include <cstring>
 
@@ -18,13 +18,14 @@ using namespace hedgerow;
 using Upright = ToolTest;
 using Mesh = TriangleMesh<float>;
 
-/// Taller than wide or deep, so that the longest extent would mislead. It stands on z, on a flat base.
+/// A mesh that is taller than wide or deep, so that its longest extent would mislead. It stands on a flat
+/// base, and z is up.
 Mesh statue() {
     Mesh mesh = teapot<float>(500);
     for (auto& v : mesh.vertices) v[2] = v[2] < 0.16f ? 0 : v[2] * 3;
     return mesh;
 }
-/// Without what lies flat on the ground.
+/// The mesh without its flat base.
 Mesh without_base(Mesh mesh) {
     std::erase_if(mesh.triangles, [&](const TriangleIndices& t) {
         float most = 0;
@@ -33,7 +34,7 @@ Mesh without_base(Mesh mesh) {
     });
     return mesh;
 }
-/// What stood on z stands on y.
+/// The mesh turned so that y is up instead of z.
 Mesh turned_to_y(Mesh mesh) {
     for (auto& v : mesh.vertices) v = {v[0], v[2], -v[1]};
     return mesh;
@@ -52,7 +53,7 @@ void save_glb(const std::string& path, const Mesh& mesh) {
                .container();
 }
 
-/// The share of the pixels that differ by more than rounding.
+/// The share of pixels that differ by more than rounding (8 of 255 in a channel).
 double difference(const Image& a, const Image& b) {
     std::size_t differ = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
@@ -85,7 +86,7 @@ TEST_F(Pictures, StandUprightInEveryFormat) {
     const Mesh turned = turned_to_y(statue());
     save_glb(file("y.glb"), turned);
     for (const char* ending : {".obj", ".ply", ".off"}) {
-        save_mesh(file("z") + ending, statue());  // its flat base says otherwise than the format's rule
+        save_mesh(file("z") + ending, statue());  // its flat base overrides the default, y
         save_mesh(file("y") + ending, turned);
         save_mesh(file("scan") + ending, turned_to_y(without_base(statue())));
     }

@@ -1,5 +1,5 @@
-/// How tight fitted volumes are, beside the least ones of their kind: known ones, or what a search over many
-/// frames finds that knows nothing of the fit.
+/// Compares the size of fitted volumes with the least of their kind: a known volume, or the best of a search
+/// over many frames that is independent of the fit.
 #include <hedgerow/any_index.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/io/mesh_file.h>
@@ -16,8 +16,8 @@ namespace {
 
 using Points = std::vector<Vec3d>;
 
-/// Orthonormal axes in any direction; the first few are those of the coordinates, and turned by exact
-/// eighths.
+/// Orthonormal axes in any direction. The first eight are the coordinate axes turned about z by eighths of a
+/// turn.
 Rows<3> frame(std::uint64_t i) {
     if (i < 8) {
         const double c = std::cos(static_cast<double>(i) * std::numbers::pi / 4);
@@ -28,7 +28,7 @@ Rows<3> frame(std::uint64_t i) {
     const Vec3d x = random.direction<3>(), y = normalized(cross(x, random.direction<3>()));
     return {x, y, cross(x, y)};
 }
-/// The point with those coordinates in a frame, as a float can hold it.
+/// The point with coordinates p in a frame, rounded to float.
 Vec3d placed(const Rows<3>& f, const Vec3d& p) {
     return Vec3d(Vec3f(f[0] * p[0] + f[1] * p[1] + f[2] * p[2]));
 }
@@ -56,8 +56,8 @@ Size fitted(const Points& points) {
     return size_of(Vec3d(b.high) - Vec3d(b.low));
 }
 
-/// The least volume and the least surface of boxes around points, each by itself: 1,500 frames at random,
-/// then steps from the best ones, shorter and shorter.
+/// The least volume and the least surface of boxes around points, each searched on its own: 1,500 frames,
+/// then random steps from the best six, shorter and shorter.
 class LeastBox {
 public:
     explicit LeastBox(const Points& points) : points_(points) {}
@@ -69,11 +69,13 @@ public:
 private:
     template <class Measure>
     double least(Measure measure) const {
+        // Find the best six of many frames.
         std::vector<std::pair<double, std::uint64_t>> found;
         for (std::uint64_t i = 0; i < 1500; ++i) found.push_back({measure(in(frame(i))), i});
         std::partial_sort(found.begin(), found.begin() + 6, found.end());
         double best = found[0].first;
         for (std::size_t k = 0; k < 6; ++k) {
+            // Improve a frame by random steps: longer after a gain, else shorter.
             auto [here, number] = found[k];
             Rows<3> at = frame(number);
             Random random(2, k);
@@ -114,7 +116,7 @@ TYPED_TEST(OrientedBoxes, AreTheBoxesThatWereTurned) {
             Points points = placed(frame(i), corners(extent));
             EXPECT_LT(fitted<TypeParam>(points).volume, 1.01 * size_of(extent).volume) << "turn " << i;
             Random random(3, i);
-            for (int k = 0; k < 100; ++k) {  // and what is in it
+            for (int k = 0; k < 100; ++k) {  // points inside the box
                 const Vec3d u = random.in_cube<3>();
                 points.push_back(placed(frame(i), {u[0] * extent[0], u[1] * extent[1], u[2] * extent[2]}));
             }
@@ -122,8 +124,8 @@ TYPED_TEST(OrientedBoxes, AreTheBoxesThatWereTurned) {
         }
 }
 
-/// Around other tetrahedra the box of least surface may have a larger volume than the least: surface is what
-/// rays meet.
+/// The fit minimises surface, by which rays hit boxes. Around other tetrahedra than the first two the box of
+/// least surface may have more than the least volume.
 TYPED_TEST(OrientedBoxes, AreTightAroundTetrahedra) {
     const Points regular = {{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}},
                  corner = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -143,7 +145,7 @@ TYPED_TEST(OrientedBoxes, AreTightAroundTetrahedra) {
     }
 }
 
-/// The triangles nearest to one of a mesh.
+/// The corners of the `size` triangles of a mesh that are nearest to triangle `at`.
 Points patch(const TriangleMesh<double>& mesh, std::size_t at, std::size_t size) {
     const auto middle = [&](std::uint32_t i) {
         const auto& t = mesh.triangles[i];
@@ -177,6 +179,7 @@ TYPED_TEST(OrientedBoxes, InThePlaneHaveAboutTheLeastPerimeter) {
         Random random(6, i);
         const Vec2d x = random.direction<2>(), y(-x[1], x[0]),
                     extent(random.uniform(0.1, 1), random.uniform(0.1, 1));
+        // Choose points in a turned rectangle.
         std::vector<Vec2d> points;
         for (std::uint64_t k = 0; k < 3 + i; ++k) {
             const Vec2d u = random.in_cube<2>();
@@ -187,6 +190,7 @@ TYPED_TEST(OrientedBoxes, InThePlaneHaveAboutTheLeastPerimeter) {
             for (const auto& p : points) box.expand({dot(side, p), dot(Vec2d(-side[1], side[0]), p)});
             return box.half_area();
         };
+        // Find the least perimeter over 2,000 directions in a quarter turn.
         double least = perimeter({1, 0});
         for (int k = 1; k < 2000; ++k) {
             const double angle = k * std::numbers::pi / 4000;
@@ -201,6 +205,7 @@ TYPED_TEST(OrientedBoxes, InThePlaneHaveAboutTheLeastPerimeter) {
 TEST(OrientedBoxTrees, TestFewerTrianglesOfTurnedCubesThanBoxesDo) {
     constexpr std::uint32_t faces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                                             {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    // Place the cubes, and rays from around them to points among them.
     TriangleMesh<float> mesh;
     for (std::uint64_t i = 0; i < 600; ++i) {
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -214,6 +219,7 @@ TEST(OrientedBoxTrees, TestFewerTrianglesOfTurnedCubesThanBoxesDo) {
         const Vec3d from = Vec3d::all(7.5) + random.direction<3>() * 40.0;
         rays.push_back({Vec3f(from), Vec3f(random.in_cube<3>() * 15.0 - from)});
     }
+    // Count the triangles tested a ray.
     const auto tests = [&](const char* structure) {
         std::vector<Hit<float>> hits(rays.size());
         std::vector<Visits> visits(rays.size());

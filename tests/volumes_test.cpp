@@ -1,4 +1,4 @@
-/// Bounding volumes hold what they are fitted around, and no probe passes by what is in them.
+/// Bounding volumes contain what they are fitted around, and a probe of something in a volume enters it.
 #include <hedgerow/any_index.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/sets.h>
@@ -12,7 +12,7 @@ using exact::Real3;
 
 namespace {
 
-// Whether a volume holds a point, in long double and by the shapes' definitions.
+// `holds`: whether a volume contains a point, in long double and by the shapes' definitions.
 
 template <SlabVolume V>
 bool holds(const V& volume, const Real3& p) {
@@ -35,8 +35,8 @@ bool holds(const Cylinder<T>& c, const Real3& p) {
     return exact::size(across) <= Real(c.radius) && height >= Real(c.low) && height <= Real(c.high);
 }
 
-/// Whether normals that say so are orthonormal, but for their rounding to float: distances to a volume are
-/// summed as if.
+/// Whether the first V::orthonormal normals are orthonormal but for their rounding to float. Distances to a
+/// volume are summed as if they were exactly so.
 template <SlabVolume V>
 bool orthonormal(const V& volume) {
     for (int i = 0; i < V::orthonormal; ++i)
@@ -50,7 +50,7 @@ bool orthonormal(const V&) {
     return true;
 }
 
-/// Points of some arrangement, of coordinates in T.
+/// Points with coordinates in T, and a name for their arrangement.
 template <class T, int D>
 using Points = std::vector<Vec<T, D>>;
 template <class T, int D>
@@ -95,7 +95,7 @@ std::vector<Arrangement<T, D>> arrangements() {
     some("huge", [](Random& r) {
         return (r.in_cube<D>() - W::all(0.5)) * static_cast<double>(largest_coordinate<T>);
     });
-    const auto units = [](double x, Random& r) {  // 0 to 3 units in the last place more
+    const auto units = [](double x, Random& r) {  // adds 0 to 3 units in the last place
         T near = static_cast<T>(x);
         for (auto n = r.bits() % 4; n > 0; --n)
             near = std::nextafter(near, std::numeric_limits<T>::infinity());
@@ -127,8 +127,8 @@ void with_each_arrangement(F f) {
     }
 }
 
-/// Calls f(list) with each kind of volume, fitted around the points and enlarged by a share of the margin for
-/// answers.
+/// Calls f(list) with each kind of volume, fitted around the points and enlarged by `share` of the margin for
+/// errors of answers (cell_margin).
 template <class T, int D, class F>
 void with_each_volume(const Points<T, D>& points, F f, double share = 1) {
     std::vector<Vec<double, D>> wide;
@@ -139,6 +139,7 @@ void with_each_volume(const Points<T, D>& points, F f, double share = 1) {
         const bool of_space = kind == Volume::kdop6 || kind == Volume::kdop14 || kind == Volume::kdop18 ||
                               kind == Volume::kdop26 || kind == Volume::cylinder || kind == Volume::hull;
         const bool of_plane = kind == Volume::kdop4 || kind == Volume::kdop8;
+        // Kinds of the other dimension are refused, and plain boxes.
         if (kind == Volume::box || (D == 2 && of_space) || (D == 3 && of_plane)) {
             EXPECT_THROW((list_of<T, D>(kind)), InputError) << name;
             continue;
@@ -157,7 +158,7 @@ void with_each_volume(const Points<T, D>& points, F f, double share = 1) {
     EXPECT_EQ(kinds, D == 3 ? 8 : 4);
 }
 
-/// A point of the points' hull: one of them, or a mean of some, rounded to T.
+/// A point in the hull of the points: one of them, or a weighted mean of four, rounded to T.
 template <class T, int D>
 Vec<T, D> point_of(const Points<T, D>& points, Random& random) {
     const auto any = [&] { return Vec<double, D>(points[random.bits() % points.size()]); };
@@ -171,7 +172,8 @@ class Volumes : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Volumes, Scalars);
 
-/// Without a margin too, which would hide what is measured with another normal than the stored one.
+/// Expects that volumes contain their points, fitted with the margin and without it. A margin would hide
+/// heights that were measured along another normal than the stored one.
 template <class T, int D>
 void expect_points_held() {
     with_each_arrangement<T, D>([](const Points<T, D>& points) {
@@ -192,7 +194,7 @@ TYPED_TEST(Volumes, HoldWhatTheyAreFittedAround) {
     expect_points_held<TypeParam, 3>();
 }
 
-/// Rays that meet a point of the hull at t = 1 or after, from near and far and from inside.
+/// Rays that go through a point of the hull at t = 1, 2^30 or 2^-20, from near and far and from inside.
 template <class T, int D>
 void expect_rays_enter() {
     with_each_arrangement<T, D>([](const Points<T, D>& points) {
@@ -204,6 +206,7 @@ void expect_rays_enter() {
             const AnyVolume<T, D> volume{list, 0};
             for (std::uint64_t i = 0; i < 600; ++i) {
                 Random random(7, i);
+                // Aim at a point of the hull, in some cases across an axis.
                 const Vec<T, D> x = point_of(points, random);
                 const double away = i % 5 == 0 ? 1e4 : (i % 5 == 1 ? 0.1 : 2);
                 Ray<T, D> ray;
@@ -211,11 +214,12 @@ void expect_rays_enter() {
                 if (max_component(abs(ray.origin)) > largest_coordinate<T>) continue;
                 ray.direction = x - ray.origin;
                 if (i % 7 == 3) ray.origin[0] = x[0], ray.direction[0] = T(-0.0);
+                // Change the length of the direction.
                 T t = T(1);
                 if (i % 4 == 1) ray.direction = ray.direction * T(0x1p-30), t = T(0x1p30);
                 if (i % 4 == 2) ray.direction = ray.direction * T(0x1p20), t = T(0x1p-20);
                 const RayProbe<T, D> probe(ray, box);
-                // Only where t·direction is what it should be: directions of tiny scenes underflow.
+                // Leave out rays that miss x, since directions of tiny scenes underflow.
                 if (!probe.usable() || probe.ray().at(t) != ray.origin + (x - ray.origin)) continue;
                 T at;
                 EXPECT_TRUE(probe.enter(volume, t, at)) << "ray " << i;
@@ -238,6 +242,7 @@ void expect_regions_enter() {
             const AnyVolume<T, D> volume{list, 0};
             for (std::uint64_t i = 0; i < 600; ++i) {
                 Random random(8, i);
+                // Choose a point of the hull, and a point p in the hull, near it or far from it.
                 const Vec<T, D> x = point_of(points, random);
                 Vec<T, D> p = point_of(points, random);
                 if (i % 3 != 0)
@@ -246,6 +251,7 @@ void expect_regions_enter() {
                                       (random.uniform() * static_cast<double>(max_component(box.extent())) *
                                        (i % 3 == 1 ? 1 : 100)));
                 if (max_component(abs(p)) > largest_coordinate<T>) continue;
+                // Enter the volume by p with a limit that reaches x, and by boxes that contain x.
                 T at;
                 EXPECT_TRUE((PointProbe<T, D>(p).enter(volume, distance2(p, x), at))) << "point " << i;
                 const auto around = Box<T, D>().expand(x).expand(p);
@@ -263,7 +269,7 @@ TYPED_TEST(Volumes, AreEnteredByPointsAndBoxes) {
     expect_regions_enter<TypeParam, 3>();
 }
 
-/// They refuse what is plainly elsewhere, and their bounds of distances are worth something.
+/// Volumes refuse probes that are plainly elsewhere, and give a useful bound of the distance.
 template <class T, int D>
 void expect_rest_refused() {
     Points<T, D> points;
@@ -277,7 +283,7 @@ void expect_rest_refused() {
             const Vec<double, D> out = random.direction<D>() * 10.0 + Vec<double, D>::all(0.5);
             const Vec<T, D> p(out);
             T at;
-            // From out there a ray outward, one that is too short, and one across.
+            // From p outside: a ray outward, a ray towards the volume that is too short, and a ray across.
             const Vec<double, D> outward = out - Vec<double, D>::all(0.5);
             Vec<double, D> across;
             across[0] = -outward[1], across[1] = outward[0];
@@ -296,7 +302,7 @@ TYPED_TEST(Volumes, RefuseWhatIsElsewhere) {
     expect_rest_refused<TypeParam, 3>();
 }
 
-/// Tight where a volume of that kind can be: half the axis-aligned box's surface or less.
+/// Fits are tight around points that a volume of that kind can fit tightly.
 TEST(Fits, FollowWhatTheyHold) {
     Random random(3);
     const Vec3d along = normalized(Vec3d(1, 2, -1.5));

@@ -1,5 +1,5 @@
-/// The concepts carry more than rays: range counting that accepts whole subtrees and a monopole Barnes-Hut,
-/// over the same walkers; a type of the user's own; filters; counts.
+/// Walks serve more than rays: two queries of the user's own run over the same walkers, range counting that
+/// accepts whole subtrees and a monopole Barnes-Hut. Also filters, counts of visits, and builds.
 #include <gtest/gtest.h>
 
 #include <hedgerow/hedgerow.h>
@@ -13,7 +13,7 @@ using namespace hedgerow;
 
 namespace {
 
-/// What is below a node: how many, where, and (with unit masses) their center of mass.
+/// The points below a node: their box, number and sum. The sum over the number is the center of unit masses.
 struct Below {
     Box3d box;
     double count = 0;
@@ -39,7 +39,7 @@ std::vector<Below> gather(const I& index) {
         });
 }
 
-/// How many points lie in a box. Subtrees wholly inside are counted and not opened.
+/// Counts the points in a box. Subtrees wholly inside are counted and not opened.
 struct RangeCount {
     using Probe = BoxProbe<double, 3>;
     static constexpr Order order = Order::none;
@@ -155,6 +155,7 @@ TEST(Walkers, FiltersRefuseWhatTheListOfAllHitsHolds) {
                         Vec3f(random.direction<3>())};
         const Ray3f in{ray.origin, Vec3f(0.5f, 0.5f, 0.5f) - ray.origin};
         all_hits(index, in, all);
+        // The answers with a filter follow from the list of all hits.
         const auto expect = [&](auto filter) {
             const auto first = std::find_if(all.begin(), all.end(), filter);
             const auto hit = closest_hit(index, in, filter);
@@ -188,7 +189,7 @@ TEST(Walkers, VisitsAreCountedOnlyWhenAsked) {
     EXPECT_LT(visits.primitives, all.primitives);
 }
 
-/// A row of walls: what is behind the one that is hit is passed over by every structure.
+/// A row of walls. Every structure skips the walls behind the one that is hit.
 TEST(Walkers, PassOverWhatLiesBehindTheHit) {
     constexpr std::uint32_t walls = 512;
     TriangleMesh<float> row;
@@ -198,6 +199,7 @@ TEST(Walkers, PassOverWhatLiesBehindTheHit) {
         row.triangles.push_back({4 * i, 4 * i + 1, 4 * i + 2});
         row.triangles.push_back({4 * i + 3, 4 * i + 2, 4 * i + 1});
     }
+    // Compare the visits of the closest hit with those of all hits.
     const Ray3f ray{{-1, 0.3f, 0.4f}, {1, 0, 0}};
     for (const auto& name : matrix::structures_for<TriangleMesh<float>>()) {
         if (name == "brute-force") continue;

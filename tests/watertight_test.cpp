@@ -1,4 +1,4 @@
-/// No ray gets through a closed mesh at an edge or a vertex, in any structure.
+/// No ray passes through a closed mesh at an edge or a vertex, in any structure.
 #include "matrix.h"
 
 #include <hedgerow/scenes/meshes.h>
@@ -21,7 +21,7 @@ TriangleMesh<T> boulder() {
     return mesh;
 }
 
-/// From inside, at a vertex or at a point of an edge, rounded.
+/// A ray from inside to a vertex, or to a point of an edge, rounded.
 template <class T>
 Ray<T, 3> at_an_edge(const TriangleMesh<T>& mesh, std::uint64_t i) {
     Random random(17, i);
@@ -51,7 +51,7 @@ TYPED_TEST(Watertight, NoRayLeaksOutOfAClosedMesh) {
             for (std::size_t i = begin; i < end; ++i) rays.push_back(at_an_edge(mesh, i));
             const std::unique_ptr<bool[]> hit(new bool[rays.size()]);
             const std::span<const Ray<T, 3>> asked(rays);
-            const std::size_t half = rays.size() / 2;  // in a batch; the others alone
+            const std::size_t half = rays.size() / 2;  // the first half in a batch, the others alone
             index->any_hits(asked.first(half), {hit.get(), half});
             for (std::size_t i = half; i < rays.size(); ++i)
                 index->any_hits(asked.subspan(i, 1), {hit.get() + i, 1});

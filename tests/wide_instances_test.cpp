@@ -1,5 +1,5 @@
-/// Instances by kernels: every instruction set and width, on both levels or inside of any structure, against
-/// brute force over brute force; with filters and masks.
+/// Kernels over instances: every instruction set and width, on both levels or below any structure, against
+/// brute force over brute force, with filters and masks.
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 
@@ -16,7 +16,7 @@ using Mesh = TriangleMesh<float>;
 using Wide = decltype(build<WideBvh>(std::declval<const Mesh&>()));
 using Brute = decltype(build<BruteForce>(std::declval<const Mesh&>()));
 
-/// Meshes, and where they are placed: instance i is of mesh i modulo their number.
+/// Meshes and the transforms of their instances. Instance i has mesh i modulo the number of meshes.
 struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Transform<3>> transforms;
@@ -31,7 +31,7 @@ struct Scene {
             all.emplace_back(indexes[i % indexes.size()], transforms[i], mask(i), geometry(i));
         return InstanceSet<I>(all);
     }
-    /// Of the widths in turn, so that one scene has several.
+    /// Indexes of widths 4, 8 and 16 in turn, so that one scene has several widths.
     std::vector<Wide> wide() const {
         std::vector<Wide> all;
         for (std::size_t i = 0; i < meshes.size(); ++i) {
@@ -51,12 +51,12 @@ struct Scene {
     }
 };
 
-/// Masks as they are seen from hits.
+/// The filter of hits that keeps what InMasks keeps.
 struct OfMask {
     std::uint32_t wanted;
     bool operator()(const Hit<float>& hit) const { return (Scene::mask(hit.instance) & wanted) != 0; }
 };
-/// A filter of both kinds.
+/// A filter of masks and of hits.
 struct OddInMasks : InMasks {
     bool operator()(const Hit<float>& hit) const { return hit.element % 2 != 0; }
 };
@@ -88,6 +88,7 @@ void expect_answers(const Index& index, const Expected<float>& expected, bool fi
 
 void expect_brute_force(const char* name, const Scene& scene, std::size_t count, bool filtered = true) {
     SCOPED_TRACE(name);
+    // Query brute force over brute force.
     std::vector<Brute> brutes;
     for (const auto& mesh : scene.meshes) brutes.push_back(build<BruteForce>(mesh));
     const auto oracle_set = scene.over(brutes);
@@ -96,12 +97,14 @@ void expect_brute_force(const char* name, const Scene& scene, std::size_t count,
     EXPECT_TRUE(
         std::any_of(expected.all.begin(), expected.all.end(), [](const auto& h) { return h.size() > 1; }));
 
+    // Put wide BVHs below each outer structure.
     const auto wide = scene.wide();
     const auto set = scene.over(wide);
     const auto in_bvh = build<Bvh>(set);
     const auto in_grid = build<Grid>(set);
     const auto in_kdtree = build<KdTree>(set);
     const auto in_brute_force = build<BruteForce>(set);
+    // Compare with each instruction set, in wide BVHs of each width and in the others.
     for (const auto instructions : instruction_sets()) {
         const Using use(instructions);
         SCOPED_TRACE(instructions);
@@ -109,7 +112,7 @@ void expect_brute_force(const char* name, const Scene& scene, std::size_t count,
             SCOPED_TRACE(width);
             WideOptions options;
             options.width = width;
-            if (width == 8) options.intersection_cost = 0;  // leaves of several
+            if (width == 8) options.intersection_cost = 0;  // so leaves hold several instances
             const auto index = build<WideBvh>(set, options);
             ASSERT_EQ(index.validate(), "");
             expect_answers(index, expected, filtered);
@@ -141,7 +144,8 @@ TEST(WideInstances, Sheared) {
     expect_brute_force("sheared", {meshes(), all}, 300);
 }
 
-/// Instances in one place: the lowest counts, in whatever order they are met, and the next if it is refused.
+/// Of instances in one place the hit has the lowest number, in whatever order they are tested. If a filter
+/// refuses it, the hit has the next number.
 TEST(WideInstances, CoincidentCopies) {
     std::vector<Transform<3>> all;
     for (const auto& t : transforms<3>(5, Scales::any, 6)) all.insert(all.begin(), 8, t);
@@ -166,7 +170,7 @@ TEST(WideInstances, FarFlatTinyAndHuge) {
     }
 }
 
-/// Masks go for every query that takes a filter, over indexes of any kind.
+/// Masks apply to every query that takes a filter, over indexes of any kind.
 TEST(WideInstances, MasksAreAskedByEveryQuery) {
     const auto grid = build<Grid>(meshes()[0]);
     const auto set = InstanceSet{Instance(grid, {}, 1), Instance(grid, Transform<3>::scaling(2), 2, 9)};

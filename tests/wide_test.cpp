@@ -1,10 +1,10 @@
-/// The engine: every instruction set that this machine has gives the bits of brute force, one ray at a time
-/// and in batches of any size, on trees of any width.
+/// The engine: every instruction set of this machine gives the bits of brute force, one ray at a time and in
+/// batches of any size, on trees of any width.
 #include "engine.h"
 
+#include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
-#include <hedgerow/structures/bvh/wide/wide_bvh.h>
 #include <hedgerow/structures/grid/grid.h>
 
 using namespace hedgerow;
@@ -14,9 +14,10 @@ namespace {
 
 using Mesh = TriangleMesh<float>;
 
-/// All sets × widths × builders, on `count` rays of every kind.
+/// Compares all instruction sets × widths × builders with brute force, on `count` rays of every kind.
 void expect_brute_force(const char* name, const Mesh& mesh, std::size_t count) {
     SCOPED_TRACE(name);
+    // Query brute force.
     const auto brute = build<BruteForce>(mesh);
     const auto targets = targets_of(mesh);
     std::vector<Ray3f> rays;
@@ -25,6 +26,7 @@ void expect_brute_force(const char* name, const Mesh& mesh, std::size_t count) {
     if (targets.empty()) rays.push_back({Vec3f(0, 0, 0), Vec3f(1, 2, 3)});
     std::vector<Hit<float>> want(rays.size());
     closest_hits(brute, std::span<const Ray3f>(rays), std::span(want), default_executor());
+    // Compare each tree, with each instruction set.
     for (const int width : wide_widths)
         for (const auto builder : wide_builders) {
             WideOptions options;
@@ -75,7 +77,8 @@ TEST(Wide, TinyHugeAndFarMeshesAsBruteForce) {
 TEST(Wide, DegenerateMeshesAsBruteForce) {
     expect_brute_force("empty", {}, 0);
     Mesh mesh;
-    mesh.vertices = {{0, 0, 0}, {1, 0, 0.5f}, {0, 1, 0.75f}, {1, 1, 1.25f}};  // in a plane, and no flat box
+    // The vertices are in one plane that is not across an axis, so no box is flat.
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0.5f}, {0, 1, 0.75f}, {1, 1, 1.25f}};
     mesh.triangles = {{0, 1, 2}};
     expect_brute_force("one", mesh, 500);
     mesh.triangles.assign(100, {0, 1, 2});
@@ -105,6 +108,7 @@ TEST(Wide, BatchesOfAnySize) {
 TEST(Wide, CoherentRays) {
     const auto mesh = teapot_in_stadium<float>(3000);
     const auto index = build<WideBvh>(mesh);
+    // Take pictures of 48 × 48 from eight corners; one is parallel. Cut short some rays.
     const Vec3f center = index.bounds().center(), size = index.bounds().extent();
     std::vector<Ray3f> rays;
     for (int view = 0; view < 8; ++view)
@@ -126,8 +130,8 @@ TEST(Wide, CoherentRays) {
     }
 }
 
-/// Where a picture's rays change sign along axes, and their longest axis: up to four ways in a packet, in any
-/// order, one ray of a way or many, components that are 0 and -0 among them.
+/// Rays of a picture whose components change sign, or whose longest axis changes. A packet has up to four
+/// such ways, in any order, with one ray of a way or many, and some components are 0 or -0.
 TEST(Wide, RaysThatGoSeveralWaysTogether) {
     const auto mesh = teapot_in_stadium<float>(3000);
     const auto index = build<WideBvh>(mesh);
@@ -155,11 +159,12 @@ TEST(Wide, RaysThatGoSeveralWaysTogether) {
     }
 }
 
-/// A batch says by what it was answered.
+/// A batch returns the number of rays that each algorithm answered.
 TEST(Wide, KernelsAreChosenByWhatRaysDo) {
     const auto mesh = teapot_in_stadium<float>(3000);
     const auto index = build<WideBvh>(mesh);
     const auto targets = targets_of(mesh);
+    // Make rays of every kind, and rays of a picture of 32 columns.
     std::vector<Ray3f> apart(1000), together(1000);
     for (std::size_t i = 0; i < apart.size(); ++i) {
         apart[i] = ray_of(index.bounds(), targets, i);
@@ -210,7 +215,7 @@ TEST(Wide, ArraysOfDifferentLengthsAreRefused) {
     EXPECT_THROW(closest_hits(binary, std::span<const Ray3f>(rays), std::span(hits)), InputError);
 }
 
-/// So many primitives that their list alone would take 64 GB.
+/// So many primitives that the list of their boxes alone would take 64 GiB: 2^31 of 32 bytes each.
 struct TooMany {
     using Scalar = float;
     static constexpr int dimension = 3;
@@ -256,7 +261,7 @@ TEST(Wide, InstructionSetsAreListedAndChosen) {
     EXPECT_THROW(use_instruction_set("avx1024"), InputError);
 }
 
-/// Many rays: the sets against each other, and no leak at edges and vertices of a closed mesh.
+/// Compares the instruction sets with a binary BVH on many rays.
 TEST(Wide, InstructionSetsAgreeOnManyRays) {
     for (const auto& mesh : {teapot_in_stadium<float>(20000), hairball<float>(20000), soup<float>(20000)}) {
         const auto targets = targets_of(mesh);

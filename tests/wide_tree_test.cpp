@@ -1,6 +1,6 @@
-/// Wide BVHs as trees: what they hold, the memory they take, their options and costs.
-#include <hedgerow/structures/bvh/wide/collapse.h>
-#include <hedgerow/structures/bvh/wide/kernels.h>
+/// Wide BVHs as trees: their primitives, memory, options and costs.
+#include <hedgerow/engine/collapse.h>
+#include <hedgerow/engine/kernels.h>
 
 #include "trees.h"
 
@@ -54,7 +54,7 @@ TEST(Wide, TakesTheMemoryThatItsHeaderSays) {
             EXPECT_LE(tree.bytes(), 95 * leaves);
             EXPECT_EQ(tree.used_node_count(), tree.tree().nodes.size() + leaves);
         });
-    // Where areas say nothing there are as few nodes as may be.
+    // Over points in one place nodes have no area, and there are as few nodes as possible.
     PointCloud<float, 3> cloud;
     cloud.points.assign(4096, {1, 2, 3});
     cloud.points.emplace_back(9.f, 8.f, 7.f);
@@ -100,7 +100,8 @@ TEST(Wide, RefusesOptionsOutOfTheirRanges) {
 double area_of(const BuildTree<float, 3>& tree, std::uint32_t node) {
     return static_cast<double>(tree.nodes[node].box().half_area());
 }
-/// The areas of the inner nodes, if in each the largest child is opened as long as there is a place.
+/// The cost of a greedy collapse, which opens the largest child of a node as long as it has a free place. The
+/// cost is the sum of the areas of the inner nodes.
 double greedy_cost(const BuildTree<float, 3>& tree, std::uint32_t node, int width) {
     std::vector<std::uint32_t> children = {node};
     const auto inner = [&](std::uint32_t n) { return tree.nodes[n].count == 0; };

@@ -13,7 +13,7 @@ Times times_of(const std::vector<double>& seconds) {
 std::vector<Times> measured_in_turn(int rounds, const Contest& contest, Clock clock,
                                     const std::function<bool(const std::string&)>& go_on) {
     std::vector<std::vector<double>> seconds(contest.contenders.size());
-    std::size_t answers = 0;  // so that the work is not left out
+    std::size_t answers = 0;  // used below, so that the compiler keeps the work
     for (int r = 0; r < rounds; ++r)
         for (std::size_t c = 0; c < contest.contenders.size(); ++c) {
             if (!go_on(contest.names[c])) return {};

@@ -15,24 +15,24 @@ namespace hedgerow::benchmark {
 using compare::Clock;
 using compare::median;
 
-/// On the wall.
+/// Seconds on the wall clock.
 inline double seconds() {
     return compare::now(Clock::wall);
 }
 
-/// Does its work once, and returns how many rays hit, or any number.
+/// Does its work once. Returns the number of rays that hit, or any other number.
 using Contender = std::function<std::size_t()>;
 
-/// Of some rounds.
+/// The times of several rounds.
 struct Times {
     double median = 0;
-    double spread = 0;  ///< between the slowest and the fastest round, as a share of the median
+    double spread = 0;  ///< slowest minus fastest round, as a share of the median
 };
 Times times_of(const std::vector<double>& seconds);
 
 struct Contest {
     std::vector<Contender> contenders;
-    std::vector<std::string> names;  // of contenders
+    std::vector<std::string> names;  // by contender
 
     void add(std::string name, Contender contender) {
         names.push_back(std::move(name));
@@ -40,8 +40,8 @@ struct Contest {
     }
 };
 
-/// Every round goes through all contenders in turn, so that what else the machine does meets them alike.
-/// Before each run `go_on(name)` is asked; once it says no, nothing is returned.
+/// Each round runs all contenders in turn, so that other load on the machine affects them alike. Calls
+/// `go_on(name)` before each run; returns nothing once that is false.
 std::vector<Times> measured_in_turn(int rounds, const Contest& contest, Clock clock,
                                     const std::function<bool(const std::string&)>& go_on);
 

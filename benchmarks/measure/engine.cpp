@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/parallel/watched_executor.h>
 
 #include "engine_trial.h"
@@ -33,7 +33,7 @@ public:
     SceneCosts run() {
         try {
             costs_.finished = builds() && builds_on_threads() && plant() && traces();
-        } catch (const Cancelled&) {  // in a build
+        } catch (const Cancelled&) {  // thrown by a build
             costs_.finished = false;
         }
         return std::move(costs_);
@@ -46,7 +46,7 @@ private:
         WatchedExecutor watched(executor, {{}, o_.cancel});
         return build<WideBvh>(mesh_, options, watched);
     }
-    /// Calls f with each peer and each of its ways to build, until it says no.
+    /// Calls f with each peer and each of its builds, until f returns false.
     template <class F>
     bool each_peer_build(F f) const {
         for (const auto& peer : peers_)
@@ -55,12 +55,13 @@ private:
         return true;
     }
 
-    /// All of ours and theirs in turn.
+    /// Times all builds, ours and the peers', in turn. False if `go_on_` stopped it.
     bool builds() {
         Contest contest;
         std::vector<OurBuild> ours;
         std::vector<TheirBuild> theirs;
-        std::vector<std::vector<double>> seconds;  // of theirs: they tell what their build alone takes
+        std::vector<std::vector<double>> seconds;  // times of the build alone, as each peer reports them
+        // Add all builds as contenders.
         ours.resize(std::size(wide_builders));
         for (const WideBuilder b : wide_builders) add_ours(contest, b, ours[static_cast<std::size_t>(b)]);
         each_peer_build([&](const Peer& peer, const PeerBuild& how) {
@@ -74,6 +75,7 @@ private:
             return ++i > 0;
         });
         const auto times = measured_in_turn(o_.build_rounds, contest, Clock::process, go_on_);
+        // Store the times: ours from the contest, those of the peers as they report them.
         if (times.empty()) return false;
         for (std::size_t b = 0; b < ours.size(); ++b)
             ours[b].seconds = times[b].median, ours[b].spread = times[b].spread;
@@ -118,7 +120,7 @@ private:
         return true;
     }
 
-    /// The trees of ours that are to be traced, and the rays.
+    /// Builds the trees of ours that are traced, and makes the rays.
     bool plant() {
         for (const WideBuilder b : o_.builders) {
             if (!go_on_("build " + std::string(name_of(b)) + ", to be traced")) return false;
@@ -138,7 +140,8 @@ private:
     }
 
     bool traces() {
-        // A peer may limit the threads of the whole process while it has a tree: first what needs ours.
+        // A peer may limit the threads of the whole process while its tree exists, so the scaling on threads
+        // is measured before the peers build.
         std::vector<std::vector<Trial::Scaling>> scaling;
         if (!each_trial([&](Trial& trial) {
                 scaling.emplace_back();
@@ -148,12 +151,14 @@ private:
                 return !scaling.back().empty();
             }))
             return false;
+        // Build the peers' trees.
         if (!each_peer_build([&](const Peer& peer, const PeerBuild& how) {
                 if (!go_on_(peer.name() + ", build " + how.name + ", to be traced")) return false;
                 asked_.trees.push_back({&peer, how, peer.build(mesh_, how, instruction_set())});
                 return true;
             }))
             return false;
+        // Trace each set with each question, and add the scaling to its rows.
         auto scaled = scaling.begin();
         return each_trial([&](Trial& trial) {
             auto rows = trial.run(go_on_);
@@ -172,8 +177,8 @@ private:
         for (std::size_t e = 0; e < scaling.size(); ++e)
             row.ours[e].on_threads = scaling[e].seconds, row.ours[e].scaling = scaling[e].times;
     }
-    /// Each question of each set, until f says no. A shadow is a question of any hit; a set may be empty
-    /// where no primary ray hits.
+    /// Calls f with the trial of each question of each set, until f returns false. Shadow rays are for any
+    /// hit only. A set is empty where no primary ray hits.
     template <class F>
     bool each_trial(F f) const {
         for (std::size_t s = 0; s < o_.sets.size(); ++s)
@@ -192,7 +197,7 @@ private:
     GoOn go_on_;
     SceneCosts costs_;
     Asked asked_;
-    std::vector<std::vector<Ray3f>> sets_;  // of o_.sets
+    std::vector<std::vector<Ray3f>> sets_;  // by o_.sets
 };
 
 }  // namespace

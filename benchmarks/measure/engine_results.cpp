@@ -1,4 +1,4 @@
-/// What is made of the figures: who is held against whom, and means.
+/// Evaluates the figures: which peer each of ours is compared with, and means.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ double Row::ratio() const {
 }
 
 const TheirBuild* SceneCosts::against(const OurBuild& build) const {
-    // Where a peer has nothing like it, its medium one.
+    // Compare with the peers' medium builds where no peer has a build like ours.
     const auto fastest = [&](WideBuilder like) {
         const TheirBuild* best = nullptr;
         for (const TheirBuild& t : their_builds)
@@ -74,7 +74,7 @@ private:
 
 std::vector<Mean> means_of(const std::vector<SceneCosts>& scenes) {
     Means means;
-    for (const Mode mode : {Mode::one, Mode::batch})  // in this order, whatever was asked first
+    for (const Mode mode : {Mode::one, Mode::batch})  // in this order, whatever was measured first
         for (const bool together : {false, true})
             for (const Question question : {Question::closest, Question::any})
                 for (const SceneCosts& s : scenes)

@@ -64,7 +64,7 @@ void Trial::add_ours(Contest& contest) {
                         });
 }
 
-/// By single calls, and where rays are coherent by calls of sixteen too.
+/// Adds the peers by single calls, and where rays are coherent also by calls of sixteen.
 void Trial::add_theirs(Contest& contest) {
     const bool closest = question_ == Question::closest;
     for (const Asked::Tree& tree : asked_.trees) {
@@ -80,11 +80,12 @@ void Trial::add_theirs(Contest& contest) {
     }
 }
 
-/// From times in the order in which contenders were added.
+/// Makes the rows from `times`, which are in the order in which contenders were added.
 std::vector<Row> Trial::rows_of(const std::vector<Times>& times) const {
     const std::size_t n = rays_.size();
     std::vector<Row> rows;
     auto t = times.begin();
+    // Make a row for each mode, with the rates of our trees.
     for (const Mode mode : o_.modes) {
         Row row{kind_, question_, mode, n, 0, {}, {}};
         for (std::size_t e = 0; e < asked_.engines.size(); ++e, ++t) {
@@ -96,6 +97,8 @@ std::vector<Row> Trial::rows_of(const std::vector<Times>& times) const {
         }
         rows.push_back(std::move(row));
     }
+    // Add the rates of the peers. Single calls are compared in all modes, calls of sixteen with batches
+    // alone.
     for (const Asked::Tree& tree : asked_.trees)
         for (const int calls_of : {1, 16}) {
             if (calls_of == 16 && !by_sixteen()) continue;
@@ -114,13 +117,15 @@ std::vector<Row> Trial::rows_of(const std::vector<Times>& times) const {
     return rows;
 }
 
-/// A sample of the rays, by the plain walk; and whether the kernels and the peers answer as it does.
+/// Counts what a sample of the rays visits in the plain walk. Throws Disagreement where a kernel's answer
+/// differs from the plain walk's, and counts where a peer's answer differs.
 void Trial::count(std::vector<Row>& rows) {
     const std::size_t step = (rays_.size() + o_.sample - 1) / o_.sample;
     const std::size_t sample = (rays_.size() + step - 1) / step;
     const auto mean = [&](std::uint64_t count) {
         return static_cast<double>(count) / static_cast<double>(sample);
     };
+    // Count and check each of our trees.
     for (std::size_t e = 0; e < asked_.engines.size(); ++e) {
         if (has(Mode::batch)) batch(asked_.engines[e], serial_executor());
         Visits visits;
@@ -134,6 +139,7 @@ void Trial::count(std::vector<Row>& rows) {
             r.primitives = mean(visits.primitives), row.sample = sample;
         }
     }
+    // Count the answers of each peer that differ from ours.
     for (const Asked::Tree& tree : asked_.trees) {
         std::uint64_t apart = 0;
         for (std::size_t i = 0; i < rays_.size(); i += step) apart += differs(*tree.index, i);

@@ -1,4 +1,4 @@
-/// One question of one set of rays: everyone is asked, timed, counted and checked.
+/// One question for one set of rays: all trees are queried, timed, counted and checked.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace hedgerow::benchmark {
 
 using Engine = decltype(build<WideBvh>(std::declval<const TriangleMesh<float>&>()));
 
-/// What is asked: our trees, in the order of the builders that options name, and the peers'.
+/// The trees that are traced: ours in the order of EngineOptions::builders, and the peers'.
 struct Asked {
     std::vector<Engine> engines;
     struct Tree {
@@ -28,14 +28,15 @@ public:
     Trial(const Asked& asked, const EngineOptions& options, RayKind kind, const std::vector<Ray3f>& rays,
           Question question);
 
-    /// A row for each mode; none if `go_on` said no. Throws compare::Disagreement.
+    /// Returns a row for each mode, or none if `go_on` returned false. Throws compare::Disagreement where an
+    /// answer of the kernels differs from the plain walk's.
     std::vector<Row> run(const GoOn& go_on);
 
-    /// Batches on all threads that there are now, beside one by the same clock.
+    /// How batches on all threads in use compare with one thread on the same clock.
     struct Scaling {
-        double seconds, times;  ///< of OurRate
+        double seconds, times;  ///< OurRate::on_threads and OurRate::scaling
     };
-    /// Of each of our trees; none if `go_on` said no.
+    /// Returns the scaling of each of our trees, or nothing if `go_on` returned false.
     std::vector<Scaling> scaling(const GoOn& go_on);
 
     std::string title() const;
@@ -57,10 +58,10 @@ private:
     RayKind kind_;
     std::span<const Ray3f> rays_;
     Question question_;
-    std::vector<Hit<float>> hits_;  // what the last batch answered
+    std::vector<Hit<float>> hits_;  // the last batch's closest hits
     std::unique_ptr<bool[]> any_;
-    std::vector<KernelUse> use_;                                // of batches, by engine
-    std::vector<std::unique_ptr<PeerIndex::Packets>> packets_;  // by peer's tree
+    std::vector<KernelUse> use_;                                // of the last batch, by engine
+    std::vector<std::unique_ptr<PeerIndex::Packets>> packets_;  // by peer's tree; empty unless by_sixteen()
 };
 
 }  // namespace hedgerow::benchmark

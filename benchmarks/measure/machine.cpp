@@ -26,7 +26,8 @@ std::string compiler() {
 }
 
 double clock_rate() {
-    // 64-bit products that wait for each other take 3 cycles on every processor of the last decade.
+    // Each 64-bit product waits for the one before it. That takes 3 cycles on every processor of the last
+    // decade.
     constexpr int products = 20'000'000;
     std::uint64_t x = 3;
     double least = 1e300;

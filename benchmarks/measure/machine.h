@@ -1,4 +1,4 @@
-/// What the figures were measured on.
+/// The processor, the compiler and the clock rate that figures are measured with.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@ namespace hedgerow::benchmark {
 
 /// The processor's name, for the reader of the figures.
 std::string processor();
-/// "g++ 12.2", "clang++ 14.0".
+/// The compiler and its version: "g++ 12.2", "clang++ 14.0".
 std::string compiler();
-/// The clock in GHz while one thread computes.
+/// Measures the clock rate in GHz while one thread computes.
 double clock_rate();
 
 }  // namespace hedgerow::benchmark

@@ -13,8 +13,8 @@ Vec3f eye_of(const Box3f& box) {
     return box.center() + Vec3f(0.3f, 0.5f, 1.f) * (0.85f * length(box.extent()));
 }
 
-/// Calls f with each ray that hits, where its successor starts (off the surface, on the ray's side), and the
-/// normal there.
+/// Calls f(i, origin, normal) for each ray i that hits. `origin` is where its next ray starts: off the
+/// surface, on the side of ray i. The normal points to that side.
 template <class F>
 void for_each_hit(const TriangleMesh<float>& mesh, const std::vector<Ray3f>& rays,
                   const std::vector<Hit<float>>& hits, F f) {
@@ -92,7 +92,7 @@ std::vector<Ray3f> random_rays(const Box3f& box, std::size_t n, std::uint64_t se
 }
 
 std::vector<RaySet> ray_sets(const TriangleMesh<float>& mesh, const Box3f& box, int size, std::size_t n) {
-    const auto index = build<Bvh>(mesh);
+    const auto index = build(mesh);
     auto primary = primary_rays(box, size);
     std::vector<Hit<float>> hits(primary.size());
     closest_hits(index, std::span<const Ray3f>(primary), std::span<Hit<float>>(hits));

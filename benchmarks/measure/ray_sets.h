@@ -1,4 +1,4 @@
-/// The rays that the benchmarks ask.
+/// The rays that the benchmarks trace.
 #pragma once
 
 #include <string>
@@ -12,27 +12,29 @@
 
 namespace hedgerow::benchmark {
 
-/// A mesh file, or gen:NAME[:SIZE].
+/// Loads a mesh file, or generates gen:NAME[:SIZE].
 TriangleMesh<float> scene(const std::string& name);
 
-/// A picture's rays; what leaves their hits, spread as from a matte surface, or towards one light; and lines
-/// between random points of the scene's box.
+/// Primary rays are those of a picture. Diffuse rays leave the hits of primary rays as from a matte surface,
+/// shadow rays leave these hits towards one light. Random rays go from one random point of the scene's box
+/// through another.
 enum class RayKind { primary, diffuse, random, shadow };
 inline constexpr std::string_view ray_kinds[] = {"primary", "diffuse", "random", "shadow"};
 constexpr std::string_view name_of(RayKind kind) {
     return ray_kinds[static_cast<std::size_t>(kind)];
 }
-/// Whether neighbours among them go much the same way.
+/// Whether neighbouring rays of the kind take nearly the same path.
 constexpr bool coherent(RayKind kind) {
     return kind == RayKind::primary || kind == RayKind::shadow;
 }
 
-/// A pinhole view of the scene from the side, size × size, in 16×16 tiles.
+/// A pinhole view of the scene from the side. The rays are size × size, rounded up to whole tiles of 16×16,
+/// tile by tile.
 std::vector<Ray3f> primary_rays(const Box3f& box, int size);
-/// From the hits: cosine-distributed about the normal.
+/// Rays from the hits, cosine-distributed about the normal.
 std::vector<Ray3f> diffuse_rays(const TriangleMesh<float>& mesh, const std::vector<Ray3f>& rays,
                                 const std::vector<Hit<float>>& hits, std::uint64_t seed = 0);
-/// From the hits to a point light that stands above the scene and beside the eye, at t = 1.
+/// Rays from the hits to a point light, which is above the scene and beside the eye. The light is at t = 1.
 std::vector<Ray3f> shadow_rays(const TriangleMesh<float>& mesh, const Box3f& box,
                                const std::vector<Ray3f>& rays, const std::vector<Hit<float>>& hits);
 std::vector<Ray3f> random_rays(const Box3f& box, std::size_t n, std::uint64_t seed = 0);

@@ -18,7 +18,7 @@ namespace hedgerow::benchmark {
 
 namespace {
 
-/// Flush-to-zero and denormals-are-zero for as long as it lives: Embree's manual asks its callers for it.
+/// Sets flush-to-zero and denormals-are-zero while it lives, which Embree's manual asks of its callers.
 class FlushToZero {
 public:
 #if defined(__SSE3__) || defined(__x86_64__)
@@ -38,7 +38,7 @@ private:
 #endif
 };
 
-/// What Embree holds, as it tells.
+/// Bytes that Embree has allocated, now and at most, as its memory monitor reports them.
 struct Memory {
     std::atomic<ssize_t> now{0}, most{0};
 
@@ -74,6 +74,7 @@ struct Packets16 final : PeerIndex::Packets {
 class EmbreeIndex final : public PeerIndex {
 public:
     EmbreeIndex(const TriangleMesh<float>& mesh, const PeerBuild& how, const std::string& config) {
+        // Open a device whose allocations are counted.
         device_ = rtcNewDevice(config.c_str());
         if (device_ == nullptr) throw std::runtime_error("Embree refuses '" + config + "'");
         rtcSetDeviceMemoryMonitorFunction(device_, &Memory::changed, &memory_);
@@ -81,9 +82,10 @@ public:
         rtcSetSceneFlags(scene_, how.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
         rtcSetSceneBuildQuality(
             scene_, how.like == WideBuilder::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+        // Share the mesh with Embree.
         RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         vertices_ = mesh.vertices;
-        vertices_.emplace_back();  // it reads 16 bytes at the last vertex
+        vertices_.emplace_back();  // Embree reads 16 bytes at the last vertex
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_.data(), 0, 12,
                                    mesh.vertices.size());
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
@@ -91,6 +93,7 @@ public:
         rtcCommitGeometry(g);
         rtcAttachGeometry(scene_, g);
         rtcReleaseGeometry(g);
+        // Measure the time and the bytes of the build alone.
         const ssize_t before = memory_.now;
         memory_.most = before;
         build_seconds = compare::seconds_of([&] { rtcCommitScene(scene_); }, compare::Clock::process);
@@ -200,7 +203,7 @@ public:
                                      std::string_view instruction_set) const override {
         std::string config = "threads=1";
         if (instruction_set == "avx2") config += ",max_isa=avx2";
-        // It has no code without vectors: its least stands beside ours that has none.
+        // Embree has no code without vectors: our plain walk is compared with its least instruction set.
         if (instruction_set == "sse4" || instruction_set == "plain") config += ",max_isa=sse4.2";
         return std::make_unique<EmbreeIndex>(mesh, how, config);
     }

@@ -1,4 +1,4 @@
-/// Embree 3, if it was found (HEDGEROW_HAS_EMBREE).
+/// Embree 3 as a peer, if it was found (HEDGEROW_HAS_EMBREE).
 #pragma once
 
 #include "peer.h"

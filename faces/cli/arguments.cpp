@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/error.h>
-#include <hedgerow/spelling.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/base/spelling.h>
 
 namespace hedgerow::cli {
 
@@ -72,6 +72,7 @@ std::string unknown_argument(const CLI::App& app) {
     const auto chosen = app.get_subcommands();
     const CLI::App& verb = chosen.empty() ? app : *chosen.front();
     const auto left = app.remaining(true);
+    // Choose the argument to name: the first option, else the first of all.
     std::string_view wrong = left.empty() ? std::string_view() : left.front();
     for (const std::string& argument : left)
         if (argument.starts_with('-')) {
@@ -80,6 +81,7 @@ std::string unknown_argument(const CLI::App& app) {
         }
     if (!wrong.starts_with('-'))
         return fmt::format("'{}' is one argument too many. See 'hedgerow {} --help'", wrong, verb.get_name());
+    // Suggest the verb's nearest option, without the value of "--option=value".
     wrong = wrong.substr(0, wrong.find('='));
     std::vector<std::string> options;
     for (const CLI::Option* option : verb.get_options())

@@ -1,4 +1,4 @@
-/// What the command line is held against beyond what CLI11 does by itself.
+/// Checks of the command line beyond those of CLI11.
 #pragma once
 
 #include <string>
@@ -7,13 +7,16 @@
 
 namespace hedgerow::cli {
 
-/// Every number must be one, finite, and fit its type; no text may be empty.
+/// Makes the options of a verb reject values that are not numbers, not finite or too large for their type,
+/// and empty texts.
 void check_arguments(CLI::App& verb);
 
-/// Throws UsageError with the nearest verb if the first argument is none.
+/// Throws UsageError if the first argument is neither an option nor a verb. The message suggests the nearest
+/// verb.
 void check_verb(const CLI::App& app, int count, const char* const* arguments);
 
-/// What to say about arguments that nothing takes: the first, with the nearest option of the verb.
+/// A message about the arguments that CLI11 left over. It names the first unknown option, with the nearest
+/// option of the verb, or else the first argument.
 std::string unknown_argument(const CLI::App& app);
 
 }  // namespace hedgerow::cli

@@ -1,4 +1,4 @@
-/// hedgerow bench: the engine's rays a second, beside every peer that is present.
+/// hedgerow bench: rays per second of the engine and of every peer that is present.
 #include <algorithm>
 #include <filesystem>
 #include <thread>
@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hedgerow/error.h>
-#include <hedgerow/spelling.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/base/spelling.h>
 
 #include "bench_report.h"
 #include "measure/machine.h"
@@ -31,7 +31,8 @@ struct BenchArguments : Common {
 constexpr const char* usual_scenes[] = {"gen:teapot-in-stadium:50000", "gen:soup:200000",
                                         "gen:hairball:200000", "gen:terrain:20000"};
 
-/// Parts of a list that are among known words, as an enum whose values are their places. Throws UsageError.
+/// Parses a comma-separated list of known words. The position of a word in `known` is its value in E. A word
+/// that is repeated counts once. Throws UsageError for an unknown word.
 template <class E, std::size_t N>
 std::vector<E> list_of(const std::string& option, const std::string& list,
                        const std::string_view (&known)[N]) {
@@ -74,7 +75,8 @@ struct NamedMesh {
     TriangleMesh<float> mesh;
 };
 
-/// All of them before anything is measured: a long run ends in no surprise.
+/// Loads all scenes before anything is measured, so that a bad scene is reported before a long run. Throws
+/// InputError for a scene without triangles.
 std::vector<NamedMesh> load_all(const BenchArguments& a) {
     std::vector<std::string> scenes = a.scenes;
     if (scenes.empty()) scenes.assign(std::begin(usual_scenes), std::end(usual_scenes));
@@ -124,9 +126,10 @@ void show(const BenchArguments& a, const BenchReport& r) {
     for (const std::string& n : r.notes) text += "Note: " + n + ".\n";
     fmt::print("{}", text);
 }
-/// The page and the chart; those of before stay where an interruption left something out.
+/// Saves the page and the chart. An interrupted run saves under other names, so that complete files of an
+/// earlier run stay.
 void save_pages(const BenchArguments& a, const BenchReport& r) {
-    std::fflush(stdout);  // the tables, before anything happens to the files
+    std::fflush(stdout);  // prints the tables even if a file cannot be saved
     const auto save = [&](const std::string& path, const std::string& text) {
         const std::string to = r.finished ? path : unfinished_name(path);
         save_text(to, text);
@@ -139,9 +142,11 @@ void save_pages(const BenchArguments& a, const BenchReport& r) {
 int bench(const BenchArguments& a) {
     if (!a.instruction_set.empty()) use_instruction_set(a.instruction_set);
     const EngineOptions options = options_of(a);
+    // Load all scenes, and find the peers.
     const auto scenes = load_all(a);
     const auto peers = benchmark::peers();
     BenchReport report = report_for(options, peers);
+    // Measure one scene after the other until interrupted.
     {
         ProgressLine line("bench", a.quiet);
         const GoOn go_on = [&line](const std::string& next) {
@@ -153,6 +158,7 @@ int bench(const BenchArguments& a) {
             report.scenes.push_back(measure_engine(s.name, s.mesh, peers, options, go_on));
         }
     }
+    // Report what was finished, if anything was.
     report.finished = !interrupted;
     if (interrupted) report.notes.emplace_back("interrupted: only what was finished is here");
     if (!report.finished && std::all_of(report.scenes.begin(), report.scenes.end(), [](const SceneCosts& s) {

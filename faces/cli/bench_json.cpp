@@ -1,4 +1,4 @@
-/// What `bench` found, as JSON: seconds, bytes and counts, nothing rounded.
+/// The results of `bench` as JSON: seconds, bytes and counts, not rounded.
 #include <nlohmann/json.hpp>
 
 #include "bench_report.h"
@@ -59,6 +59,7 @@ ordered_json json_of(const Row& row, const BenchReport& report) {
 ordered_json json_of(const SceneCosts& s, const BenchReport& report) {
     const auto n = static_cast<double>(s.triangles);
     ordered_json builds = ordered_json::array(), theirs = ordered_json::array(), rows = ordered_json::array();
+    // Our builds, each with the build of a peer that it is compared with.
     for (const OurBuild& b : s.builds) {
         ordered_json j = {{"builder", name_of(b.builder)},
                           {"seconds", b.seconds},

@@ -1,4 +1,4 @@
-/// What `bench` found, as one page with plots, and as one picture.
+/// The results of `bench` as a page with plots, and as a chart.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr const char *one_colour = "#7cc0e8", *batch_colour = "#0072b2", *their_one_colour = "#f2b37c",
                      *their_sixteen_colour = "#d55e00";
 
-/// "dragon" of "dragon.ply.gz", "soup" of "gen:soup:200000": there is little room.
+/// A scene's name, short enough for an axis: "dragon" for "dragon.ply.gz", "soup" for "gen:soup:200000".
 std::string short_name(const SceneCosts& scene) {
     const bool generated = scene.name.starts_with("gen:");
     const std::string name = generated ? scene.name.substr(4) : scene.name;
@@ -31,7 +31,8 @@ double mrays(double seconds) {
     return 1e-6 / seconds;
 }
 
-/// The fastest of those of the peers that are not robust; 0 if there is none.
+/// The highest rate, in million rays a second, of the peers' trees that are not robust, in calls of
+/// `calls_of` rays. 0 if there is none.
 double fastest(const Row& row, int calls_of) {
     double rate = 0;
     for (const TheirRate& r : row.theirs)
@@ -39,7 +40,7 @@ double fastest(const Row& row, int calls_of) {
     return rate;
 }
 
-/// One set of rays in one question, in all scenes.
+/// A panel for one set of rays and one kind of query, with a group of bars for each scene.
 BarPlot::Panel panel_of(const BenchReport& r, RayKind set, Question question) {
     const std::string asked = question == Question::closest ? "closest hit" : "any hit";
     BarPlot::Panel panel{fmt::format("{} rays, {}", name_of(set), asked), {}};
@@ -85,7 +86,7 @@ std::string question_plot(const BenchReport& r, Question question) {
     return plot.panels.empty() ? "" : svg_of(plot);
 }
 
-/// How far a visit is from the least that is possible, by how many a ray makes.
+/// Plots cycles per visit over visits per ray, beside the least cycles that are possible.
 std::string visits_plot(const BenchReport& r) {
     PointPlot plot{"Cycles a visit of a node or a leaf",
                    "visits a ray",

@@ -1,4 +1,4 @@
-/// What `bench` found, and the ways to say it: tables, JSON, a page, a chart.
+/// The results of `bench`, and their output as tables, JSON, a page and a chart.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace hedgerow::cli {
 struct BenchReport {
     std::string processor, compiler, instruction_set;
     unsigned cores = 0;
-    double gigahertz = 0;  ///< while one thread computes
+    double gigahertz = 0;  ///< clock rate while one thread computes
     int width = 0;         ///< children a node
     unsigned threads = 1;
     benchmark::EngineOptions options;
@@ -24,23 +24,23 @@ struct BenchReport {
     };
     std::vector<PeerFacts> peers;
     std::vector<benchmark::SceneCosts> scenes;
-    std::vector<std::string> notes;  ///< what a reader of the figures must know
+    std::vector<std::string> notes;  ///< facts that a reader of the figures must know
     bool finished = true;
 
-    /// How many times the least that is possible a visit of our fastest tree takes.
+    /// Cycles per visit of our fastest tree, as a multiple of the least that is possible (floor_of).
     double times_floor(const benchmark::Row& row) const;
 };
 
-/// "AMD EPYC, 2 cores, ...": a line.
+/// One line about the machine, the build and the peers: "AMD EPYC, 2 cores, ...".
 std::string machine_of(const BenchReport& report);
 std::vector<Table> tables_of(const BenchReport& report);
 nlohmann::ordered_json json_of(const BenchReport& report);
-/// One file, with plots, that needs no other.
+/// An HTML page with plots, which needs no other file.
 std::string page_of(const BenchReport& report);
-/// One picture: rates by ray set and scene, ours and theirs.
+/// An SVG chart of our rates and the peers', by ray set and scene.
 std::string chart_of(const BenchReport& report);
 
-/// "closest, one", "Embree medium": how rows and trees are named.
+/// Names of rows, as "primary, closest, one", and of the peers' rates, as "Embree medium".
 std::string name_of(const benchmark::Row& row);
 std::string name_of(const benchmark::TheirRate& rate);
 

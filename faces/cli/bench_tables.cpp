@@ -1,4 +1,4 @@
-/// What `bench` found, as tables.
+/// The results of `bench` as tables.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -37,6 +37,7 @@ Table builds_table(const BenchReport& r, const SceneCosts& s) {
     }
     if (!r.peers.empty())
         for (const char* column : {"against", "its time", "its B", "x"}) t.columns.emplace_back(column);
+    // A row for each of our builds, with the peer's build that it is compared with.
     const auto n = static_cast<double>(s.triangles);
     const auto bytes = [&](std::size_t all) { return fmt::format("{:.1f}", static_cast<double>(all) / n); };
     for (const OurBuild& b : s.builds) {
@@ -74,6 +75,7 @@ Table rays_table(const BenchReport& r, const SceneCosts& s) {
     }
     if (!r.peers.empty())
         for (const char* column : {"against", "its Mrays/s", "x"}) t.columns.emplace_back(column);
+    // A row for each row of results: our best tree, then the peer that it is compared with.
     for (const Row& row : s.rows) {
         const OurRate& best = row.best();
         t.rows.push_back({name_of(row), rate_text(best.seconds), fmt::format("{:.0f}", best.seconds * 1e9),
@@ -96,7 +98,7 @@ Table rays_table(const BenchReport& r, const SceneCosts& s) {
     return t;
 }
 
-/// Where an answer of a peer is not ours: by its first build, and by its robust one.
+/// Shares of the sample's rays that a peer answers differently: by its first build, and by its robust ones.
 std::string differs_text(const Row& row) {
     std::string text;
     for (const TheirRate& r : row.theirs)
@@ -105,7 +107,7 @@ std::string differs_text(const Row& row) {
     return text;
 }
 
-/// Everyone's rates, a row for each question of a set.
+/// The rates of all trees, ours and the peers', with a row for each set of rays and kind of query.
 Table all_table(const SceneCosts& s) {
     Table t{s.name + ": all trees", "Mrays/s", {"rays"}, {}};
     if (!s.their_builds.empty())
@@ -120,13 +122,15 @@ Table all_table(const SceneCosts& s) {
     const auto name_in = [](const Row& row, const OurRate& rate) {
         return fmt::format("{}, {}", name_of(row.mode), name_of(rate.builder));
     };
-    for (const Row& row : s.rows)  // ours first
+    // Make the columns in their order: our trees, then the peers' by single rays, then by calls of 16.
+    for (const Row& row : s.rows)
         for (const OurRate& r : row.ours) column(name_in(row, r));
     for (const int calls_of : {1, 16})
         for (const Row& row : s.rows)
             for (const TheirRate& r : row.theirs)
                 if (r.calls_of == calls_of) column(name_of(r));
     if (!s.their_builds.empty()) column("differs");
+    // Fill the cells. Rows of one set and query that differ in mode share a row of the table.
     for (const Row& row : s.rows) {
         const std::string asked = fmt::format("{}, {}", name_of(row.set), name_of(row.question));
         const auto known =

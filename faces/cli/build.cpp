@@ -1,10 +1,10 @@
-/// hedgerow build: an index in a file.
+/// hedgerow build: builds an index and saves it in a file.
 #include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/io/writable.h>
 

@@ -1,4 +1,4 @@
-/// Structures side by side, as cells and as trees.
+/// Pictures of structures side by side, as cells and as trees.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,7 +14,7 @@ std::string class_of(const FlatCell& c) {
     return fmt::format("class=\"cell{} l{}\"", c.leaf ? (c.items > 0 ? " leaf" : " leaf void") : "", c.level);
 }
 
-/// From the leaves up, so that the lines of the first levels lie on top.
+/// Draws the deepest cells first, so that the lines of the first levels lie on top.
 void draw_cells(Svg& svg, const Panel& panel, const FlatStructure& flat) {
     std::vector<const FlatCell*> order;
     for (const auto& c : flat.cells) order.push_back(&c);
@@ -22,14 +22,14 @@ void draw_cells(Svg& svg, const Panel& panel, const FlatStructure& flat) {
     if (order.size() <= most_with_hints) {
         for (const auto* c : order) svg.polygon(panel(c->corners), class_of(*c), hint_of(*c));
     } else {
-        std::map<std::pair<int, std::string>, Path> paths;  // by the level, the deepest first
+        std::map<std::pair<int, std::string>, Path> paths;  // by level, the deepest first
         for (const auto* c : order) paths[{-c->level, class_of(*c)}].polygon(panel(c->corners));
         for (const auto& [key, path] : paths) svg.path(path, key.second);
     }
     for (const auto& s : flat.shared) svg.polygon(panel(s), "class=\"shared\"");
 }
 
-/// How far the frame reaches, so that sizes can be read off.
+/// Draws the frame and the coordinates of its corners, so that sizes can be read off.
 void draw_corners(Svg& svg, const Panel& panel, const Box2d& shown) {
     const Box2d f = panel.frame();
     svg.rect(f, "fill=\"none\" stroke=\"#c8ccd4\" stroke-width=\"1\"");
@@ -38,8 +38,10 @@ void draw_corners(Svg& svg, const Panel& panel, const Box2d& shown) {
     svg.text({f.high[0], f.low[1] - 5}, at(shown.high), "class=\"quiet\" text-anchor=\"end\"");
 }
 
-/// A swatch a level with the number of its cells, of one structure or two, and what is hatched.
+/// Draws a swatch for each level, with the number of its cells in each structure if there are at most two,
+/// and swatches for the hatchings.
 void draw_legend(Svg& svg, const Layout& layout, const std::vector<NamedStructure>& structures, int levels) {
+    // Count the cells of each level, and the empty leaves.
     std::vector<std::vector<std::size_t>> counts(static_cast<std::size_t>(levels),
                                                  std::vector<std::size_t>(structures.size()));
     std::size_t empty = 0;
@@ -51,6 +53,8 @@ void draw_legend(Svg& svg, const Layout& layout, const std::vector<NamedStructur
         }
         shared = shared || !structures[s].flat.shared.empty();
     }
+    // Draw the levels within the height. If they are too close for a label each, only every `every`-th has
+    // one.
     const bool counted = structures.size() <= 2;
     const Vec2d at = layout.legend();
     const double room = layout.legend_height() - 60, step = std::clamp(room / levels, 1.0, 18.0);
@@ -66,6 +70,7 @@ void draw_legend(Svg& svg, const Layout& layout, const std::vector<NamedStructur
             text += fmt::format("{} {}", s > 0 ? " |" : ":", counts[static_cast<std::size_t>(k)][s]);
         svg.text({at[0] + 30, y + high / 2 + 4}, text, "class=\"legend\"");
     }
+    // Explain the hatchings that are in the picture.
     Legend rest(svg, at + Vec2d(0, 24 + step * levels));
     const auto swatch = [&](const char* look) {
         return [&svg, look](const Box2d& box) { svg.rect(box, look); };
@@ -80,6 +85,7 @@ void draw_legend(Svg& svg, const Layout& layout, const std::vector<NamedStructur
 }  // namespace
 
 std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructure>& structures) {
+    // Find what all panels share: the frame, the number of levels, the width of lines.
     int levels = 1;
     std::size_t cells = 0;
     std::vector<const FlatStructure*> flats;
@@ -103,12 +109,14 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
     svg.text({picture_margin, 32}, scene.title, "class=\"title\"");
     const double size = crowding(scene.primitives.size(), first);
     for (std::size_t s = 0; s < structures.size(); ++s) {
+        // Draw the cells with the primitives over them.
         const Panel panel(shown, cells_area(s));
         draw_corners(svg, panel, shown);
         draw_cells(svg, panel, structures[s].flat);
         draw_primitives(svg, panel, scene.primitives, size, "");
         layout.draw_caption(svg, s);
         if (structures[s].tree.nodes.empty()) continue;
+        // Draw the tree beside the cells; numbers connect its leaves with theirs.
         number_leaves(svg, panel, structures[s].flat);
         const TreePanel tree(structures[s].tree, tree_part(layout.area(s)));
         tree.draw_links(svg);

@@ -1,4 +1,4 @@
-/// What the verbs share: options, loading and building with progress, results and files.
+/// Code that the verbs share: options, loading and building with progress, results and files.
 #pragma once
 
 #include <string>
@@ -23,10 +23,10 @@ struct Common {
     std::uint64_t seed = 0;
 };
 
-/// "cornell-box" of "gen:cornell-box:32"; empty for a file.
+/// The name of a generated scene: "cornell-box" for "gen:cornell-box:32". Empty for a file.
 std::string generated_name(const Common& c);
 
-/// Throws MemoryShort for a scene that is known to be too large.
+/// Throws MemoryShort if a generated scene is known to need more memory than there is.
 void check_memory(const SceneSpec& spec);
 
 template <class T>
@@ -43,10 +43,11 @@ Scene<T> load(const Common& c) {
     return load_scene<T>(c.scene, {c.drop_bad}, line.progress());
 }
 
-/// All cores, until Ctrl-C: then they throw Cancelled.
+/// An executor on all cores, whose work throws Cancelled after Ctrl-C.
 Executor& interruptible_executor();
 
-/// What `structure` names over the primitives, with progress. Throws Cancelled when interrupted.
+/// Builds the structure that `structure` names over the primitives, and shows progress. Throws Cancelled when
+/// interrupted, and as build_any does.
 template <class P>
 auto build_shown(const Common& c, const std::string& structure, const P& primitives) {
     ProgressLine line("building " + structure, c.quiet);
@@ -54,32 +55,32 @@ auto build_shown(const Common& c, const std::string& structure, const P& primiti
     return build_any(structure, primitives, watched);
 }
 
-/// "float" or "double": as the user asked, or as a saved index is.
+/// "float" or "double": the precision of a saved index, or else the one that the user chose.
 std::string precision_of(const Common& c);
 
-/// Calls f with a float or a double.
+/// Calls f(float()) or f(double()), by `precision_of`. Returns the result of f.
 template <class F>
 int in_precision(const Common& c, F f) {
     return precision_of(c) == "double" ? f(double()) : f(float());
 }
 
-/// A number in double that has the digits of its own type: 0.05f is 0.05, not 0.05000000074505806.
+/// The double with the shortest decimal digits of the number: 0.05f becomes 0.05, not 0.05000000074505806.
 double shortest(float number);
 inline double shortest(double number) {
     return number;
 }
 
-/// Prints results. Bytes of names that are no UTF-8 are replaced.
+/// Prints results to stdout. Bytes of names that are not UTF-8 are replaced.
 void print_json(const nlohmann::ordered_json& results);
 
-/// A text in lines of at most so many letters, broken at blanks; a longer word has a line of its own.
+/// Breaks a text at blanks into lines of at most `letters` bytes. A longer word has a line of its own.
 std::vector<std::string> wrapped(std::string_view text, std::size_t letters);
 
-/// The extension of a path in lower case, as ".png".
+/// The extension of a path in lower case, with its dot: ".png".
 std::string ending_of(const std::string& path);
 
-/// Where what was finished before an interruption goes: "a.unfinished.png" beside "a.png", which stays as it
-/// was.
+/// The name under which an interrupted verb saves the finished part of `path`: "a.unfinished.png" for
+/// "a.png". An earlier "a.png" stays as it was.
 std::string unfinished_name(const std::string& path);
 
 }  // namespace hedgerow::cli

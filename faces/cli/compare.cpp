@@ -1,12 +1,12 @@
-/// hedgerow compare: every structure, every query; what each costs, and which to use.
+/// hedgerow compare: measures every structure with every query, and recommends structures.
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/any_index.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/compare/measure.h>
-#include <hedgerow/error.h>
 
 #include "compare_report.h"
 #include "verbs.h"
@@ -43,7 +43,8 @@ compare::MeasureOptions measure_options(const CompareArguments& a, bool all) {
     return o;
 }
 
-/// The camera that the user placed; none where nobody did.
+/// The camera that the user placed, or nothing without camera options. Throws InputError for a flat scene
+/// with camera options.
 template <class P>
 std::optional<Camera> placed_camera(const CompareArguments& a, const P& primitives) {
     if (a.view.eye.empty() && a.view.target.empty() && a.view.fov == 0 && a.view.up == "auto")
@@ -61,7 +62,8 @@ std::optional<Camera> placed_camera(const CompareArguments& a, const P& primitiv
     }
 }
 
-/// The names and options are right: one primitive is enough to see that, before a long run.
+/// Checks names and options before a long run, by building each structure over one primitive. Throws as
+/// build_any does.
 void check_structures(const std::vector<std::string>& structures, int dimension) {
     for (const std::string& s : structures) {
         if (dimension == 3)
@@ -103,7 +105,8 @@ public:
         report_.by_size.push_back(std::move(c));
     }
 
-    /// Those that were asked for, or what is usual; brute force is always there to pay against.
+    /// The structures that the user named, or the usual ones for `size` primitives. Brute force is always
+    /// among them, as the baseline of costs.
     template <class P>
     std::vector<std::string> structures_for(std::size_t size) {
         if (a_.structures.empty()) {
@@ -150,7 +153,7 @@ public:
     }
 
 private:
-    /// Throws UsageError, before anything is measured, where --for names a query that P cannot be asked.
+    /// Throws UsageError, before anything is measured, if --for names a query that P does not support.
     template <class P>
     void check_ask() const {
         if (!a_.ask.empty() && !compare::can_be_asked<P>(report_.ask))
@@ -169,7 +172,7 @@ private:
         compare::Comparison c;
         try {
             c = compare::measure(primitives, structures, options, executor_, line.progress());
-        } catch (const Cancelled&) {  // what was measured before is shown
+        } catch (const Cancelled&) {  // comparisons measured before are still shown
             c.finished = false;
         }
         c.scene = a_.scene;
@@ -189,14 +192,16 @@ void run_scale(const CompareArguments& a, Comparing& comparing) {
     if (!a.scene.starts_with("gen:"))
         throw UsageError(a.scene + ": --scale needs a scene of any size, as gen:terrain");
     SceneSpec spec = parse_scene_spec(a.scene);
+    // Without --sizes measure from 1000 to the scene's SIZE (at least 8000), or to 64,000 if it has none.
     const std::string standard =
         fmt::format("1000..{}", std::max<std::uint64_t>(8000, spec.size.value_or(64'000)));
     const auto sizes = compare::sizes_of(a.sizes.empty() ? standard : a.sizes);
     if (sizes.size() < 3)
         throw UsageError("--sizes " + a.sizes + ": growth needs at least three sizes, as 1k,4k,16k");
+    // Generate and measure a scene of each size, the smallest first.
     std::vector<std::string> structures;
     const auto scale = [&](const auto& set) {
-        // The same ones at each size: those that the largest allows.
+        // Measure one list of structures at all sizes: the list for the largest size.
         if (structures.empty())
             structures = comparing.structures_for<std::remove_cvref_t<decltype(set)>>(sizes.back());
         comparing.scale_on(set, structures);
@@ -207,11 +212,11 @@ void run_scale(const CompareArguments& a, Comparing& comparing) {
             spec.size = size;
             std::visit(scale, generate_scene<T>(a, spec));
         }
-    } catch (const Cancelled&) {  // while generating: the sizes before are shown
+    } catch (const Cancelled&) {  // interrupted while generating: the smaller sizes are still shown
     }
 }
 
-/// In lines of a terminal, all but the first indented.
+/// Wraps a text into lines of a terminal and indents all but the first.
 std::string paragraph(const std::string& text) {
     constexpr std::size_t letters = 110;
     std::string result;
@@ -224,6 +229,7 @@ void show(const CompareArguments& a, const CompareReport& r) {
     if (a.json) {
         print_json(json_of(r));
     } else {
+        // Collect the text: advice, summary, tables, notes.
         std::string text = r.scene;
         if (r.comparison) text += fmt::format(": {} {}", r.comparison->size, r.comparison->primitive);
         text += "\n\n";
@@ -237,7 +243,7 @@ void show(const CompareArguments& a, const CompareReport& r) {
         fmt::print("{}", text);
     }
     if (a.html.empty()) return;
-    std::fflush(stdout);  // before anything happens to the page
+    std::fflush(stdout);  // prints the results even if the page cannot be saved
     const std::string page = interrupted ? unfinished_name(a.html) : a.html;
     save_text(page, page_of(r));
     if (!a.json) fmt::print("{}\n", page);
@@ -250,7 +256,7 @@ int compare_in(const CompareArguments& a) {
     try {
         if (!interrupted && (!a.scale || !a.sweeps.empty()))
             std::visit([&](const auto& set) { comparing.compare_on(set); }, load<T>(a));
-    } catch (const Cancelled&) {  // while loading: growth that was measured before is shown
+    } catch (const Cancelled&) {  // interrupted while loading: growth measured before is still shown
     }
     if (!comparing.measured_any()) throw Cancelled("nothing was measured");
     show(a, comparing.report());

@@ -1,4 +1,4 @@
-/// What `compare` found, as JSON: seconds, bytes and counts, nothing rounded.
+/// The results of `compare` as JSON: seconds, bytes and counts, not rounded.
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/compare/break_even.h>

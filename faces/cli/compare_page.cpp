@@ -1,4 +1,5 @@
-/// What `compare` found, as one page with plots. It is well-formed as XML too, and asks for no other file.
+/// The results of `compare` as a page with plots. The page is well-formed as XML too, and needs no other
+/// file.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -18,8 +19,8 @@ using namespace compare;
 
 namespace {
 
-/// Build and queries together over how many queries, against the one that costs least by then: who is at 1
-/// is best there.
+/// Plots the time of a build and n queries over n, as a multiple of the least of all structures. A structure
+/// at 1 is the best for that n.
 std::string total_plot(const Comparison& c, Ask ask) {
     constexpr double most = 30;
     LinePlot plot{
@@ -30,6 +31,7 @@ std::string total_plot(const Comparison& c, Ask ask) {
         {}};
     for (std::size_t i = 0; i < c.structures.size(); ++i)
         plot.series.push_back({c.structures[i].structure, i, {}});
+    // Sample n from 1 to 10^8, eight times a decade. Points beyond `most` are left out.
     for (int step = 0; step <= 64; ++step) {
         const double queries = std::pow(10, step / 8.0);
         const auto total = [&](const StructureCost& s) {
@@ -52,7 +54,7 @@ std::string structures_plot(const Comparison& c, std::string title, Unit unit, F
     return svg_of(plot);
 }
 
-/// A row a structure, a dot for each kind of a query.
+/// Plots one figure of the query `ask`: a row for each structure, a dot for each kind of the query.
 std::string kinds_plot(const Comparison& c, Ask ask, std::string title, Unit unit,
                        double QueryCost::*figure) {
     DotPlot plot{std::move(title), unit, {}, {}};
@@ -89,9 +91,10 @@ std::string comparison_plots(const Comparison& c, Ask ask, bool timed) {
     return html;
 }
 
-/// A line for each of some figures, over the values of the option.
+/// Plots times, counts and memory over the values of a sweep's option, with a line for each figure.
 std::string sweep_plots(const CompareReport::Swept& swept, Ask ask, bool timed) {
     const auto& all = swept.comparison.structures;
+    // Values that are all positive numbers have an axis; other values have a place each.
     const auto number = [](const std::string& text) {
         char* end = nullptr;
         const double value = std::strtod(text.c_str(), &end);
@@ -113,6 +116,7 @@ std::string sweep_plots(const CompareReport::Swept& swept, Ask ask, bool timed) 
         }
         return svg_of(p);
     };
+    // Time has a line for each kind of the query; counts are means over the kinds.
     using Line = std::pair<std::string, std::function<double(const StructureCost&)>>;
     std::vector<Line> times;
     for (std::size_t q = 0; q < all.front().queries.size(); ++q)

@@ -1,4 +1,4 @@
-/// What `compare` found, and the three ways to say it: tables, JSON, a page.
+/// The results of `compare`, and their output as tables, JSON and a page.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,8 @@ namespace hedgerow::cli {
 
 struct CompareReport {
     std::string scene;
-    std::vector<std::string> notes;                ///< what a reader of the figures must know
-    compare::Ask ask = compare::Ask::closest_hit;  ///< what break-even, advice and growth are about
+    std::vector<std::string> notes;                ///< facts that a reader of the figures must know
+    compare::Ask ask = compare::Ask::closest_hit;  ///< the query of break-even, advice and growth
     bool timed = true;                             ///< false: counts alone
     std::optional<compare::Comparison> comparison;
     struct Swept {
@@ -29,17 +29,17 @@ struct CompareReport {
     std::vector<compare::Comparison> by_size;
 };
 
-/// Everything that is found, as tables: what the terminal and the page show.
+/// All results as tables, for the terminal and for the page.
 std::vector<Table> tables_of(const CompareReport& report);
-/// What to use for what and why, a line each. None without times.
+/// A line for each need: the structure to use, and why. Empty without times or without a comparison.
 std::vector<std::string> advice_lines(const CompareReport& report);
-/// All structures, a row each; none where only an option or growth was looked at.
+/// One table with a row for each structure. Nothing if only sweeps or growth were measured.
 std::optional<Table> summary_of(const CompareReport& report);
-/// What must be known of the rays to read the figures.
+/// Notes about the rays that a reader of the figures must know.
 std::vector<std::string> ray_notes(const compare::Comparison& comparison);
 
 nlohmann::ordered_json json_of(const CompareReport& report);
-/// One file, with plots, that needs no other.
+/// An HTML page with plots, which needs no other file.
 std::string page_of(const CompareReport& report);
 
 }  // namespace hedgerow::cli

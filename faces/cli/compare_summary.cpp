@@ -1,4 +1,4 @@
-/// What `compare` found, in short: advice and one table.
+/// The results of `compare` in short: advice and one table.
 #include <algorithm>
 
 #include <fmt/format.h>

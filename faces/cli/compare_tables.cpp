@@ -1,4 +1,4 @@
-/// What `compare` found, as tables.
+/// The results of `compare` as tables.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ using namespace compare;
 
 namespace {
 
-/// "1.00" for the best.
+/// A value as a multiple of the best value: "1.00" for the best itself. Empty if the best is 0.
 std::string against(double value, double best) {
     if (!(best > 0)) return "";
     return value / best < 100 ? fmt::format("{:.2f}", value / best) : count_text(std::round(value / best));
@@ -141,7 +141,7 @@ Table sweep_table(const CompareReport::Swept& swept, Ask ask, bool timed) {
     return t;
 }
 
-/// A law with its parameters: "a + b log2 n" as numbers.
+/// A law with the numbers of its fit: "a + b log2 n" as "12 + 3.4 log2 n".
 std::string text_of(const Fit& f) {
     switch (f.law) {
         case Law::power:
@@ -167,11 +167,13 @@ Table growth_table(const CompareReport& r, std::string_view figure) {
     for (const char* law : {"exponent", "power", "log", "root", "linear", "n log n", "best law"})
         t.columns.emplace_back(law);
     for (const Growth& g : growth_of(r.by_size, r.ask)) {
+        // Leave out structures that were not measured at every size.
         if (g.figure != figure || g.sizes.size() != r.by_size.size()) continue;
         t.rows.push_back({g.structure});
         auto& row = t.rows.back();
         for (const double v : g.values)
             row.push_back(figure.find("seconds") != figure.npos ? seconds_text(v) : fmt::format("{:.2f}", v));
+        // Add the exponent, the residuals of the laws in per cent, and the best law.
         const auto by = [&](Law law) {
             return *std::find_if(g.fits.begin(), g.fits.end(), [&](const Fit& f) { return f.law == law; });
         };

@@ -1,4 +1,4 @@
-/// hedgerow draw: what a structure looks like, and where rays spend their steps.
+/// hedgerow draw: pictures of structures, and of where rays spend their steps.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/render/lettering.h>
 
@@ -31,7 +31,8 @@ int draw(const DrawArguments& a, const Scene<T>& scene) {
     return a.heat.empty() ? draw_wireframe(a, scene) : draw_heat(a, scene);
 }
 
-/// What is wrong with the options, whatever the scene holds, is said before it is read.
+/// Checks options that do not depend on the scene, before it is loaded. Throws UsageError, MemoryShort for
+/// too large a picture, and OutputError for an output that cannot be written.
 template <class T>
 void check(const DrawArguments& a) {
     if (a.beside.size() > 3) throw UsageError("--beside: one picture has room for four structures");
@@ -80,7 +81,7 @@ std::vector<std::string> note_lines(const Image& image, const std::vector<std::s
     std::vector<std::string> lines;
     for (const auto& text : texts)
         for (auto& line : wrapped(text, letters)) {
-            // The options of a structure are one long word.
+            // Break the options of a structure, which are one long word.
             for (; line.size() > letters; line.erase(0, letters)) lines.push_back(line.substr(0, letters));
             lines.push_back(std::move(line));
         }

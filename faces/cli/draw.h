@@ -1,4 +1,4 @@
-/// The pictures that `draw` makes, each in a file of its own, and what several of them share.
+/// The kinds of pictures that `draw` makes, each implemented in its own file, and code that several share.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json_fwd.hpp>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/image.h>
 
 #include "pictures.h"
@@ -30,33 +30,35 @@ struct DrawArguments : Common {
     std::uint64_t scale = 0;
 };
 
-/// All structures that are drawn: the first and those beside it.
+/// The names of all structures that are drawn: --structure, then each --beside.
 std::vector<std::string> structures_of(const DrawArguments& a);
 
-/// Throws UsageError for what is wrong with the options, whatever the scene holds.
+/// Throw UsageError for options that are wrong whatever the scene holds.
 void check_cells(const DrawArguments& a);
 template <class T>
 void check_ray(const DrawArguments& a);
 
-/// The cells of some structures: of a flat scene, or in a slice.
+/// Draws the cells of the structures: of a flat scene, or in a slice. Returns the exit code.
 template <class T>
 int draw_cells(const DrawArguments& a, const Scene<T>& scene);
-/// What one ray visits in some structures.
+/// Draws the cells that one ray visits in the structures. Returns the exit code.
 template <class T>
 int draw_ray(const DrawArguments& a, const Scene<T>& scene);
-/// The boxes of some structures, as lines over a view of a scene in space.
+/// Draws the boxes of the structures as lines over a view of a scene in space. Returns the exit code; 1 for a
+/// flat scene.
 template <class T>
 int draw_wireframe(const DrawArguments& a, const Scene<T>& scene);
-/// What the rays of a view of a scene in space cost.
+/// Draws a heat map: the cost of the rays of a view of a scene in space. Returns the exit code; 1 for a flat
+/// scene.
 template <class T>
 int draw_heat(const DrawArguments& a, const Scene<T>& scene);
 
-/// Throws UsageError unless the output ends as what is written there does.
+/// Throws UsageError unless the output has the extension `ending`. `what` names the picture in the message.
 void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what);
 
-/// Beyond this a picture of lines shows nothing, and no viewer opens it.
+/// The most shapes of a picture. With more, a picture of lines shows nothing, and no viewer opens it.
 inline constexpr std::size_t most_shapes = 200'000;
-/// The cells as they are; throws InputError if there are more than can be seen.
+/// Returns the cells unchanged. Throws InputError if there are more than `most_shapes`.
 template <int D>
 std::vector<OutlineCell<D>> few(std::vector<OutlineCell<D>> cells) {
     if (cells.size() > most_shapes)
@@ -67,11 +69,11 @@ std::vector<OutlineCell<D>> few(std::vector<OutlineCell<D>> cells) {
     return cells;
 }
 
-/// What is reported of a structure that was drawn.
+/// The report on a drawn structure, for --json.
 nlohmann::ordered_json facts_of(const NamedStructure& s, std::size_t cells, std::size_t leaves, int depth);
 
-/// Calls f with a set that lies in space and with what can be seen of it, of points small spheres; 1 if the
-/// scene is flat.
+/// Returns f(set, seen) for a set in space; returns 1 for a flat scene. `seen` is what a picture shows: small
+/// spheres for points, else the set itself.
 template <class T, class F>
 int in_space(const DrawArguments& a, const Scene<T>& scene, F f) {
     return std::visit(
@@ -86,13 +88,13 @@ int in_space(const DrawArguments& a, const Scene<T>& scene, F f) {
         scene);
 }
 
-/// Pixels a dot of the letters on a picture.
+/// The size in pixels of a dot of the letters on a picture.
 int letter_scale(const Image& image);
-/// As `draw_note` can hold them in so many pixels of the picture's width; 0: all.
+/// Breaks texts into lines that fit into a note (draw_note) of `width` pixels; 0: of the picture's width.
 std::vector<std::string> note_lines(const Image& image, const std::vector<std::string>& texts, int width = 0);
 
-/// The tree of an outline for the picture, if there is one; throws InputError, where the user asked for it,
-/// if the structure has none.
+/// The tree of an outline. Empty if the structure is no tree or is empty; throws InputError in that case if
+/// the user asked for a tree.
 template <int D>
 TreeShape tree_for(const std::string& structure, const std::vector<OutlineCell<D>>& cells, bool asked) {
     TreeShape tree = tree_of(cells);

@@ -1,4 +1,4 @@
-/// Flat pictures of cells, as SVG: of a flat scene, or in a slice.
+/// Flat pictures of cells as SVG: the cells of a flat scene, or those that a slice cuts.
 #include <charconv>
 #include <cmath>
 #include <unordered_map>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/text_file.h>
 
 #include "draw.h"
@@ -24,13 +24,13 @@ Section<2> section_of(const DrawArguments& a, const Box2d&, const Upright&) {
         throw InputError(a.scene + " is flat already, and has no slices: leave --slice out");
     return {};
 }
-/// What --slice says: an axis, and where the plane crosses it.
+/// The value of --slice: an axis, and where the plane crosses it.
 struct Slice {
     int axis;
-    bool position;  ///< else a fraction of the scene's extent
+    bool position;  ///< whether `value` is a position; else it is a fraction of the scene's extent
     double value;
 };
-/// "z=0.5" is a fraction, "z=@12.5" a position.
+/// Parses --slice: "z=0.5" is a fraction, "z=@12.5" a position. Throws UsageError for any other text.
 Slice slice_of(const std::string& slice) {
     const std::string_view text = slice;
     const auto bad = [&] {
@@ -55,19 +55,21 @@ Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright
     Section<3> section;
     section.origin[axis] = section.within.low[axis] = section.within.high[axis] =
         position ? value : bounds.low[axis] + value * bounds.extent()[axis];
-    // Up is up in the picture, unless the plane lies across it.
+    // Let the scene's up axis point up in the picture, unless the plane is perpendicular to it.
     const int up = axis != upright.axis ? upright.axis : (axis == 2 ? 1 : 2);
     section.right[3 - axis - up] = 1;
     section.up[up] = 1;
     return section;
 }
 
-/// Those of some cells that have at most `most` levels of cells below them in the whole structure.
+/// The cells that have at most `most` levels of cells below them in the whole structure, which is given by
+/// its outline `whole`.
 template <int D>
 std::vector<OutlineCell<D>> of_height(std::vector<OutlineCell<D>> cells,
                                       const std::vector<OutlineCell<D>>& whole, int most) {
     std::unordered_map<NodeId, int> height;
-    for (auto c = whole.rbegin(); c != whole.rend(); ++c) {  // children come before their parents
+    // Walk backwards, so that children come before their parents.
+    for (auto c = whole.rbegin(); c != whole.rend(); ++c) {
         const int own = height[c->id];
         if (c->level > 1) height[c->parent] = std::max(height[c->parent], own + 1);
     }
@@ -84,12 +86,13 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
     FlatScene scene;
     ordered_json report = ordered_json::array();
     for (const auto& spec : specs) {
+        // Build, and list the cells that the plane of the picture reaches.
         const auto index = build_shown(a, spec, set);
         const auto bounds = bounds_of(*index);
         const auto section = section_of(a, bounds, upright_of(a.view, a, set));
         const auto limits = section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels);
         auto cells = index->outline(limits);
-        // The whole outline is made once, and only where heights, a tree or shared parts come from it.
+        // Make the whole outline only if heights, shared parts or the tree of a slice are computed from it.
         const bool needs_whole = a.height || !a.beside.empty() || (a.tree && D == 3);
         const auto whole = needs_whole ? index->outline() : decltype(cells)();
         if (a.height) cells = of_height(std::move(cells), whole, *a.height);
@@ -97,12 +100,13 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
         NamedStructure s{spec, {}, flat_structure(cells, section)};
         if (a.tree) s.tree = cropped(tree_for(spec, D == 2 ? cells : whole, true));
         if (!a.beside.empty()) {
-            // The figure is of the whole tree, whatever the picture shows of it.
+            // Compute the overlap over the whole tree, but the hatching from the cells in the picture.
             FlatStructure all;
             add_shared(whole, section, all);
             add_shared(cells, section, s.flat);
             s.flat.overlap = all.overlap;
         }
+        // Describe the structure in the caption and in the report.
         s.facts = {fmt::format("{} cells here; {} leaves, depth {}, {} items of {} primitives",
                                s.flat.cells.size(), index->leaf_count(), index->depth(), index->item_count(),
                                index->size())};
@@ -113,6 +117,7 @@ int draw_cells_of(const DrawArguments& a, const P& set) {
         if (scene.primitives.empty()) scene = flat_scene(a, set, section, bounds);
         structures.push_back(std::move(s));
     }
+    // Save the picture and report.
     if (D == 3) scene.title += ", slice " + a.slice;
     if (a.levels > 0) scene.title += fmt::format(", first {} levels", a.levels);
     save_text(a.output, cells_picture(scene, structures));

@@ -1,4 +1,4 @@
-/// Heat maps: what the rays of a view cost, as PNG or as layers of numbers.
+/// Heat maps: the costs of the rays of a view, as PNG or as layers of numbers.
 #include <filesystem>
 #include <tuple>
 
@@ -17,7 +17,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// What the scale ends at when nobody says: the same for every structure and scene, so that pictures compare.
+/// The end of the scale without --scale, in steps, tests or nanoseconds. It is the same for every structure
+/// and scene, so that pictures can be compared.
 std::uint64_t usual_scale(Shading shading) {
     return shading == Shading::steps ? 200 : (shading == Shading::tests ? 60 : 4000);
 }
@@ -30,10 +31,12 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     options.shading = parse_shading(a.heat);
     options.log_scale = a.log;
     options.steps_max = a.scale > 0 ? a.scale : usual_scale(options.shading);
+    // Build, and place the camera by the bounds of the index.
     const auto index = build_shown(a, a.structure, set);
     const Upright upright = upright_of(a.view, a, set);
     options.camera =
         camera_of(a.view, a, Box3f{Vec3f(index->bounds().low), Vec3f(index->bounds().high)}, upright);
+    // Cast the rays. After an interruption the finished rows are kept.
     Picture picture;
     FinishedPicture finished;
     {
@@ -41,6 +44,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
         picture = raycast(*index, set, options, default_executor(), line.progress());
         finished = finish_picture(a.output, line.done(), options.height);
     }
+    // Write the figures on the picture, left of the colour bar, and save it.
     const double share_beyond = double(picture.beyond) / double(picture.pixels);
     const std::string unit =
         a.heat == "time" ? "nanoseconds" : (a.heat == "tests" ? "primitives tested" : a.heat);

@@ -1,4 +1,4 @@
-/// One ray's walk, as SVG or as a page that steps through it.
+/// The walk of one ray, as SVG or as a page that steps through it.
 #include <cmath>
 #include <optional>
 #include <unordered_map>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/text_file.h>
 
 #include "draw.h"
@@ -19,14 +19,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Cells that no ray visits are drawn behind those that it does, if there are no more.
+/// Cells that the ray does not visit are drawn too, in the background, if a structure has at most this many
+/// cells.
 constexpr std::size_t most_behind = 20'000;
 
 template <class T>
 Section<2> section_along(const Ray<T, 2>&, const Upright&) {
     return {};
 }
-/// The plane that holds the ray and the scene's upward direction, or another where that runs along the ray.
+/// The plane through the ray and the scene's upward direction. If these are less than 26° apart (a cosine
+/// above 0.9), another axis replaces the upward direction.
 template <class T>
 Section<3> section_along(const Ray<T, 3>& ray, const Upright& upright) {
     Section<3> section;
@@ -39,6 +41,8 @@ Section<3> section_along(const Ray<T, 3>& ray, const Upright& upright) {
     return section;
 }
 
+/// The ray of --ray. Throws InputError unless it has 2·D numbers, and UsageError for a direction of length 0
+/// or numbers that are not finite.
 template <class T, int D>
 Ray<T, D> ray_of(const DrawArguments& a) {
     if (a.ray.size() != 2 * D)
@@ -64,12 +68,14 @@ TraceTable table_of(const std::string& structure, const Ray<T, D>& ray, const Tr
                     const Section<D>& section) {
     TraceTable table;
     table.structure = structure;
+    // The ray, in space and in the plane of the picture.
     const Vec<double, D> origin(ray.origin), direction(ray.direction);
     table.origin = list_of(origin), table.direction = list_of(direction);
     table.flat_origin = section.flat(origin);
     table.flat_direction = section.flat(origin + direction) - table.flat_origin;
     table.visits = trace.visits;
     if (trace.hit) table.hit = {trace.hit->element, static_cast<double>(trace.hit->t)};
+    // A row for each step, with the cell's part in the plane.
     for (const auto& s : trace.steps) {
         TraceRow row{s.cell.id,
                      s.cell.parent,
@@ -122,7 +128,8 @@ ordered_json json_of(const TraceTable& table) {
     return all;
 }
 
-/// A tree of more leaves is drawn where the ray is.
+/// A tree with more ends than this (nodes without children) is drawn only around the nodes that the ray
+/// visits.
 constexpr std::size_t most_leaves = 48;
 
 template <class P, int D>
@@ -135,6 +142,7 @@ RayView view_of(const DrawArguments& a, const std::string& spec, const P& set,
     const auto cells = index->outline(section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels));
     if (cells.size() <= most_behind) view.structure.flat = flat_structure(cells, section);
     if (!a.tree && !a.frames) return view;
+    // Show the tree, or the part of it around the ray.
     TreeShape tree = tree_for(spec, cells, a.tree);
     if (tree.end_count() > most_leaves) {
         std::unordered_map<NodeId, bool> visited;
@@ -151,9 +159,11 @@ int draw_ray_in(const DrawArguments& a, const P& set) {
     expect_ending(a, a.frames ? ".html" : ".svg", a.frames ? "a page of frames" : "a ray's way");
     const auto ray = ray_of<typename P::Scalar, D>(a);
     const auto section = section_along(ray, upright_of(a.view, a, set));
+    // Trace the ray in each structure.
     std::vector<RayView> views;
     Box<double, D> bounds;
     for (const auto& spec : structures_of(a)) views.push_back(view_of(a, spec, set, ray, section, bounds));
+    // Save the picture or the page, and report.
     FlatScene scene = flat_scene(a, set, section, bounds);
     scene.title += D == 2 ? ": what a ray visits" : ": what a ray visits, in a plane along it";
     save_text(a.output, a.frames ? ray_page(scene, views.front()) : ray_picture(scene, views));

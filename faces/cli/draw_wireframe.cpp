@@ -20,7 +20,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// So many boxes can be told apart in a wireframe; that is how its levels are chosen when nobody says.
+/// The most boxes that a reader can distinguish in a wireframe. It limits the levels that are drawn without
+/// --depth.
 constexpr std::size_t most_boxes = 250;
 
 Image::Pixel pixel_of(const std::string& colour) {
@@ -30,7 +31,9 @@ Image::Pixel pixel_of(const std::string& colour) {
     return p;
 }
 
-/// The boxes of the levels that are wanted, or of as many as can be told apart. Empty ones are left out.
+/// The boxes of the first `wanted` levels; 0: of as many levels as have at most `most_boxes` (the first level
+/// always). Empty leaves are left out. Sets `levels` to the number of levels. Throws InputError as `few`
+/// does.
 template <class T>
 std::vector<OutlineCell<3>> boxes_of(const AnyIndex<T, 3>& index, int wanted, int& levels) {
     const auto first_levels = [&](int n) {
@@ -59,12 +62,12 @@ void draw_edges(const OutlineCell<3>& cell, const Image::Pixel& colour, float wi
         for (std::size_t i = 0; i < face.size(); ++i) {
             const Vec3d &p = face[i], &q = face[(i + 1) % face.size()];
             const auto edge = before(p, q) ? std::pair(p, q) : std::pair(q, p);
-            // Each belongs to two faces.
+            // Add an edge once: it belongs to two faces.
             if (std::find(edges.begin(), edges.end(), edge) == edges.end()) edges.push_back(edge);
         }
     for (const auto& [p, q] : edges) wires.draw({Vec3f(p), Vec3f(q), colour, width});
 }
-/// A title and below it a swatch and a number a level, from the upper left corner.
+/// Draws a title in the upper left corner, and below it a swatch and a number for each level.
 void draw_level_legend(Image& image, const std::vector<std::string>& title, int levels) {
     const int unit = letter_scale(image), row = letter_height * unit;
     std::vector<std::string> lines = note_lines(image, title);
@@ -79,7 +82,8 @@ void draw_level_legend(Image& image, const std::vector<std::string>& title, int 
     }
 }
 
-/// What can be seen of the scene, pale, and how far it is away: under the lines of every structure.
+/// The picture under the lines of every structure: a pale view of the scene, and the depth of its surface at
+/// each pixel.
 struct Background {
     RayMaker maker;
     Image image;
@@ -97,7 +101,7 @@ struct Background {
     }
 };
 
-/// The boxes of some cells over what can be seen.
+/// Draws the boxes of cells over the background, the deepest first, so that the first levels lie on top.
 Image wireframe(std::vector<OutlineCell<3>> cells, const std::vector<std::string>& title, int levels,
                 const Background& background) {
     std::stable_sort(cells.begin(), cells.end(),
@@ -113,7 +117,7 @@ Image wireframe(std::vector<OutlineCell<3>> cells, const std::vector<std::string
 }
 constexpr int gap = 4;  // pixels between pictures
 
-/// Pictures of one size, two in a row.
+/// Joins pictures of one size into one, two in a row.
 Image joined(const std::vector<Image>& parts) {
     const int columns = parts.size() > 1 ? 2 : 1,
               rows = (static_cast<int>(parts.size()) + columns - 1) / columns;
@@ -127,16 +131,19 @@ Image joined(const std::vector<Image>& parts) {
     return all;
 }
 
-/// `seen`: what the picture is of, and `set` what the structure holds; of points they differ.
+/// The structures are built over `set`, and the picture shows `seen`. For points these differ: points are
+/// seen as spheres.
 template <class P, class Seen>
 int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     expect_ending(a, ".png", "a picture in space");
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = 4, options.seed = a.seed;
+    // Divide the picture among the structures.
     const auto specs = structures_of(a);
     if (specs.size() > 1) options.width = std::max(1, (options.width - gap) / 2);
     if (specs.size() > 2) options.height = std::max(1, (options.height - gap) / 2);
+    // Render the background, which all structures share.
     const auto seen_index = build_shown(a, "bvh", seen);
     const Upright upright = upright_of(a.view, a, set);
     options.camera = camera_of(
@@ -146,6 +153,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     ordered_json report = ordered_json::array();
     std::string text;
     for (const auto& spec : specs) {
+        // Draw the boxes of a structure.
         const auto index = build_shown(a, spec, set);
         int levels = 0;
         auto cells = boxes_of(*index, a.levels, levels);
@@ -153,6 +161,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
         std::string facts =
             fmt::format("{} cells of the first {} levels of {}", drawn, levels, index->depth());
         images.push_back(wireframe(std::move(cells), {spec, facts}, levels, background));
+        // Compute the overlap of siblings over the whole structure.
         NamedStructure s{spec, {facts}, {}};
         if (!a.beside.empty()) {
             add_shared(index->outline(), Section<3>{{}, {1, 0, 0}, {0, 1, 0}}, s.flat);
@@ -163,6 +172,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
         report.push_back(facts_of(s, drawn, index->leaf_count(), index->depth()));
         text += fmt::format("{}: {}\n", spec, facts);
     }
+    // Save the picture and report.
     save_png(a.output, joined(images));
     if (a.json)
         print_json({{"output", a.output}, {"structures", report}});

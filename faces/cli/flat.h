@@ -1,4 +1,4 @@
-/// What lies in a plane: a flat scene as it is, of one in space what a section shows.
+/// Flat geometry for pictures: a flat scene as it is, or a plane section of a scene in space.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
 #include <hedgerow/primitives/triangle_mesh.h>
-#include <hedgerow/structures/outline.h>
+#include <hedgerow/walks/outline.h>
 
 namespace hedgerow::cli {
 
@@ -22,10 +22,11 @@ struct FlatPrimitive {
     double radius = 0;
 };
 
-/// The plane of a picture.
+/// The plane of a picture. `flat` maps a point to the plane, `part` is the polygon of a cell in it, `limits`
+/// restricts an outline, and `add` appends what the plane has of primitive i, if anything.
 template <int D>
 struct Section;
-/// Of a flat scene: the whole of it.
+/// The section of a flat scene: the whole scene.
 template <>
 struct Section<2> {
     Vec2d flat(const Vec2d& p) const { return p; }
@@ -44,12 +45,13 @@ struct Section<2> {
         all.push_back({static_cast<PrimitiveId>(i), {Vec2d(set.segments[i].a), Vec2d(set.segments[i].b)}});
     }
 };
-/// Through a point of space, with two axes of length 1 that are the picture's x and y.
+/// A plane through the point `origin` of space. `right` and `up` are perpendicular and of length 1, and are
+/// the x and y axes of the picture.
 template <>
 struct Section<3> {
     Vec3d origin, right, up;
-    /// The region of space that is asked for what it holds: all of it is near the plane if that lies across
-    /// an axis.
+    /// Outlines list the cells that overlap this box. By default it is all of space. For a plane
+    /// perpendicular to an axis it can be the plane itself.
     Box3d within = OutlineLimits<3>().within;
 
     CutPlane<3> plane() const {
@@ -62,7 +64,7 @@ struct Section<3> {
         for (const auto& p : points) all.push_back(flat(p));
         return all;
     }
-    /// Empty, if the cell does not reach the plane.
+    /// The polygon of a cell in the plane. Empty if the cell does not reach the plane.
     Corners part(const OutlineCell<3>& cell) const {
         const CutPlane<3> cut = plane();
         if (std::abs(cut.height(cell.box.center())) > dot(abs(cut.normal), cell.box.extent())) return {};
@@ -94,7 +96,7 @@ struct Section<3> {
                            {flat(Vec3d(s.center))},
                            std::sqrt(product(r, r) - product(away, away))});
     }
-    /// Points that lie near enough.
+    /// Appends a point if it is at most `near` from the plane.
     template <class T>
     void add(const PointCloud<T, 3>& cloud, std::size_t i, double near,
              std::vector<FlatPrimitive>& all) const {
@@ -103,7 +105,8 @@ struct Section<3> {
     }
 };
 
-/// `near`: how far from the plane a point of space is still drawn. O(n).
+/// The parts of all primitives in a section. Points of space are drawn up to a distance of `near` from the
+/// plane. O(n).
 template <class P, int D>
 std::vector<FlatPrimitive> flat_primitives(const P& set, const Section<D>& section, double near) {
     std::vector<FlatPrimitive> all;
@@ -111,7 +114,7 @@ std::vector<FlatPrimitive> flat_primitives(const P& set, const Section<D>& secti
     return all;
 }
 
-/// A cell as it is drawn.
+/// A cell as it is drawn: a polygon.
 struct FlatCell {
     NodeId id;
     int level;
@@ -120,12 +123,13 @@ struct FlatCell {
     Corners corners;
 };
 
-/// A structure as it is drawn. `shared`: what children of one parent have in common; `overlap`: its share of
-/// the parents' volume (area of a flat scene), the mean over inner nodes that have any.
+/// A structure as it is drawn. `shared` are the intersections of the boxes of siblings. `overlap` is the
+/// volume (in a flat scene the area) of these intersections as a share of the parent's volume: the mean over
+/// the inner nodes with box-shaped children and a volume above 0.
 struct FlatStructure {
     std::vector<FlatCell> cells;
     std::vector<Corners> shared;
-    std::optional<double> overlap;  // if it was looked for
+    std::optional<double> overlap;  // empty until add_shared computes it
 };
 
 template <int D>
@@ -137,7 +141,8 @@ FlatStructure flat_structure(const std::vector<OutlineCell<D>>& cells, const Sec
     return flat;
 }
 
-/// The overlap of siblings, where cells are boxes.
+/// Appends the intersections of siblings in the section to `shared`, and sets `overlap`. Only children that
+/// are boxes count. O(cells + pairs of siblings).
 template <int D>
 void add_shared(const std::vector<OutlineCell<D>>& cells, const Section<D>& section, FlatStructure& flat) {
     const auto volume = [](const Box<double, D>& b) {
@@ -145,9 +150,11 @@ void add_shared(const std::vector<OutlineCell<D>>& cells, const Section<D>& sect
         for (int k = 0; k < D; ++k) v *= b.empty() ? 1 : b.extent()[k];
         return v;
     };
+    // Collect the box-shaped children of each parent.
     std::unordered_map<NodeId, std::vector<const OutlineCell<D>*>> children;
     for (const auto& c : cells)
         if (c.level > 1 && c.shape.empty()) children[c.parent].push_back(&c);
+    // Intersect each pair of siblings, and sum up their shares of the parents.
     std::size_t parents = 0;
     double overlap = 0;
     for (const auto& p : cells) {

@@ -1,11 +1,11 @@
-/// hedgerow generate and hedgerow convert: scenes into files.
+/// hedgerow generate and hedgerow convert: write scenes to files.
 #include <algorithm>
 #include <span>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/io/point_file.h>
 #include <hedgerow/io/writable.h>
@@ -32,18 +32,20 @@ void save(const Common& c, const Other&, const Progress&) {
 constexpr std::string_view mesh_endings[] = {".ply", ".stl", ".obj", ".off"};
 constexpr std::string_view point_endings[] = {".ply", ".npy", ".csv", ".xyz"};
 
-/// Throws UsageError, before a scene is read or generated, for an output whose ending names no format, or
-/// none that holds what is generated.
+/// Throws UsageError, before a scene is read or generated, if the extension of the output names no format, or
+/// a format that cannot hold the scene's primitives.
 void check_format(const Common& c) {
-    std::string_view yields;  // unknown of a file
+    std::string_view yields;  // empty for a file: not known before it is read
     for (const SceneInfo& info : scene_list())
         if (info.name == generated_name(c)) yields = info.yields;
     const bool mesh = yields.empty() || yields == "triangles", points = yields.empty() || yields == "points";
     if (!mesh && !points) throw UsageError(fmt::format("{}: no file format here holds {}", c.scene, yields));
+    // Accept an extension of a format that can hold the scene.
     const auto among = [&](std::span<const std::string_view> endings) {
         return std::find(endings.begin(), endings.end(), ending_of(c.output)) != endings.end();
     };
     if ((mesh && among(mesh_endings)) || (points && among(point_endings))) return;
+    // Name the formats that can.
     std::string known;
     if (mesh) known += fmt::format(" Meshes are written as {}.", fmt::join(mesh_endings, " "));
     if (points) known += fmt::format(" Points are written as {}.", fmt::join(point_endings, " "));

@@ -1,4 +1,4 @@
-/// hedgerow info: what is in a scene, and what is wrong with it.
+/// hedgerow info: the contents of a scene, and its faults.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Calls f(i) for each element, in order, while nobody interrupts.
+/// Calls f(i) for each element in order, and reports progress to `executor`, which may throw Cancelled.
 template <class F>
 void for_each_element(std::size_t count, Executor& executor, F f) {
     executor.expect(count);
@@ -36,12 +36,13 @@ ordered_json extent_of(const P& set, Executor& executor) {
     return {{"low", low}, {"high", high}};
 }
 
-/// How many edges have one triangle, and how many more than two.
+/// Counts the edges of one triangle (`open`) and of more than two (`crowded`).
 struct EdgeFaults {
     std::size_t open = 0, crowded = 0;
 
-    /// O(n): equal edges stand side by side once sorted.
+    /// O(n): a radix sort brings equal edges together.
     EdgeFaults(const std::vector<TriangleIndices>& triangles, Executor& executor) {
+        // Write an edge as its two vertex indices, the smaller one first.
         BareVector<std::uint64_t> edges(3 * triangles.size());
         for_each_element(triangles.size(), executor, [&](std::size_t i) {
             const auto& t = triangles[i];
@@ -50,10 +51,12 @@ struct EdgeFaults {
                 edges[3 * i + k] = std::uint64_t(a) << 32 | b;
             }
         });
-        executor.expect(8 * triangles.size());  // a sort takes about so many times as long
+        executor.expect(8 * triangles.size());  // the sort takes about 8 times as long as the pass above
+        // Six digits of 11 bits cover the 64 bits of an edge.
         radix_sort(
             edges, [](std::uint64_t e) { return e; }, 0, 6, executor);
         executor.advance(8 * triangles.size());
+        // Count the triangles of each run of equal edges.
         for (std::size_t i = 0, end; i < edges.size(); i = end) {
             for (end = i; end < edges.size() && edges[end] == edges[i];) ++end;
             open += end - i == 1, crowded += end - i > 2;
@@ -101,7 +104,7 @@ ordered_json facts(const SegmentSet<T>& s, Executor&) {
     return {{"kind", "segments"}, {"segments", s.size()}, {"dimension", 2}};
 }
 
-/// Of a saved index, beside its mesh.
+/// The facts about a saved index that its mesh does not show.
 ordered_json facts_of_index(const std::string& path) {
     constexpr const char* builders[] = {"fast", "medium", "high"};
     const IndexFileInfo file = index_file_info(path);

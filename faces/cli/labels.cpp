@@ -15,6 +15,7 @@ bool Labels::free(const Box2d& box) const {
 }
 
 std::optional<Vec2d> Labels::place(const Vec2d& wanted, const Vec2d& size, double reach) {
+    // Try places on circles around the wanted one, 4 pixels apart and in 24 directions.
     constexpr int directions = 24;
     constexpr double step = 4, turn = 2 * 3.14159265358979 / directions;
     for (double away = 0; away <= reach; away += step)

@@ -1,4 +1,4 @@
-/// Labels that do not lie on each other.
+/// Labels that do not overlap.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,18 @@
 
 namespace hedgerow::cli {
 
-/// Finds each label the nearest free place to what it names. O(places tried × labels) a label.
+/// Places each label at the free place nearest to where it is wanted. O(places tried × labels) a label.
 class Labels {
 public:
     explicit Labels(const Box2d& area) : area_(area) {}
 
-    /// Keeps labels away.
+    /// Keeps labels out of a box.
     void block(const Box2d& box) { taken_.push_back(box); }
-    /// The middle of a free place of that size, at most `reach` away; nothing if there is none.
+    /// Reserves a free box of that size, with its middle at most `reach` pixels from `wanted`. Returns the
+    /// middle, or nothing if no box is free.
     std::optional<Vec2d> place(const Vec2d& wanted, const Vec2d& size, double reach = 90);
-    /// A text in a box with round corners, with a line to what it names if that is not beside it. Draws
-    /// nothing where no place is free.
+    /// Draws a text in a box with round corners, and a line to `named` if that point is outside of the box.
+    /// Draws nothing if no place is free.
     void draw(Svg& svg, const Vec2d& named, const Vec2d& wanted, std::string_view text,
               std::string_view look);
 

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "arguments.h"
 #include "memory.h"
@@ -104,7 +104,8 @@ std::string footer() {
     return text;
 }
 
-/// The library passes over a name that it does not know; who sets it for the tool should hear of it.
+/// Uses the instruction set that the environment names. Throws UsageError for an unknown name, which the
+/// library ignores: a user of the tool should learn of it.
 void use_instruction_set_of_environment() {
     const char* const set = std::getenv("HEDGEROW_INSTRUCTION_SET");
     if (set == nullptr || *set == '\0') return;
@@ -124,6 +125,7 @@ int run(int count, char** arguments) {
         "Spatial data structures for rays, geometric queries and particles.");
     app.set_version_flag("--version", "hedgerow 0.1.0");
     app.require_subcommand(1);
+    // Add the verbs with their options.
     std::vector<std::pair<CLI::App*, Run>> runs;
     for (const Verb& v : verbs) {
         auto* const verb = app.add_subcommand(v.name, v.help);
@@ -132,6 +134,7 @@ int run(int count, char** arguments) {
         check_arguments(*verb);
     }
     app.footer(footer());
+    // Parse, with messages of our own for unknown verbs and options.
     check_verb(app, count, arguments);
     try {
         app.parse(count, arguments);
@@ -140,19 +143,21 @@ int run(int count, char** arguments) {
     } catch (const CLI::ParseError& e) {
         return app.exit(e) == 0 ? 0 : 2;
     }
+    // Run the verb that was chosen.
     use_instruction_set_of_environment();
     for (const auto& [verb, run_verb] : runs)
         if (*verb) return run_verb();
     return 2;
 }
 
-/// Where a standard stream is closed, the next file that is opened takes its place and gets what is printed.
+/// Opens /dev/null in place of each closed standard stream. Otherwise the next file to be opened would take
+/// the stream's place and receive what is printed.
 void hold_standard_streams() {
     for (int stream = 0; stream < 3; ++stream)
         if (fcntl(stream, F_GETFD) == -1) static_cast<void>(open("/dev/null", O_RDONLY));
 }
 
-/// The exit code, after a message.
+/// Prints a message to stderr and returns the exit code.
 int failed(int code, const std::string& why) {
     std::fprintf(stderr, "hedgerow: %s\n", why.c_str());
     return code;
@@ -166,7 +171,8 @@ int lost_output(int error) {
     return failed(1, "the results cannot be printed: " + std::generic_category().message(error));
 }
 
-/// What `run` ends with. What is printed may still lie in a buffer, and fail to leave it.
+/// Calls `run` and returns the exit code: that of `run`, 130 after an interruption, or 1, 2 or 3 after an
+/// error message. Also flushes stdout, since printed results may still be in a buffer and fail to be written.
 int run_safely(int count, char** arguments) {
     try {
         const int code = run(count, arguments);
@@ -181,11 +187,11 @@ int run_safely(int count, char** arguments) {
         return failed(3, e.what());
     } catch (const std::bad_alloc&) {
         return short_of_memory();
-    } catch (const std::length_error&) {  // more elements than any memory has addresses
+    } catch (const std::length_error&) {  // a container of more elements than there are addresses
         return short_of_memory();
     } catch (const std::filesystem::filesystem_error& e) {
         return failed(1, e.what());
-    } catch (const std::system_error& e) {  // from fmt, printing
+    } catch (const std::system_error& e) {  // fmt could not print
         return lost_output(e.code().value());
     } catch (const std::exception& e) {
         return failed(1, e.what());

@@ -1,4 +1,4 @@
-/// Whether there is memory for what is asked, before it is begun.
+/// Checks, before work begins, that there is memory for it.
 #pragma once
 
 #include <stdexcept>
@@ -11,8 +11,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Throws MemoryShort, with both figures, if `what` takes more bytes than there are. `instead` says what to
-/// ask for, as "ask for a smaller picture".
+/// Throws MemoryShort, with both figures, if `what` takes more bytes than there are (memory_left). `instead`
+/// tells the user what to do, as "ask for a smaller picture".
 void expect_memory(const std::string& what, double bytes, const std::string& instead);
 
 }  // namespace hedgerow::cli

@@ -1,4 +1,4 @@
-/// A page of its own: well-formed as XML too, and it asks for no other file.
+/// Parts of an HTML page that is well-formed as XML too, and needs no other file.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace hedgerow::cli {
 
-/// Up to its heading.
+/// The beginning of a page, up to and with its heading.
 std::string page_opened(const std::string& title);
 std::string page_closed();
 std::string html_of(const Table& table);

@@ -42,7 +42,7 @@ std::string level_style(int levels, double thin) {
 
 namespace {
 
-constexpr double cells_share = 0.46;  // of the width, where a tree stands beside its cells
+constexpr double cells_share = 0.46;  // share of the width that cells take beside their tree
 
 }  // namespace
 
@@ -73,12 +73,14 @@ Layout::Layout(int width, int height, const std::vector<NamedStructure>& structu
     if (columns == 0) columns = n < 2 ? 1 : 2;
     const std::size_t rows = (n + columns - 1) / columns;
     const double wide = (width - legend_width - picture_margin) / double(columns);
+    // Wrap the captions. A row of panels needs the height of its highest caption.
     std::vector<double> feet(rows);
     for (std::size_t i = 0; i < n; ++i) {
         captions_.emplace_back(structures[i].name, structures[i].facts, wide - picture_margin);
         feet[i / columns] = std::max(feet[i / columns], captions_.back().height());
     }
-    for (std::size_t r = 0; r + 1 < rows; ++r) feet[r] += 18;  // the numbers over the next row
+    for (std::size_t r = 0; r + 1 < rows; ++r) feet[r] += 18;  // for the coordinates above the next row
+    // Share the height that is left equally among the rows.
     double all_feet = 0;
     for (const double foot : feet) all_feet += foot;
     const double high = (height - picture_head - all_feet) / double(rows);

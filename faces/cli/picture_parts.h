@@ -1,5 +1,5 @@
-/// What the flat pictures share: their style, where panels and captions lie, and how primitives and cells are
-/// drawn.
+/// Code that the flat pictures share: style, layout of panels and captions, and drawing of primitives and
+/// cells.
 #pragma once
 
 #include <string>
@@ -11,32 +11,36 @@
 
 namespace hedgerow::cli {
 
-/// More shapes than these are drawn as a few paths, at half a pixel, without hints.
+/// The most shapes that are drawn one by one, with hints. More are drawn as a few paths, rounded to half a
+/// pixel.
 inline constexpr std::size_t most_with_hints = 2'000;
 
-/// Style sheet of texts, cells and primitives, and the definitions that it names: hatchings, a ray's arrow.
+/// The style sheet of texts, cells and primitives.
 std::string_view plain_style();
+/// Adds the definitions that styles refer to: hatchings and the arrow of a ray.
 void add_definitions(Svg& svg);
-/// A class `lK` a level K: its colour, and lines that are thinner the deeper.
+/// A style sheet with a class `lK` for each level K from 1: its colour, and thinner lines for deeper levels.
+/// All widths are multiplied by `thin`.
 std::string level_style(int levels, double thin);
 
-/// A structure's name and what is said of it, in lines as wide as its panel.
+/// A structure's name and facts, broken into lines that are as wide as its panel.
 struct Caption {
     std::vector<std::string> name, facts;
 
     Caption(std::string_view name_text, const std::vector<std::string>& facts_text, double width);
-    /// Of the part of the picture below the panel.
+    /// The height in pixels that the caption takes below the panel.
     double height() const { return 26 + 16 * double(name.size() + facts.size()); }
     void draw(Svg& svg, Vec2d at) const;
 };
 
-/// Panels in rows, each over its caption, with the legend at their right: two in a row from two panels on.
+/// The places of panels, captions and the legend. Panels are in rows, each above its caption, with the legend
+/// at the right.
 class Layout {
 public:
-    /// `columns`: 0 for as many as serve.
+    /// `columns`: panels a row; 0: two, or one for a single panel. Width and height are in pixels.
     Layout(int width, int height, const std::vector<NamedStructure>& structures, std::size_t columns = 0);
 
-    /// Where the panel of structure i lies.
+    /// The area of the panel of structure i.
     const Box2d& area(std::size_t i) const { return areas_[i]; }
     void draw_caption(Svg& svg, std::size_t i) const;
     /// The upper left corner of the legend, and the height that is left for it.
@@ -52,24 +56,25 @@ private:
 
 inline constexpr double picture_margin = 24, picture_head = 64, legend_width = 150;
 
-/// The left part of an area, for cells, and the rest of it, for their tree.
+/// The left part of an area, for cells, and the right part, for their tree.
 Box2d cells_part(const Box2d& area);
 Box2d tree_part(const Box2d& area);
 
-/// What is to be seen of some structures and of the primitives.
+/// The box around all cells of the structures and all primitives; from -1 to 1 if there are none.
 Box2d frame_of(const FlatScene& scene, const std::vector<const FlatStructure*>& structures);
-/// A factor for lines: smaller where there are many.
+/// A factor for widths of lines and sizes of dots, from 0.3 to 1: smaller where many shapes share a panel.
 double crowding(std::size_t count, const Panel& panel);
 
-/// Primitives of one look. `more`: further classes, behind a blank.
+/// Draw primitives in one style. `more` is a list of further classes that begins with a blank.
 void draw_primitive(Svg& svg, const Panel& panel, const FlatPrimitive& p, double size, std::string_view more);
 void draw_primitives(Svg& svg, const Panel& panel, const std::vector<FlatPrimitive>& all, double size,
                      std::string_view more);
 
-/// What the pointer shows of a cell.
+/// The text about a cell that a browser shows under the pointer.
 std::string hint_of(const FlatCell& cell);
 
-/// A line of a legend: a swatch of 22 × 12 pixels, which `draw` draws in its box, and a text.
+/// A legend, drawn line by line from `at` downwards. A line is a text beside a swatch, which `draw` draws in
+/// a box of 22 × 12 pixels.
 class Legend {
 public:
     Legend(Svg& svg, const Vec2d& at) : svg_(svg), at_(at) {}

@@ -10,13 +10,14 @@
 
 namespace hedgerow::cli {
 
-/// What a picture shows, beside structures. The frame is of everything that is to be seen.
+/// What a picture shows beside its structures. Its frame contains everything (frame_of). Width and height are
+/// in pixels.
 struct FlatScene {
     std::string title;
     std::vector<FlatPrimitive> primitives;
     int width, height;
 };
-/// `tree`: empty if none is to be drawn.
+/// A structure of a picture. `tree` is empty if no tree is drawn.
 struct NamedStructure {
     std::string name;
     std::vector<std::string> facts;  // a line each
@@ -24,21 +25,22 @@ struct NamedStructure {
     TreeShape tree = {};
 };
 
-/// Structures over the same primitives, two in a row: cells coloured by level, with a legend; what siblings
-/// share is hatched, and what is empty in grey. Where there are trees, each stands beside its cells.
+/// An SVG of structures over the same primitives: cells coloured by level, with a legend. Intersections of
+/// siblings are hatched in red, empty leaves in grey. Structures are two in a row; with trees, one in a row,
+/// each tree beside its cells.
 std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructure>& structures);
 
-/// A structure and what a ray visits in it.
+/// A structure, and the walk of a ray in it.
 struct RayView {
     NamedStructure structure;
     TraceTable table;
 };
 
-/// The cells that a ray visits in each structure, numbered in order, over all others; the primitives that
-/// were tested, and where the ray hits. With a legend.
+/// An SVG of the cells that a ray visits in each structure, numbered in order, over all other cells. It also
+/// shows the tested primitives, the hit and a legend.
 std::string ray_picture(const FlatScene& scene, const std::vector<RayView>& views);
-/// A page that steps through one structure's walk: its cells, its tree and the table, with the current node,
-/// box and interval; by buttons, arrow keys and clicks.
+/// An HTML page that steps through the walk in one structure by buttons, arrow keys and clicks. It shows
+/// cells, tree and table, with the current node, box and interval.
 std::string ray_page(const FlatScene& scene, const RayView& view);
 
 }  // namespace hedgerow::cli

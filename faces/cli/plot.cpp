@@ -12,17 +12,20 @@ using namespace plot_parts;
 
 namespace {
 
-/// Moves labels apart that want to stand at `places`, so that none covers another, within limits.
+/// Moves labels from their wanted `places` so that neighbours are at least `gap` apart. None is beyond
+/// `high`, nor before `low` if there is room for all.
 std::vector<double> spread(const std::vector<double>& places, double gap, double low, double high) {
     std::vector<std::size_t> order(places.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return places[a] < places[b]; });
     std::vector<double> at = places;
+    // In ascending order: push each label beyond the one before.
     double next = low;
     for (const auto i : order) {
         at[i] = std::max(at[i], next);
         next = at[i] + gap;
     }
+    // In descending order from `high`: push them back.
     double last = high;
     for (std::size_t k = order.size(); k-- > 0;) {
         double& place = at[order[k]];
@@ -35,6 +38,7 @@ std::vector<double> spread(const std::vector<double>& places, double gap, double
 }  // namespace
 
 std::string svg_of(const LinePlot& plot) {
+    // Scale the axes to the points.
     const double height = std::max(340.0, 80 + 15.0 * static_cast<double>(plot.series.size()));
     const double right = width - name_width, bottom = height - 40;
     LogAxis x(left_edge, right), y(bottom, top_edge);
@@ -45,8 +49,10 @@ std::string svg_of(const LinePlot& plot) {
         const double n = static_cast<double>(plot.x_names.size());
         return n > 0 ? left_edge + (at + 0.5) * (right - left_edge) / n : x.at(at);
     };
-    // Within the margin that the axis leaves, or the half place of a name.
+    // A line ends at the right if it ends in the last sixth, which allows for the margin of the axis or for
+    // half the place of a name.
     const auto reaches_right = [&](double at) { return at > right - (right - left_edge) / 6; };
+    // Draw the axes, with ticks or with the names on x.
     std::string svg = opened(plot.title, width, height);
     for (const double v : y.ticks()) {
         svg += line(left_edge, y.at(v), right, y.at(v));
@@ -63,6 +69,7 @@ std::string svg_of(const LinePlot& plot) {
     }
     svg += line(left_edge, bottom, right, bottom, "#444");
     svg += text((left_edge + right) / 2, height - 6, "middle", plot.x_label);
+    // Draw the lines, with dots if they have few points, and keep their ends.
     const bool dotted = std::all_of(plot.series.begin(), plot.series.end(),
                                     [](const Series& s) { return s.points.size() <= 24; });
     struct End {
@@ -85,6 +92,8 @@ std::string svg_of(const LinePlot& plot) {
         ends.push_back(end);
         if (reaches_right(end.x)) at_right.push_back(end.y);
     }
+    // Write the names: in a column beside the plot for lines that end at the right, else at the end of the
+    // line.
     const auto labels = spread(at_right, 14, top_edge, bottom);
     auto label = labels.begin();
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
@@ -104,10 +113,12 @@ std::string svg_of(const DotPlot& plot) {
     constexpr double row_height = 22;
     const double top = top_edge + (plot.series.size() > 1 ? 20 : 0), left = name_width;
     const double bottom = top + row_height * static_cast<double>(plot.rows.size()), height = bottom + 26;
+    // Scale the axis to the values.
     LogAxis x(left, width - 60);
     for (const auto& row : plot.rows)
         for (const double v : row.values) x.include(v);
     std::string svg = opened(plot.title, width, height);
+    // Draw a legend if a row has several values, and the ticks.
     double at = left;
     for (std::size_t i = 0; plot.series.size() > 1 && i < plot.series.size(); ++i) {
         svg += dot(at + 6, top_edge, 5, colour_of(i)) + text(at + 16, top_edge + 4, "start", plot.series[i]);
@@ -117,6 +128,8 @@ std::string svg_of(const DotPlot& plot) {
         svg += line(x.at(v), top, x.at(v), bottom);
         svg += text(x.at(v), bottom + 18, "middle", tick_text(v, plot.unit));
     }
+    // Draw the rows: a name, a line to the largest value, and the dots. A single value is written beside its
+    // dot.
     for (std::size_t r = 0; r < plot.rows.size(); ++r) {
         const auto& row = plot.rows[r];
         const double y = top + row_height * (static_cast<double>(r) + 0.5);

@@ -1,4 +1,4 @@
-/// Plots as SVG, to stand in a page: lines over an axis, dots along rows, bars, and points.
+/// Plots as SVG, for a page: lines over an axis, dots along rows, bars, and points.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@ enum class Unit { number, seconds, bytes };
 
 struct Series {
     std::string name;
-    std::size_t colour;  ///< any number: the same number is the same colour
+    std::size_t colour;  ///< any number; equal numbers have equal colours
     std::vector<std::pair<double, double>> points;
 };
 
-/// Lines, each named at its right end. Both axes are logarithmic, but x where it has names: there x is a
-/// place in them. Values that are not positive are left out.
+/// Lines, each with its name at the right end. Both axes are logarithmic. If `x_names` is not empty, the x
+/// axis has these names instead, and x is an index into them. Values that are not positive are left out.
 struct LinePlot {
     std::string title, x_label;
     Unit y_unit = Unit::number;
@@ -25,7 +25,8 @@ struct LinePlot {
 };
 std::string svg_of(const LinePlot& plot);
 
-/// A row for each name, with a dot for each of its values on a logarithmic axis; `series` names the values.
+/// Rows of dots: a row for each name, with a dot for each of its values on a logarithmic axis. `series` names
+/// the values of a row.
 struct DotPlot {
     std::string title;
     Unit unit = Unit::number;
@@ -38,8 +39,8 @@ struct DotPlot {
 };
 std::string svg_of(const DotPlot& plot);
 
-/// Bars from zero: a panel below the other for each of some scales of their own, in it a group for each name,
-/// and in that a bar for each series. A value that is not positive has no bar.
+/// Bars from zero. Panels are one below the other, each with its own scale. A panel has a group for each
+/// name, and a group has a bar for each series. A value that is not positive has no bar.
 struct BarPlot {
     std::string title;
     std::vector<std::string> notes;  ///< a line each, below the title
@@ -59,8 +60,8 @@ struct BarPlot {
 };
 std::string svg_of(const BarPlot& plot);
 
-/// Points on two logarithmic axes, with levels that are named at the right. What a point is, a browser shows
-/// under the pointer.
+/// Points on two logarithmic axes, with dashed lines at `levels` that are named at the right. A browser shows
+/// the hint of a point under the pointer.
 struct PointPlot {
     std::string title, x_label, y_label;
     struct Point {

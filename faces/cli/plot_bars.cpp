@@ -1,4 +1,4 @@
-/// Bars and points.
+/// Plots of bars and of points.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -27,7 +27,8 @@ std::string bar_text(double value) {
            : value >= 9.95 ? fmt::format("{:.1f}", value)
                            : fmt::format("{:.2f}", value);
 }
-/// 1, 2 or 5 times a power of ten, so that there are three to six steps.
+/// The step of an axis from 0 to `most`: 1, 2, 4 or 5 times a power of ten, so that there are three to six
+/// steps.
 double step_for(double most) {
     double step = std::pow(10, std::floor(std::log10(most)));
     if (most / step < 1.5) step /= 5;
@@ -49,10 +50,11 @@ public:
         const double head = top + 26;
         const double high = head + panel_high * static_cast<double>(plot_.panels.size());
         std::string svg = opened(plot_.title, wide_, high);
-        // White below everything, wherever the picture is shown.
+        // Fill the background with white, for viewers that have another.
         svg.insert(svg.find("<text"), filled(0, 0, wide_, high, "#ffffff"));
         for (std::size_t i = 0; i < plot_.notes.size(); ++i)
             svg += small(4, 35 + 16 * static_cast<double>(i), "start", plot_.notes[i], 12, "#555");
+        // Draw the legend in a row, and the panels below.
         double at = left;
         for (const auto& s : plot_.series) {
             svg += filled(at, top + 3, 12, 12, s.colour) + text(at + 17, top + 13, "start", s.name);
@@ -68,11 +70,13 @@ private:
 
     std::string panel(const BarPlot::Panel& panel, double top) const {
         const double low = top + panel_high - below, high = top + above;
+        // Scale the panel to its largest value.
         double most = 0;
         for (const auto& g : panel.groups)
             for (const double v : g.values) most = std::max(most, v);
         if (most <= 0) return "";
         const auto y = [&](double value) { return low - (low - high - 12) * value / most; };
+        // Write the title, and draw the axis.
         std::string svg =
             fmt::format("<text x=\"{}\" y=\"{:.1f}\" font-weight=\"bold\" fill=\"#222\">{}</text>\n", left,
                         top + 16, escaped(panel.title));
@@ -81,6 +85,8 @@ private:
                         v > 0 ? "#e4e4e4" : "#444");
             svg += small(left - 6, y(v) + 4, "end", fmt::format("{:g}", v), 11, "#555");
         }
+        // Draw the groups: bars side by side about the middle, each with its value, over the name and the
+        // note.
         for (std::size_t g = 0; g < panel.groups.size(); ++g) {
             const auto& group = panel.groups[g];
             const double middle = left + group_ * (static_cast<double>(g) + 0.5);
@@ -122,10 +128,12 @@ std::string svg_of(const BarPlot& plot) {
 std::string svg_of(const PointPlot& plot) {
     constexpr double height = 420;
     const double right = width - name_width, bottom = height - 40, top = top_edge + 8;
+    // Scale the axes to the points and levels.
     LogAxis x(left_edge, right), y(bottom, top);
     for (const auto& s : plot.series)
         for (const auto& p : s.points) x.include(p.x), y.include(p.y);
     for (const auto& l : plot.levels) y.include(l.y);
+    // Draw the axes.
     std::string svg = opened(plot.title, width, height);
     for (const double v : y.ticks()) {
         svg += line(left_edge, y.at(v), right, y.at(v));
@@ -138,6 +146,7 @@ std::string svg_of(const PointPlot& plot) {
     svg += line(left_edge, bottom, right, bottom, "#444");
     svg += text((left_edge + right) / 2, height - 6, "middle", plot.x_label);
     svg += text(4, top - 6, "start", plot.y_label, "#555");
+    // Draw the levels, then the points with a legend at the right.
     for (const auto& l : plot.levels) {
         svg += fmt::format(
             "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#444\" "

@@ -1,4 +1,4 @@
-/// What plots are made of: axes, colours, lines and words.
+/// The parts of plots: axes, colours, lines and texts.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,14 @@ namespace hedgerow::cli::plot_parts {
 
 inline constexpr double width = 860, name_width = 210, left_edge = 64, top_edge = 34;
 
-/// Told apart by those who see colours differently too (after Okabe and Ito 2008); beyond ten, by dashes.
+/// Ten colours that colour-blind people can distinguish too (after Okabe and Ito 2008). They repeat from the
+/// eleventh series on, whose lines are dashed.
 const char* colour_of(std::size_t i);
 const char* dash_of(std::size_t i);
 
 std::string tick_text(double value, Unit unit);
 
-/// Positive values to places along an axis, by their logarithms.
+/// A logarithmic axis: maps positive values to places from `from` to `to`.
 class LogAxis {
 public:
     LogAxis(double from, double to) : from_(from), to_(to) {}
@@ -30,7 +31,8 @@ public:
         const double low = std::log(least()), high = std::log(most());
         return from_ + (to_ - from_) * (std::log(value) - low) / (high - low);
     }
-    /// Powers of ten; where there are few of them, also some of their multiples.
+    /// The values of the ticks: powers of ten, with some of their multiples if the axis has few powers, and
+    /// every second power from seven decades on.
     std::vector<double> ticks() const {
         const double decades = std::log10(most() / least());
         const int apart = decades < 7 ? 1 : 2;
@@ -47,10 +49,11 @@ public:
     }
 
 private:
-    /// A little more than there is; of nothing, something.
+    /// The ends of the axis: those of the included values with a margin; 1 and 10 without values.
     double least() const { return least_ <= most_ ? least_ / margin() : 1; }
     double most() const { return least_ <= most_ ? most_ * margin() : 10; }
-    /// A factor of four at least is shown, so that what hardly differs looks so.
+    /// The factor by which the axis extends beyond the values at each end. The axis spans a factor of at
+    /// least four, so that values that hardly differ look alike.
     double margin() const {
         const double range = most_ / least_;
         return std::max({1.05, std::pow(range, 0.03), 2 / std::sqrt(range)});

@@ -34,12 +34,12 @@ std::string& failed_work() {
     return work;
 }
 
-/// Work goes on where the terminal is gone, so failure to write is passed over.
+/// Replaces the line on stderr. Failure to write is ignored, since work continues when the terminal is gone.
 void rewrite_line(const std::string& text) noexcept {
     std::fprintf(stderr, "\r\033[K%s", text.c_str());
 }
 
-/// 1234567 triangles: "1.23 million triangles"; of bytes "1.23 MB".
+/// A count as text: "1.23 million triangles" for 1234567 triangles, "1.23 MB" for as many bytes.
 std::string amount(double count, const std::string& unit) {
     if (unit == "bytes") return fmt::format("{:.3g} MB", count * 1e-6);
     if (count >= 1e6) return fmt::format("{:.3g} million {}", count * 1e-6, unit);

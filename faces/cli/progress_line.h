@@ -1,4 +1,4 @@
-/// A line on the terminal that says what is being done, how fast, and how long it will take.
+/// A line on the terminal that shows the current work, its rate and the time left.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace hedgerow::cli {
 
-/// Set by Ctrl-C: long work ends early with what it has.
+/// Set by Ctrl-C. Long work then ends early, with the part that is finished.
 extern std::atomic<bool> interrupted;
 /// From here on the first Ctrl-C sets `interrupted`, and the second ends the process at once with code 130.
 /// Nothing is changed where Ctrl-C was ignored before.
@@ -18,23 +18,24 @@ void listen_to_interrupts();
 /// Seconds on a clock that only goes forward.
 double now();
 
-/// A piece of long work, as its user sees it on stderr; silent unless that is a terminal. It is also what
-/// messages name when the work fails for want of memory.
+/// Shows the progress of a piece of long work on stderr, if stderr is a terminal. If the work runs out of
+/// memory, the error message names it.
 class ProgressLine {
 public:
-    /// `what` as in "building kdtree"; `unit` is what is counted, in the plural. Without one no rate is
-    /// shown.
+    /// `what` names the work: "building kdtree". `unit` names the counted items, in the plural; without a
+    /// unit no rate is shown.
     ProgressLine(std::string what, bool quiet, std::string unit = "");
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
+    /// The progress to give to the work. It borrows this line, and is cancelled by Ctrl-C.
     Progress progress();
-    /// Says what is being done, where nobody knows how much there is to do.
+    /// Shows the current step, for work of unknown length.
     void say(const std::string& doing);
-    /// The most that the work said is done.
+    /// The largest amount that the work has reported as done.
     std::uint64_t done() const { return done_; }
-    /// The last work that ended in an exception; empty if there was none.
+    /// The name of the last work that ended in an exception; empty if none did.
     static const std::string& failed();
 
 private:
@@ -42,13 +43,14 @@ private:
 
     std::string what_, unit_;
     bool shown_;
-    int exceptions_;  // under way when the work began
+    int exceptions_;  // exceptions in flight when the work began
     double start_, last_ = 0;
     std::atomic<std::uint64_t> done_{0};
     std::mutex mutex_;
 };
 
-/// The line's text: share done, rate and time left, as far as they are known. `seconds` have passed.
+/// The text of the line: share done, rate and time left, as far as they are known. `seconds` is the time
+/// since the work began.
 std::string progress_text(const std::string& what, const std::string& unit, std::uint64_t done,
                           std::uint64_t total, double seconds);
 

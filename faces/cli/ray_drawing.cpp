@@ -7,7 +7,7 @@ namespace hedgerow::cli {
 
 namespace {
 
-/// Where the ray ends in a structure: at its hit, or else at the end of what is seen.
+/// t where the drawn ray ends in a structure: at the hit, or at `beyond` without a hit.
 double end_of(const TraceTable& table, double beyond) {
     return table.hit ? table.hit->second : beyond;
 }
@@ -15,7 +15,7 @@ Box2d around_point(const Vec2d& p, double reach) {
     return {p - Vec2d::all(reach), p + Vec2d::all(reach)};
 }
 
-/// "3-5 8" of 3, 4, 5, 8.
+/// Writes ascending numbers as runs: "3-5 8" for 3, 4, 5, 8.
 std::string runs_text(const std::vector<std::size_t>& numbers) {
     std::string text;
     for (std::size_t i = 0, end; i < numbers.size(); i = end) {
@@ -29,17 +29,21 @@ std::string runs_text(const std::vector<std::size_t>& numbers) {
 }  // namespace
 
 RayFrame::RayFrame(const FlatScene& scene, const std::vector<RayView>& views) {
+    // Show all cells, also the visited ones where the others are not drawn.
     std::vector<const FlatStructure*> flats;
     for (const auto& v : views) flats.push_back(&v.structure.flat);
     shown = frame_of(scene, flats);
     for (const auto& v : views)
         for (const auto& row : v.table.rows)
             for (const auto& p : row.corners) shown.expand(p);
+    // Intersect the ray with the box shown. All views have the same ray.
     const TraceTable& table = views.front().table;
     const double speed = std::max(length(table.flat_direction), 1e-300), wide = length(shown.extent());
     double enter = 0, leave = 0;
     if (const auto in = meet(Ray<double, 2>{table.flat_origin, table.flat_direction}, shown))
         enter = in->entry, leave = in->exit;
+    // Begin shortly before the scene if the origin is far from it, and end at the farthest hit or beyond the
+    // scene.
     first = enter * speed > 0.3 * wide ? enter - 0.1 * wide / speed : 0;
     const double beyond = leave + 0.04 * wide / speed;
     last = end_of(table, beyond);
@@ -134,6 +138,7 @@ std::string RayDrawing::colour(std::size_t step) const {
 }
 
 void RayDrawing::ground() {
+    // Draw the cells, as two paths if they are too many for hints.
     const auto look = [](const FlatCell& c) {
         return c.leaf && c.items == 0 ? "class=\"cell all leaf void\"" : "class=\"cell all\"";
     };
@@ -146,6 +151,7 @@ void RayDrawing::ground() {
         svg_.path(others, "class=\"cell all\"");
     }
     draw_primitives(svg_, panel_, scene_.primitives, crowding(scene_.primitives.size(), panel_), " faint");
+    // Draw the tree.
     if (!tree_panel_) return;
     tree_panel_->draw_links(svg_);
     for (std::size_t i = 0; i < tree_.nodes.size(); ++i)
@@ -213,9 +219,11 @@ void RayDrawing::numbers() {
         Vec2d at;
         std::vector<std::size_t> steps;
     };
+    // Keep the labels off the ends of the ray.
     Labels labels(cells_area_);
     labels.block(around_point(at(last_), 7));
     if (frame_.first <= 0) labels.block(around_point(at(0), 4));
+    // Group inner nodes that the ray enters within 12 pixels of each other.
     std::vector<Entered> nodes;
     for (std::size_t i = 0; i < table_.rows.size(); ++i) {
         if (table_.rows[i].leaf) continue;
@@ -228,6 +236,7 @@ void RayDrawing::numbers() {
             nodes.push_back({p, {i + 1}});
     }
     for (const auto& e : nodes) svg_.circle(e.at, 2, "fill=\"#555\"");
+    // Number the leaves in the middle of the ray's part in them.
     for (std::size_t i = 0; i < table_.rows.size(); ++i) {
         const Interval<double> in = table_.rows[i].inside;
         const Vec2d middle = at(in.entry) * 0.5 + at(in.exit) * 0.5;
@@ -235,6 +244,7 @@ void RayDrawing::numbers() {
             labels.draw(svg_, middle, middle, fmt::format("{}", i + 1),
                         fmt::format("class=\"badge\" stroke=\"{}\"", colour(i)));
     }
+    // Number the groups beside the ray.
     const Vec2d along = normalized(at(last_) - at(frame_.first)), side(along[1], -along[0]);
     for (const auto& e : nodes)
         labels.draw(svg_, e.at, e.at - side * 14.0, runs_text(e.steps), "class=\"badge\" stroke=\"#b6bcc8\"");

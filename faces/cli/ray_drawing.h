@@ -1,5 +1,5 @@
-/// A ray's walk in one structure, part by part: pictures draw the steps together, pages in groups of their
-/// own.
+/// Draws a ray's walk in one structure part by part. A picture draws all steps together, a page each step in
+/// a group of its own.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,10 @@
 
 namespace hedgerow::cli {
 
-/// What is seen of a ray, in t, and of the plane with it: from its origin, if that is near, to its farthest
-/// hit in any of the structures, or to a little beyond the scene.
+/// The part of a ray that is drawn, from t = `first` to `last`, and the box of the plane around it. The part
+/// begins at the origin, or shortly before the scene if the origin is farther away than 0.3 of the box's
+/// diagonal. It ends at the farthest hit in any of the structures, or a little beyond the scene if the ray
+/// misses in one of them.
 struct RayFrame {
     double first = 0, last = 0;
     Box2d shown;
@@ -22,7 +24,7 @@ struct RayFrame {
 
 class RayDrawing {
 public:
-    /// The tree stands at the right of the cells, if the structure has one.
+    /// The tree is drawn at the right of the cells, if the structure has one.
     RayDrawing(Svg& svg, const FlatScene& scene, const RayView& view, const RayFrame& frame,
                const Box2d& area);
 
@@ -34,15 +36,15 @@ public:
     void ray();
     void hit();
 
-    // Of step i, from 0.
+    // The parts of step i, from 0: cell, tested primitives, interval, node of the tree.
     void cell(std::size_t i);
     void tests(std::size_t i);
-    /// The ray's part in the cell, with t where it begins and ends.
+    /// The ray's part in the cell, with t at both ends.
     void interval(std::size_t i);
     void node(std::size_t i);
 
-    /// A leaf's number stands where the ray is in it; nodes are numbered where the ray enters them, those
-    /// that it enters at one place together.
+    /// The numbers of the steps. A leaf's number is at the middle of the ray's part in it. A node's number is
+    /// where the ray enters it; nodes that the ray enters at nearly one place share a label.
     void numbers();
 
 private:
@@ -54,7 +56,7 @@ private:
     const FlatStructure& all_;
     const TraceTable& table_;
     const RayFrame& frame_;
-    double last_;  ///< t where this structure's ray ends
+    double last_;  ///< t where the ray ends in this structure
     Box2d cells_area_;
     Panel panel_;
     std::optional<TreePanel> tree_panel_;

@@ -49,6 +49,7 @@ show(1);
 )";
 
 std::string drawing_of(const FlatScene& scene, const RayView& view) {
+    // Draw what all steps share: the pale cells and tree, and the ray.
     const Layout layout(scene.width, scene.height,
                         {NamedStructure{view.structure.name, {view.table.summary()}, {}}});
     const RayFrame frame(scene, {view});
@@ -58,6 +59,7 @@ std::string drawing_of(const FlatScene& scene, const RayView& view) {
     RayDrawing drawing(svg, scene, view, frame, layout.area(0));
     drawing.ground();
     drawing.ray();
+    // Draw each step in a group, which the script shows and hides.
     for (std::size_t i = 0; i < view.table.rows.size(); ++i) {
         svg.open_group(fmt::format("class=\"step\" id=\"step{}\"", i + 1));
         drawing.cell(i);

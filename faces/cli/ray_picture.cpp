@@ -9,12 +9,14 @@ std::string ray_picture(const FlatScene& scene, const std::vector<RayView>& view
         captions.push_back({v.structure.name, {v.table.summary()}, {}});
         trees = trees || !v.structure.tree.nodes.empty();
     }
+    // Lay the panels out. All have one frame, so that they can be compared.
     const Layout layout(scene.width, scene.height, captions, trees ? 1 : 0);
     const RayFrame frame(scene, views);
     Svg svg(scene.width, scene.height, RayDrawing::style());
     add_definitions(svg);
     svg.text({picture_margin, 32}, scene.title, "class=\"title\"");
     for (std::size_t s = 0; s < views.size(); ++s) {
+        // Draw the visited cells over all others, then the tested primitives, and the ray on top.
         RayDrawing drawing(svg, scene, views[s], frame, layout.area(s));
         drawing.ground();
         const std::size_t steps = views[s].table.rows.size();

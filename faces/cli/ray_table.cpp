@@ -22,14 +22,17 @@ std::string TraceTable::summary() const {
 }
 
 void TraceTable::stop_at_first_hit() {
+    // Find the first leaf with a hit, and its nearest hit.
     for (std::size_t i = 0; i < rows.size(); ++i) {
         std::optional<std::pair<PrimitiveId, double>> first;
         for (const auto& t : rows[i].tests)
             if (t.t && (!first || std::pair(*t.t, t.id) < std::pair(first->second, first->first)))
-                first = {t.id, *t.t};  // the lower id of equal ones, as queries have it
+                first = {t.id, *t.t};  // for equal t the lower id, as in queries
         if (!first) continue;
+        // Keep the true hit, end the table at that leaf, and count its visits anew.
         nearest = std::exchange(hit, first);
-        const bool cells_are_nodes = visits.nodes == rows.size();  // of a grid
+        // A grid counts every visited cell as a node.
+        const bool cells_are_nodes = visits.nodes == rows.size();
         rows.resize(i + 1);
         visits = {};
         for (const auto& row : rows) {

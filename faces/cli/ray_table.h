@@ -1,4 +1,4 @@
-/// What a ray visits, as rows of numbers.
+/// The walk of a ray as rows of numbers.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace hedgerow::cli {
 
-/// A row of a trace's table: a visited cell, and what was tested there.
+/// A step of the walk: a visited cell, and the primitives that were tested there.
 struct TraceRow {
     NodeId node, parent;
     int level;
@@ -29,29 +29,29 @@ struct TraceTable {
     std::vector<double> origin, direction;
     std::vector<TraceRow> rows;
     std::optional<std::pair<PrimitiveId, double>> hit;
-    /// Of a walk that was stopped at its first hit: the nearest one.
+    /// The nearest hit, if the walk was stopped at its first one.
     std::optional<std::pair<PrimitiveId, double>> nearest;
     Visits visits;
-    /// In the picture's plane.
+    /// The ray in the picture's plane.
     Vec2d flat_origin, flat_direction;
 
     /// Whether the walk was stopped at a hit beyond the nearest one.
     bool wrong() const { return nearest && hit->second != nearest->second; }
     Vec2d at(double t) const { return flat_origin + flat_direction * t; }
-    /// One line: what it took and what came of it.
+    /// One line: counts and hit of the walk; for a stopped walk its steps, its hit and the nearest one.
     std::string summary() const;
-    /// Ends the walk in the first leaf where anything is met, in the cell or beyond: what comes of it where a
-    /// hit need not lie in its cell, and the walk does not go on either.
+    /// Ends the walk at the first leaf with a hit, in its cell or beyond, and moves the true hit to
+    /// `nearest`. Shows the error of a walk that neither requires a hit to be in the cell nor continues.
     void stop_at_first_hit();
 };
 
-/// The heads of the columns, and a row's texts for them; steps count from 1.
+/// The headings of the columns, and the texts of a row. Steps are numbered from 1.
 std::span<const std::string_view> table_columns();
 std::vector<std::string> texts_of(const TraceRow& row, std::size_t step);
-/// For people, a line a visit.
+/// The table as text: a line for each visit, and the summary.
 std::string text_of(const TraceTable& table);
 
-/// "[0.1, 0.25]"
+/// An interval as text: "[0.1, 0.25]".
 std::string interval_text(const Interval<double>& in);
 
 }  // namespace hedgerow::cli

@@ -1,9 +1,9 @@
-/// hedgerow render: a picture, by rays.
+/// hedgerow render: renders a picture by casting rays.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/render/raycast.h>
 
@@ -21,7 +21,7 @@ struct RenderArguments : Common {
     int spp = 1;
     unsigned threads = 0;
     std::uint64_t steps_max = 0;
-    bool counts = false, layers = false;  // layers: as the output's ending asks
+    bool counts = false, layers = false;  // layers: whether the output is .exr
 };
 
 struct Outcome {
@@ -30,8 +30,8 @@ struct Outcome {
     Upright upright{2, ""};
     Vec3f up;
     FinishedPicture finished;
-    bool loaded = false;   // not built
-    bool counted = false;  // what rays visit
+    bool loaded = false;   // the index was loaded, not built
+    bool counted = false;  // visits of rays were counted
     double build_seconds = 0, seconds = 0;
 };
 
@@ -82,9 +82,10 @@ void report(const RenderArguments& a, const Outcome& o) {
     }
 }
 
-/// A picture of `primitives` by an index over them.
+/// Renders `primitives` by an index over them, saves the picture and reports. Returns the exit code.
 template <class Any, class P>
 int render(const RenderArguments& a, const Any& index, const P& primitives, Outcome o) {
+    // Read the options, and place the camera by the bounds of the index.
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = a.spp, options.seed = a.seed, options.steps_max = a.steps_max;
@@ -95,6 +96,7 @@ int render(const RenderArguments& a, const Any& index, const P& primitives, Outc
     options.camera =
         camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)}, o.upright);
     o.up = options.camera.up;
+    // Render. After an interruption the finished rows are saved.
     {
         ProgressLine line("rendering", a.quiet, "rows");
         const double start = now();
@@ -115,7 +117,7 @@ int render(const RenderArguments& a, const P& primitives) {
     o.build_seconds = now() - start;
     return render(a, *index, primitives, std::move(o));
 }
-/// By a saved index, as it is.
+/// Renders by a saved index, which is loaded and not built.
 template <class T>
 int render_saved(const RenderArguments& a) {
     const ThreadLimit limit(a.threads);

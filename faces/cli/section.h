@@ -1,4 +1,4 @@
-/// What a section shows of a scene: what the flat pictures of cells and of a ray share.
+/// Code that the flat pictures of cells and of a ray share: bounds, and the primitives in a section.
 #pragma once
 
 #include <filesystem>
@@ -7,19 +7,20 @@
 #include <fmt/format.h>
 
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "draw.h"
 
 namespace hedgerow::cli {
 
-/// A point, if the index is empty.
+/// The bounds of an index in double; the origin if the index is empty.
 template <class T, int D>
 Box<double, D> bounds_of(const AnyIndex<T, D>& index) {
     if (index.bounds().empty()) return {Vec<double, D>(), Vec<double, D>()};
     return {Vec<double, D>(index.bounds().low), Vec<double, D>(index.bounds().high)};
 }
-/// The primitives that a section meets; throws InputError if there are more than can be seen.
+/// The primitives that a section intersects, with the picture's title and size. Points of space count up to
+/// 1% of the diagonal of `bounds` from the plane. Throws InputError if there are more than `most_shapes`.
 template <class P, int D>
 FlatScene flat_scene(const DrawArguments& a, const P& set, const Section<D>& section,
                      const Box<double, D>& bounds) {

@@ -1,10 +1,10 @@
-/// hedgerow structures: what can be built, and with which options.
+/// hedgerow structures: lists the structures that can be built, and their options.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
-#include <hedgerow/spelling.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/base/spelling.h>
 
 #include "verbs.h"
 

@@ -9,7 +9,7 @@ namespace hedgerow::cli {
 
 namespace {
 
-/// In halves of a pixel.
+/// A length in half pixels, rounded; `half` writes it in pixels.
 long halves(double x) {
     return std::lround(2 * x);
 }
@@ -79,7 +79,7 @@ void Svg::text(const Vec2d& at, std::string_view text, std::string_view attribut
 
 Panel::Panel(const Box2d& shown, const Box2d& area) : shown_(shown), middle_(area.center()) {
     const double wide = shown.extent()[0], high = shown.extent()[1];
-    // A scene of one point, or flat along an axis, is given some room.
+    // Give some room to a scene of one point, or one that is flat along an axis.
     const double room = std::max({wide, high, std::abs(shown.center()[0]) * 1e-9, 1e-300});
     for (int k = 0; k < 2; ++k)
         if (shown_.extent()[k] < 1e-3 * room) {

@@ -1,4 +1,4 @@
-/// SVG: text that is well formed by construction, and a panel that maps a scene to pixels.
+/// A writer of SVG that is well-formed by construction, and a panel that maps a scene to pixels.
 #pragma once
 
 #include <iterator>
@@ -13,14 +13,14 @@
 
 namespace hedgerow::cli {
 
-/// Many shapes as the data of one path, at half a pixel. A shape that looks like one before is left out, so
-/// that a path is no longer than its pixels. O(1) a shape.
+/// The data of one path for many shapes, rounded to half a pixel. A shape equal to an earlier one is left
+/// out, so that a path is no longer than its pixels. O(1) a shape.
 class Path {
 public:
-    /// Two points are a line.
+    /// A closed polygon, or a line for two points.
     void polygon(const std::vector<Vec2d>& points);
     void circle(const Vec2d& center, double radius);
-    /// A line without length, which round ends make a dot.
+    /// A line of length 0, which round line ends turn into a dot.
     void dot(const Vec2d& at) { polygon({at, at}); }
 
     const std::string& data() const { return data_; }
@@ -33,7 +33,8 @@ private:
     std::string data_;
 };
 
-/// Attributes are written as they are given; texts are escaped. Lengths are in pixels.
+/// An SVG document in the making. Attributes are written as they are given; texts are escaped. Lengths are in
+/// pixels.
 class Svg {
 public:
     using Points = std::vector<Vec2d>;
@@ -42,17 +43,17 @@ public:
 
     void open_group(std::string_view attributes) { put("<g {}>\n", attributes); }
     void close_group() { put("</g>\n"); }
-    /// `hint` is what a browser shows under the pointer; may be empty.
+    /// A browser shows `hint` under the pointer; it may be empty.
     void polygon(const Points& points, std::string_view attributes, std::string_view hint = {});
     void line(const Vec2d& a, const Vec2d& b, std::string_view attributes);
     void circle(const Vec2d& center, double radius, std::string_view attributes);
     void rect(const Box2d& box, std::string_view attributes);
     /// A rectangle with round corners.
     void rounded(const Box2d& box, double radius, std::string_view attributes);
-    /// Nothing for a path without shapes.
+    /// Writes nothing for a path without shapes.
     void path(const Path& path, std::string_view attributes);
     void text(const Vec2d& at, std::string_view text, std::string_view attributes = {});
-    /// Definitions and the like: well formed already.
+    /// Writes XML as it is, such as definitions. It must be well-formed.
     void raw(std::string_view xml) { put("{}", xml); }
 
     /// The whole document.
@@ -66,7 +67,7 @@ private:
     std::string text_;
 };
 
-/// A part of the picture that shows a part of the plane: as large as fits, in the middle, y upwards.
+/// Maps the box `shown` of the plane into `area` of the picture: as large as fits, centred, y upwards.
 class Panel {
 public:
     Panel(const Box2d& shown, const Box2d& area);
@@ -74,16 +75,17 @@ public:
     Vec2d operator()(const Vec2d& p) const;
     std::vector<Vec2d> operator()(const std::vector<Vec2d>& points) const;
     double pixels(double length) const { return length * scale_; }
-    /// Where the shown part lies in the picture.
+    /// The shown box in the picture.
     Box2d frame() const;
 
 private:
     Box2d shown_;
-    Vec2d middle_;  // of the area
+    Vec2d middle_;  // the middle of the area
     double scale_;
 };
 
-/// A colour for level k of n, as "#rrggbb": from dark blue by green to red, each plain on white.
+/// The colour of level k of n, with k from 0, as "#rrggbb": from dark blue through green to red, each clearly
+/// visible on white.
 std::string level_colour(int k, int n);
 
 }  // namespace hedgerow::cli

@@ -1,4 +1,4 @@
-/// Tables, as text and for a page.
+/// A table of texts, for the terminal and for a page.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace hedgerow::cli {
 
-/// Columns of text under titles; the first is set to the left, the others to the right.
+/// Columns of text under headings. The first column is aligned left, the others right.
 struct Table {
     std::string title, note;
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
 };
 
-/// Removes some columns, from the first one of that name on.
+/// Removes `count` columns, beginning with the first one that is named `first`, which must exist.
 void drop(Table& table, std::string_view first, std::size_t count);
 
 std::string text_of(const Table& table);

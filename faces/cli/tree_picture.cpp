@@ -18,10 +18,10 @@ std::size_t TreeShape::end_count() const {
 
 namespace {
 
-constexpr double letter = 5.3;     // pixels of a letter of 8.5
-constexpr double legend_gap = 24;  // that texts may reach into
+constexpr double letter = 5.3;     // width of a letter of font size 8.5, in pixels
+constexpr double legend_gap = 24;  // pixels right of the area that texts may use
 
-/// The nodes that are kept, whose parents are kept too.
+/// The tree of the nodes that `keep` marks. The parents of marked nodes must be marked too.
 TreeShape kept(const TreeShape& tree, const std::vector<bool>& keep) {
     TreeShape part;
     part.levels_left_out = tree.levels_left_out;
@@ -102,6 +102,7 @@ void TreePanel::draw_node(Svg& svg, std::size_t i, std::string_view look) const 
     const auto& n = tree_.nodes[i];
     const Vec2d p = at_[i];
     const bool leaf = n.leaf;
+    // Draw the shape, hatched for an empty leaf.
     const std::string_view fill = leaf && n.items == 0 ? " style=\"fill:url(#void)\"" : "";
     const std::string attributes =
         look.empty() ? fmt::format("class=\"node\" stroke=\"{}\"{}", level_colour(n.level - 1, levels_), fill)
@@ -112,6 +113,7 @@ void TreePanel::draw_node(Svg& svg, std::size_t i, std::string_view look) const 
         svg.rect({p - half, p + half}, attributes);
     else
         svg.circle(p, r, attributes);
+    // Write the id into it, and the split or the items beside it, if they fit.
     const auto id = fmt::format("{}", n.id);
     if (r >= 2.8 * double(id.size())) svg.text(p + Vec2d(0, 3), id, "class=\"nodeid\"");
     if (leaf)

@@ -1,5 +1,5 @@
-/// A structure's tree as nodes and links: inner nodes as circles with where they are split, leaves as squares
-/// with their primitives below.
+/// Pictures of a structure's tree as nodes and links. Inner nodes are circles with their split beside them,
+/// leaves are squares with their primitives below.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <hedgerow/structures/outline.h>
+#include <hedgerow/walks/outline.h>
 
 #include "flat.h"
 #include "svg.h"
@@ -20,13 +20,13 @@ struct TreeNode {
     int level;
     bool leaf;
     std::size_t items;
-    /// "x 0.42" of a node that a plane across x divides, "3 14" of a leaf with two primitives.
+    /// "x 0.42" for a node that a plane perpendicular to x splits, "3 14" for a leaf with two primitives.
     std::string text;
     std::vector<std::size_t> children;
 };
 
-/// Parents before their children; empty for what is no tree, as a grid. `levels_left_out`: those of a tree
-/// that is too wide for the picture.
+/// The nodes of a tree, parents before their children; empty for a structure that is no tree, such as a grid.
+/// `levels_left_out` is the number of deepest levels that `cropped` removed.
 struct TreeShape {
     std::vector<TreeNode> nodes;
     int levels_left_out = 0;
@@ -37,7 +37,8 @@ struct TreeShape {
 
 namespace detail {
 
-/// Where a plane across an axis divides a cell into two; nothing for any other division.
+/// "x 0.42" if a plane perpendicular to an axis splits a cell into the two children; empty for any other
+/// split.
 template <int D>
 std::string split_text(const OutlineCell<D>& cell, const OutlineCell<D>& one, const OutlineCell<D>& other) {
     if (!cell.shape.empty() || !one.shape.empty()) return {};
@@ -61,6 +62,8 @@ std::string items_text(const OutlineCell<D>& cell) {
 
 }  // namespace detail
 
+/// The tree of an outline, whose cells have parents before their children. Empty if it has several roots.
+/// O(cells).
 template <int D>
 TreeShape tree_of(const std::vector<OutlineCell<D>>& cells) {
     TreeShape tree;
@@ -79,14 +82,16 @@ TreeShape tree_of(const std::vector<OutlineCell<D>>& cells) {
     return tree;
 }
 
-/// Without the deepest levels, until no more nodes without a child are left than can be told apart.
+/// Removes the deepest levels until at most `most_ends` nodes have no child, or one level is left. More ends
+/// cannot be distinguished in a picture.
 TreeShape cropped(TreeShape tree, std::size_t most_ends = 160);
-/// The nodes that are wanted, with their ancestors and the children of both. `wanted`: by node id.
+/// The part of a tree with the root, the wanted nodes, their ancestors, and the children of all of these.
+/// `wanted` has the ids of the wanted nodes as keys; its values are ignored.
 TreeShape around(const TreeShape& tree, const std::unordered_map<NodeId, bool>& wanted);
 
 std::string_view tree_style();
 
-/// Where the nodes of a tree lie: leaves side by side, a parent over the middle of its children.
+/// Draws a tree into an area: leaves are side by side, a parent is above the middle of its children.
 class TreePanel {
 public:
     TreePanel(const TreeShape& tree, const Box2d& area);
@@ -94,16 +99,18 @@ public:
     void draw_links(Svg& svg) const;
     /// `look`: attributes of the node's shape; by default the colour of its level.
     void draw_node(Svg& svg, std::size_t i, std::string_view look = {}) const;
-    /// What was left out.
+    /// Says how many levels were left out, if any.
     void draw_note(Svg& svg) const;
     Vec2d at(std::size_t i) const { return at_[i]; }
     double radius() const { return radius_; }
 
 private:
+    /// Places the nodes below i and then i, and returns the column of i. `next` is the first free column.
     double place(std::size_t i, double& next);
-    /// A leaf's primitives, one a line.
+    /// Writes a leaf's primitives below it, one a line.
     void draw_items(Svg& svg, std::size_t i) const;
-    /// Pixels from a node's middle to its neighbour at the right.
+    /// Pixels from a node's middle to its right neighbour on the level, or to the end of the area and the
+    /// gap.
     double room_beside(std::size_t i) const;
 
     const TreeShape& tree_;
@@ -113,7 +120,7 @@ private:
     double step_, radius_;
 };
 
-/// The numbers of leaves in their cells, where they fit.
+/// Writes the ids of leaves into their cells, where they fit.
 void number_leaves(Svg& svg, const Panel& panel, const FlatStructure& flat);
 
 }  // namespace hedgerow::cli

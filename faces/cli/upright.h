@@ -1,4 +1,4 @@
-/// Which way is up in a scene, when nobody says.
+/// The upward axis of a scene, if the user does not name one.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace hedgerow::cli {
 
-/// An axis, 0 for x to 2 for z, and the reason for it in words.
+/// An upward axis, 0 for x to 2 for z, and the reason for it in words.
 struct Upright {
     int axis;
     std::string reason;
@@ -19,13 +19,15 @@ struct Upright {
     char letter() const { return static_cast<char>('x' + axis); }
 };
 
-/// What lies flat where a mesh is lowest along an axis: the area, seen along the axis, of the triangles
-/// within a two-hundredth of the mesh's diagonal, and its share of that side of the bounding box.
+/// The flat base of a mesh along an axis: its triangles that lie within 1/200 of the mesh's diagonal of its
+/// lowest point. `area` is their area as seen along the axis, and `share` is that area as a share of the
+/// bounding box's side, at most 1.
 struct FlatBase {
     double area = 0, share = 0;
 
-    /// Whether a mesh stands on this one rather than on the other: it covers a tenth of its side, a larger
-    /// share than the other of its own, and four times the other's area.
+    /// Whether a mesh stands on this base rather than on the other. It does if this base covers at least a
+    /// tenth of its side, a larger share than the other covers of its side, and at least four times the
+    /// other's area.
     bool large_beside(const FlatBase& other) const {
         return share >= 0.1 && share > other.share && area >= 4 * other.area;
     }
@@ -34,15 +36,17 @@ struct FlatBases {
     FlatBase y, z;
 };
 
-/// O(n).
+/// The flat bases of a mesh along y and along z. O(n).
 template <std::floating_point T>
 FlatBases flat_bases(const TriangleMeshView<T>& mesh) {
+    // Find the bounding box.
     Box3d box;
     for (std::size_t i = 0; i < mesh.size(); ++i)
         for (const auto& p : mesh.corners(i)) box.expand(Vec3d(p));
     if (box.empty()) return {};
     const Vec3d extent = box.extent();
     const double thin = length(extent) / 200;
+    // Sum up the areas of the triangles that are low along y or z, as seen along that axis.
     Vec3d area;
     for (std::size_t i = 0; i < mesh.size(); ++i) {
         const auto [a, b, c] = mesh.corners(i);
@@ -58,10 +62,10 @@ FlatBases flat_bases(const TriangleMeshView<T>& mesh) {
     return {base(1), base(2)};
 }
 
-/// By the format of a mesh file, and where that leaves it open by its flat bases.
+/// The upward axis by the format of a mesh file, or by the flat bases if the format defines none.
 Upright upright_by_format(const std::string& path, const FlatBases& bases);
 
-/// Generated scenes and points have Z up, meshes from files what their format says.
+/// The upward axis of a scene: z for generated scenes and points, upright_by_format for meshes from files.
 template <class P>
 Upright upright_of(const Common& common, const P& primitives) {
     if (common.scene.starts_with("gen:")) return {2, "as in all generated scenes"};

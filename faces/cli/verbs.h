@@ -1,4 +1,5 @@
-/// The verbs. Each adds its options to the tool and returns what runs it once they are read: the exit code.
+/// The verbs. Each function adds the options of a verb to the tool, and returns the function that runs the
+/// verb after they are read. That function returns the exit code.
 #pragma once
 
 #include <functional>
@@ -21,9 +22,10 @@ Run add_generate(CLI::App& verb);
 Run add_convert(CLI::App& verb);
 Run add_structures(CLI::App& verb);
 
-/// The options that every verb has.
+/// Adds the options of a verb about one scene: the scene, --output if `output` is set, --precision, and those
+/// of add_reporting.
 void add_common(CLI::App& verb, Common& c, bool output);
-/// Those of them that are not about one scene.
+/// Adds the options that do not depend on one scene: --json, --quiet, --drop-bad and --seed.
 void add_reporting(CLI::App& verb, Common& c);
 
 }  // namespace hedgerow::cli

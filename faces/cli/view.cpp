@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/exr.h>
 #include <hedgerow/io/image.h>
 
@@ -93,15 +93,17 @@ std::string up_text(const ViewArguments& view, const Common& common, const Uprig
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,
                  const Upright& upright) {
     auto c = automatic_camera(bounds, upright.axis);
-    // A scene's own view serves unless the user turns it.
+    // Use the scene's own camera unless the user turns the view.
     if (const auto own = camera_for(generated_name(common)); own && (view.up == "auto" || own->up == c.up))
         c = *own;
+    // Apply the user's options.
     if (view.eye.size() == 3) c.eye = {view.eye[0], view.eye[1], view.eye[2]};
     if (view.target.size() == 3) c.target = {view.target[0], view.target[1], view.target[2]};
     if (view.light.size() == 3 && view.light == std::vector<float>{0, 0, 0})
         throw UsageError("--light 0,0,0 is no direction: give one towards the light, as 1,1,2");
     if (view.light.size() == 3) c.light = {view.light[0], view.light[1], view.light[2]};
     if (view.fov > 0) c.field_of_view = view.fov;
+    // Reject cameras that see nothing.
     if (c.eye == c.target)
         throw UsageError(fmt::format("the camera is at its target, ({}): change --eye or --target",
                                      fmt::join(c.eye.data, ", ")));

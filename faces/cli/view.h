@@ -1,4 +1,4 @@
-/// How the verbs that make pictures say how large they are and from where.
+/// The options of verbs that make pictures: size, camera, light and the radius of points.
 #pragma once
 
 #include <string>
@@ -23,48 +23,52 @@ struct ViewArguments {
     double radius = 0;
 };
 void add_view(CLI::App& verb, ViewArguments& view);
-/// Only where the camera is and where it looks.
+/// Adds only --eye, --target, --up and --fov.
 void add_camera(CLI::App& verb, ViewArguments& view);
 
-/// Width and height. Throws UsageError unless it is WIDTHxHEIGHT, each from 1 to 32768.
+/// Width and height in pixels. Throws UsageError unless the text is WIDTHxHEIGHT, each from 1 to 32768.
 std::pair<int, int> parse_size(const std::string& text);
 
-/// Which way is up: as the user says, or as the scene does.
+/// The upward axis: the user's, or the scene's.
 template <class P>
 Upright upright_of(const ViewArguments& view, const Common& common, const P& primitives) {
     if (view.up != "auto") return {view.up[0] - 'x', ""};
     return upright_of(common, primitives);
 }
-/// A line for people: what was chosen for them. Empty where nothing was, and for generated scenes.
+/// A line that tells the user which upward axis was chosen, and why. Empty if the user chose, and for
+/// generated scenes.
 std::string up_text(const ViewArguments& view, const Common& common, const Upright& upright);
 
-/// Where the scene is best seen from, but for what the user says. Throws UsageError for a camera that
-/// sees nothing, as one that looks along up.
+/// The scene's own camera, or one from the bounds, changed as the user's options say. Throws UsageError for a
+/// camera that sees nothing, such as one that looks along its up direction, and for --light 0,0,0.
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,
                  const Upright& upright);
 
-/// Whether a picture's file is .exr, layers of numbers, or .png, colours. Throws UsageError for any other
-/// ending, and InputError for .exr in a build without OpenEXR.
+/// True if the output is .exr (layers of numbers), false if it is .png (colours). Throws UsageError for any
+/// other extension, and InputError for .exr in a build without OpenEXR.
 bool asks_for_layers(const std::string& output);
 
-/// Where a picture goes: one that was interrupted must not replace one of before.
+/// The file that a picture is saved in. An interrupted picture has another name, so that it does not replace
+/// an earlier one.
 struct FinishedPicture {
     std::string output;
     bool whole = true;
 
-    /// After a message, if it is not whole.
+    /// 0 if the picture is whole. Else prints a message to stderr and returns 130.
     int exit_code() const;
 };
-/// By how many of its rows are done. Throws Cancelled if none is.
+/// Chooses the file by the number of finished rows. Throws Cancelled if no row is finished.
 FinishedPicture finish_picture(const std::string& output, std::uint64_t rows, int height);
 
-/// Throws MemoryShort for a picture too large to be held. `layers` are kept beside its colours.
+/// Throws MemoryShort if there is no memory for a picture of this size, with layers if `layers` is set.
+/// Throws UsageError as parse_size does.
 void check_picture_memory(const std::string& size, bool layers);
 
-/// Writes layers, if the picture has them, else colours.
+/// Saves the layers of a picture as .exr if it has them, else its colours as .png.
 void save(const std::string& output, const Picture& picture);
 
-/// Rays pass between points, so that points are seen as small spheres.
+/// Small spheres in place of points, since rays pass between points. A radius of 0 stands for 1/10 of the
+/// box's diagonal over the cube root of the number of points, or for 1 if the points coincide. O(n).
 template <class T>
 SphereSet<T, 3> spheres_at(const PointCloud<T, 3>& cloud, double wanted_radius) {
     Box<T, 3> box;

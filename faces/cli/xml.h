@@ -1,4 +1,4 @@
-/// Text as it may stand in SVG and HTML.
+/// Text for SVG and HTML.
 #pragma once
 
 #include <string>
@@ -6,7 +6,8 @@
 
 namespace hedgerow::cli {
 
-/// With &, <, > and quotes as entities. Control characters that XML does not allow become blanks.
+/// The text with &, <, > and double quotes as entities. Control characters other than tab and newline become
+/// blanks, since XML does not allow most of them.
 std::string escaped(std::string_view text);
 
 }  // namespace hedgerow::cli

@@ -1,5 +1,5 @@
-/// Any structure behind one type, chosen at run time by its name and options. What the tool and the tests
-/// link.
+/// An index of any structure behind one type. Its structure is chosen at run time, by name and options. The
+/// tool and the tests link it.
 #pragma once
 
 #include <memory>
@@ -12,21 +12,23 @@
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
 #include <hedgerow/trace.h>
+#include <hedgerow/walks/virtual_query.h>
 
 namespace hedgerow {
 
-/// One virtual call a batch; inside it everything is as if the structure were known. Const use is
-/// thread-safe.
+/// An index of any structure. A batch of closest or any hits costs one virtual call, inside which the
+/// structure is known at compile time. All other queries share one walk a probe, in which each candidate
+/// costs a virtual call. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
     virtual ~AnyIndex() = default;
 
-    /// As it was asked for, and in full with every option.
+    /// The spec that the index was built by, with its options; "wide" for `any_index`.
     virtual std::string_view structure() const = 0;
     virtual const Box<T, D>& bounds() const = 0;
     virtual std::size_t size() const = 0;
-    /// Beyond the primitives themselves.
+    /// Bytes of memory beyond the primitives themselves.
     virtual std::size_t bytes() const = 0;
     virtual std::size_t node_count() const = 0;
     virtual std::size_t leaf_count() const = 0;
@@ -35,34 +37,103 @@ public:
     /// What is wrong with the structure; empty if nothing is.
     virtual std::string validate() const = 0;
 
-    /// One hit a ray (false where nothing is hit), by what the call returns. With `visits`, one count a ray
-    /// is added to, and no kernel answers.
-    virtual KernelUse closest_hits(const RayArray<T, D>& rays, std::span<Hit<T>> hits,
-                                   std::span<Visits> visits = {}) const = 0;
-    virtual KernelUse any_hits(const RayArray<T, D>& rays, std::span<bool> hits,
-                               std::span<Visits> visits = {}) const = 0;
-    virtual std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits,
-                                 Visits* visits = nullptr) const = 0;
-    /// One a point; element none where there is no primitive.
-    virtual void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
-                                std::span<Visits> visits = {}) const = 0;
-    virtual std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
-                                Visits* visits = nullptr) const = 0;
-    virtual std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
-                                    Visits* visits = nullptr) const = 0;
+    // Queries run in the calling thread. `answer` runs any query type of yours, with this object as the index
+    // and as the set of primitives. The functions of ask.h that take any index call `answer`.
 
-    /// Its cells, parents before their children (structures/outline.h).
+    using Scalar = T;
+    static constexpr int dimension = D;
+    using Primitives = AnyIndex;
+    const AnyIndex& primitives() const { return *this; }
+    /// The id that hits report for a primitive.
+    virtual std::uint32_t id(PrimitiveId element) const = 0;
+
+    /// The answer of Q(*this, arguments...) after a walk. Each candidate costs a virtual call. Throws
+    /// InputError where the structure does not answer queries of this probe.
+    template <AnsweringQuery Q, class Count, class... Arguments>
+    auto answer(Count& count, Arguments&&... arguments) const {
+        return in_ieee_mode([&] {
+            Q query(*this, arguments...);
+            Virtual<Q> asked(query);
+            if constexpr (std::same_as<Count, Visits>) {
+                walk(asked, count);
+            } else {
+                Visits nobodys;
+                walk(asked, nobodys);
+            }
+            return query.answer();
+        });
+    }
+
+    /// Whether the structure answers ray queries.
+    virtual bool answers_rays() const = 0;
+    /// Writes one hit a ray, false where nothing is hit. Returns which algorithms answered. With `visits`,
+    /// adds to one count a ray, and no kernel answers. Throws InputError where the structure does not answer
+    /// rays.
+    KernelUse closest_hits(const RayArray<T, D>& rays, std::span<Hit<T>> hits,
+                           std::span<Visits> visits = {}) const {
+        if (visits.empty()) return closest_hits_uncounted(rays, hits);
+        return one_by_one<ClosestHit<AnyIndex>>(
+            rays, visits, [&](std::size_t i, const auto& hit) { hits[i] = hit.value_or(Hit<T>{}); });
+    }
+    KernelUse any_hits(const RayArray<T, D>& rays, std::span<bool> hits,
+                       std::span<Visits> visits = {}) const {
+        if (visits.empty()) return any_hits_uncounted(rays, hits);
+        return one_by_one<AnyHit<AnyIndex>>(rays, visits, [&](std::size_t i, bool hit) { hits[i] = hit; });
+    }
+    std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits = nullptr) const {
+        Visits nobodys;
+        return answer<AllHits<AnyIndex>>(visits != nullptr ? *visits : nobodys, ray, hits);
+    }
+    /// Writes the closest point for each of `points`. The element is none (0xFFFFFFFF) where there is no
+    /// primitive.
+    void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
+                        std::span<Visits> visits = {}) const {
+        Visits nobodys;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[i] =
+                answer<ClosestPoint<AnyIndex>>(visits.empty() ? nobodys : visits[i], points[i], anywhere)
+                    .value_or(Near<T, D>{});
+    }
+    std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
+                        Visits* visits = nullptr) const {
+        Visits nobodys;
+        return answer<Nearest<AnyIndex>>(visits != nullptr ? *visits : nobodys, point, k, anywhere, found);
+    }
+    std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
+                            Visits* visits = nullptr) const {
+        Visits nobodys;
+        return answer<Overlapping<AnyIndex>>(visits != nullptr ? *visits : nobodys, box, found);
+    }
+
+    /// The structure's cells, parents before their children (walks/outline.h).
     virtual std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits = {}) const = 0;
-    /// What `closest_hits` does with a ray, step by step (trace.h).
+    /// The walk of a ray's closest-hit query, step by step (trace.h).
     virtual Trace<T, D> trace(const Ray<T, D>& ray) const = 0;
-    /// Whether primitives can be inserted and erased, and whether it can be fitted to ones that moved. What
-    /// can do neither is built again, and throws InputError when asked.
+    /// Whether single primitives can be inserted and erased, and whether the structure can be refitted to
+    /// primitives that moved. `insert`, `erase` and `refit` throw InputError where the structure cannot do
+    /// it; the index has to be built again then.
     virtual bool changes_one_by_one() const = 0;
     virtual bool refittable() const = 0;
-    /// As the functions of Index, for the borrowed primitives where they lie.
+    /// Like `insert`, `erase` and `refit` of Index, on the borrowed primitives in the caller's arrays.
     virtual bool insert(PrimitiveId id) = 0;
     virtual bool erase(PrimitiveId id) = 0;
-    virtual double refit(Executor& executor = serial_executor()) = 0;
+    virtual double refit(Threads threads = {}) = 0;
+
+protected:
+    virtual KernelUse closest_hits_uncounted(const RayArray<T, D>& rays, std::span<Hit<T>> hits) const = 0;
+    virtual KernelUse any_hits_uncounted(const RayArray<T, D>& rays, std::span<bool> hits) const = 0;
+    virtual void walk(VirtualQuery<RayProbe<T, D>>& query, Visits& count) const = 0;
+    virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
+    virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
+
+private:
+    static constexpr T anywhere = std::numeric_limits<T>::max();
+
+    template <class Q, class Take>
+    KernelUse one_by_one(const RayArray<T, D>& rays, std::span<Visits> visits, Take take) const {
+        for (std::size_t i = 0; i < rays.size(); ++i) take(i, answer<Q>(visits[i], rays[i], KeepAll{}));
+        return {rays.size(), 0, 0};
+    }
 };
 
 /// An option of a structure, for help and for messages.
@@ -72,11 +143,14 @@ struct OptionInfo {
 struct StructureInfo {
     std::string_view name, description;
     std::vector<OptionInfo> options;
-    /// Of the only sets that it holds; 0: of any.
+    /// The dimension of the sets that the structure can hold; 0 for any dimension.
     int dimension = 0;
     bool points_only = false;
+    /// Whether the structure answers ray queries.
+    bool rays = true;
 
-    /// Whether it can be built over sets of a dimension, of points or of something else.
+    /// Whether the structure can be built over sets of this dimension; `points` says whether the sets hold
+    /// points.
     bool holds(int set_dimension, bool points) const {
         return (dimension == 0 || dimension == set_dimension) && (points || !points_only);
     }
@@ -91,17 +165,18 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
                                                                                  Executor& executor);
 }
 
-/// Builds what `spec` names over primitives that are borrowed: "bvh", "bvh:builder=sweep,max_leaf_size=4".
-/// Throws UsageError for unknown names and options (with the nearest that exists), and InputError for bad
-/// primitives.
-/// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T> and for views of
-/// such in arrays of the caller's, T float or double.
+/// Builds the structure that `spec` names, over borrowed primitives: "bvh",
+/// "bvh:builder=sweep,max_leaf_size=4". Throws UsageError for unknown names and options (with the nearest
+/// that exists), for values out of range, and for primitives that the structure cannot hold. Throws
+/// InputError for bad primitives.
+/// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T>, and for views of
+/// such primitives in the caller's arrays, with T float or double.
 template <class P>
-auto build_any(std::string_view spec, const P& primitives, Executor& executor = default_executor()) {
-    return detail::build_any_over(spec, view_of(primitives), executor);
+auto build_any(std::string_view spec, const P& primitives, Threads threads = {}) {
+    return detail::build_any_over(spec, view_of(primitives), threads.over(primitives.size()));
 }
-/// The same of an index that is there already: one of triangles in a WideBvh, built or loaded
-/// (io/index_file.h). T is float or double.
+/// An AnyIndex from an existing index of triangles in a WideBvh, built or loaded (io/index_file.h). T is
+/// float or double.
 template <std::floating_point T>
 std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>> index);
 

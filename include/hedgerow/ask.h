@@ -1,4 +1,4 @@
-/// The questions that an Index answers: a ray, a point or a box at a time, or many in a batch.
+/// The queries of an Index: by a ray, a point or a box, one at a time or many in a batch.
 #pragma once
 
 #include <atomic>
@@ -8,6 +8,7 @@
 
 #include <hedgerow/geometry/offset.h>
 #include <hedgerow/index.h>
+#include <hedgerow/probes/ray_array.h>
 #include <hedgerow/queries/all_hits.h>
 #include <hedgerow/queries/answer_lists.h>
 #include <hedgerow/queries/any_hit.h>
@@ -17,7 +18,7 @@
 #include <hedgerow/queries/hit_count.h>
 #include <hedgerow/queries/nearest.h>
 #include <hedgerow/queries/overlapping.h>
-#include <hedgerow/ray_array.h>
+#include <hedgerow/queries/within.h>
 
 namespace hedgerow {
 
@@ -32,43 +33,29 @@ using NearOf = Near<typename I::Scalar, I::dimension>;
 
 inline constexpr NoVisits no_visits{};
 
-/// Whether kernels may answer for a ray: they do not count.
-template <class S, class P, class Count = const NoVisits>
-inline constexpr bool goes_to_kernels =
-    (Index<S, P>::by_kernels || Index<S, P>::instances_by_kernels) && std::same_as<Count, const NoVisits>;
-
-/// The hit of least t in [t_min, t_max], if any. `filter(hit)` may refuse; `count` may be a Visits.
+/// The hit of least t in [t_min, t_max], if any. `filter(hit)` may refuse a hit; `count` may be a Visits.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
                                                    const Ray<typename P::Scalar, P::dimension>& ray,
                                                    const Filter& filter = {}, Count& count = no_visits) {
-    if constexpr (goes_to_kernels<S, P, Count>)
-        if (const WideKernels* kernels = wide_kernels()) {
-            const Hit<float> hit = in_ieee_mode(
-                [&] { return kernels->closest(index.kernel_scene(ray, hit_filter(filter)), ray); });
-            return hit ? std::optional(hit) : std::nullopt;
-        }
     return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
 }
-/// Whether anything is hit.
+/// Whether the ray hits anything in [t_min, t_max].
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
              const Filter& filter = {}, Count& count = no_visits) {
-    if constexpr (goes_to_kernels<S, P, Count>)
-        if (const WideKernels* kernels = wide_kernels())
-            return in_ieee_mode(
-                [&] { return kernels->any(index.kernel_scene(ray, hit_filter(filter)), ray); });
     return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
 }
-/// Every hit in the order of (t, id), each primitive once, into `hits`; returns how many.
+/// Writes every hit to `hits`, each primitive once, in the order of (t, instance, element). Returns how many
+/// there are.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
                      std::vector<Hit<typename P::Scalar>>& hits, const Filter& filter = {},
                      Count& count = no_visits) {
     return index.template answer<AllHits<P, Filter>>(count, ray, hits, filter);
 }
-/// How many primitives are hit (two at a shared edge). A structure that may offer a primitive twice has its
-/// hits kept until they are told apart, in memory that the thread keeps.
+/// The number of primitives hit (two at a shared edge). Where a primitive may be offered twice, the hits are
+/// first collected, in memory that the thread keeps, and repeated ones are removed.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
                       const Filter& filter = {}, Count& count = no_visits) {
@@ -79,7 +66,8 @@ std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P:
         return all_hits(index, ray, hits, filter, count);
     }
 }
-/// The closest point of any primitive within a squared distance.
+/// The closest point of any primitive within `max_distance2` (squared, included); none if there is no such
+/// primitive.
 template <class S, class P, class Count = const NoVisits>
 std::optional<Near<typename P::Scalar, P::dimension>> closest_point(
     const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
@@ -87,7 +75,8 @@ std::optional<Near<typename P::Scalar, P::dimension>> closest_point(
     Count& count = no_visits) {
     return index.template answer<ClosestPoint<P>>(count, point, max_distance2);
 }
-/// The k nearest primitives within a squared distance, in the order of (distance², id), into `found`.
+/// Writes the k nearest primitives within `max_distance2` (squared, included) to `found`, in the order of
+/// (distance², instance, element). Returns how many there are.
 template <class S, class P, class Count = const NoVisits>
 std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
                     std::size_t k, std::vector<Near<typename P::Scalar, P::dimension>>& found,
@@ -95,7 +84,15 @@ std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::d
                     Count& count = no_visits) {
     return index.template answer<Nearest<P>>(count, point, k, max_distance2, found);
 }
-/// The primitives that overlap a box, ascending, into `found`: their positions, among instances PlacedIds.
+/// Writes all primitives within `max_distance2` (squared, included) to `found`, in the order of (distance²,
+/// instance, element). Returns how many there are.
+template <class I, class Count = const NoVisits>
+std::size_t within(const I& index, const PointOf<I>& point, typename I::Scalar max_distance2,
+                   std::vector<NearOf<I>>& found, Count& count = no_visits) {
+    return index.template answer<Within<typename I::Primitives>>(count, point, max_distance2, found);
+}
+/// Writes the primitives that overlap a box to `found`, ascending: their positions in the set, or PlacedIds
+/// among instances. Returns how many there are.
 template <class S, class P, class Count = const NoVisits>
 std::size_t overlapping(const Index<S, P>& index, const Box<typename P::Scalar, P::dimension>& box,
                         std::vector<IdOf<P>>& found, Count& count = no_visits) {
@@ -109,124 +106,131 @@ inline void expect_room(const std::string& asked, std::size_t count, std::size_t
                          std::to_string(answers) + " answers: make the array of answers as long as that of " +
                          asked);
 }
-/// Rays `begin` to `end` of a batch by `by_kernels(kernels, scene, begin, end)` where kernels answer, else
-/// `one(i, filter)` each; in pieces over the executor.
-template <class S, class P, class Filter, class ByKernels, class One>
-KernelUse answer_batch(const Index<S, P>& index, std::size_t count, Executor& executor, const Filter& filter,
-                       ByKernels by_kernels, One one) {
+/// The executor of a batch. A filter may keep state, which threads would share, so a batch with a filter
+/// stays on one thread unless the caller gives an executor.
+template <class Filter>
+Executor& executor_for(Threads threads, std::size_t rays) {
+    return threads.over(std::same_as<Filter, KeepAll> ? rays : 0);
+}
+/// Sets answers[i] to the answer of Q for ray i, in pieces over the executor. The kernel of Q answers a piece
+/// if it takes many rays, else `one(i)` answers each ray.
+template <class Q, class I, class Rays, class Answer, class Filter, class One>
+KernelUse answer_rays(const I& index, const Rays& rays, std::span<Answer> answers, Threads threads,
+                      const Filter& filter, One one) {
+    expect_room("rays", rays.size(), answers.size());
+    Executor& executor = executor_for<Filter>(threads, rays.size());
     std::atomic<std::size_t> phased{0}, packets{0};
-    executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
-        if constexpr (Index<S, P>::by_kernels)
-            if (const WideKernels* kernels = wide_kernels()) {
-                const WideScene scene = index.wide_scene(hit_filter(filter), begin);
-                const KernelUse use = in_ieee_mode([&] { return by_kernels(*kernels, scene, begin, end); });
+    executor.for_each_piece(rays.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        const Kernel<Q, I> kernel;
+        const auto some = rays.part(begin, end - begin);
+        if constexpr (requires { kernel.answer_many(index, begin, some, answers.data(), filter); })
+            if (kernel) {
+                const KernelUse use = in_ieee_mode(
+                    [&] { return kernel.answer_many(index, begin, some, answers.data() + begin, filter); });
                 phased += use.phased, packets += use.packets;
                 return;
             }
-        for (std::size_t i = begin; i < end; ++i) one(i, filter_of_ray(filter, i));
+        for (std::size_t i = begin; i < end; ++i) answers[i] = one(i);
     });
-    return {count - phased - packets, phased, packets};
+    return {rays.size() - phased - packets, phased, packets};
 }
 }  // namespace detail
 
-/// One answer a ray, in pieces over the executor. The rays may lie in memory as they like (ray_array.h); a
-/// vector or a span of them will do. `filter(hit)` or `filter(i, hit)`, for ray i, may refuse
-/// (queries/hit.h). Where nothing is hit, a Hit that is false. Throws InputError, and writes nothing, if
-/// there are fewer places for answers than rays. Returns which algorithms answered
-/// (structures/bvh/wide/kernels.h): other indexes than those of triangles of float in a WideBvh go ray by
-/// ray.
+/// Writes the closest hit of ray i to hits[i], or a Hit that is false where nothing is hit; `any_hits` writes
+/// whether ray i hits anything. Large batches are cut into pieces over all cores, unless an executor is given
+/// or there is a filter (Threads). The rays may have any layout in memory (probes/ray_array.h); a vector or a
+/// span of rays will do. `filter(hit)` or `filter(i, hit)`, for ray i, may refuse a hit (queries/hit.h).
+/// Throws InputError, and writes nothing, if there are fewer places for answers than rays. Returns which
+/// algorithms answered (walks/kernel.h): only indexes of float triangles in a WideBvh answer batches by
+/// kernels, all others ray by ray.
 ///
 ///   closest_hits(index, rays, hits, default_executor());
 ///   closest_hits(index, rays, hits,
 ///                [&](std::size_t i, const Hit<float>& h) { return h.element != starts_on[i]; });
 template <class S, class P, class Filter = KeepAll>
 KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                       std::span<Hit<typename P::Scalar>> hits, Executor& executor = serial_executor(),
+                       std::span<Hit<typename P::Scalar>> hits, Threads threads = {},
                        const Filter& filter = {}) {
-    detail::expect_room("rays", rays.size(), hits.size());
-    return detail::answer_batch(
-        index, rays.size(), executor, filter,
-        [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.closest_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
-        },
-        [&](std::size_t i, const auto& own) {
-            hits[i] = closest_hit(index, rays[i], own).value_or(Hit<typename P::Scalar>{});
-        });
+    using Found = Hit<typename P::Scalar>;
+    return detail::answer_rays<ClosestHit<P, Filter>>(index, rays, hits, threads, filter, [&](std::size_t i) {
+        return closest_hit(index, rays[i], filter_of_ray(filter, i)).value_or(Found{});
+    });
 }
 template <class S, class P, class Filter = KeepAll>
 KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                   std::span<bool> hits, Executor& executor = serial_executor(), const Filter& filter = {}) {
-    detail::expect_room("rays", rays.size(), hits.size());
-    return detail::answer_batch(
-        index, rays.size(), executor, filter,
-        [&](const auto& kernels, const auto& wide, std::size_t begin, std::size_t end) {
-            return kernels.any_hits(wide, rays.part(begin, end - begin), hits.data() + begin);
-        },
-        [&](std::size_t i, const auto& own) { hits[i] = any_hit(index, rays[i], own); });
+                   std::span<bool> hits, Threads threads = {}, const Filter& filter = {}) {
+    return detail::answer_rays<AnyHit<P, Filter>>(index, rays, hits, threads, filter, [&](std::size_t i) {
+        return any_hit(index, rays[i], filter_of_ray(filter, i));
+    });
 }
 template <class S, class P, FilterOf<typename P::Scalar> Filter>
 KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
                        std::span<Hit<typename P::Scalar>> hits, const Filter& filter) {
-    return closest_hits(index, rays, hits, serial_executor(), filter);
+    return closest_hits(index, rays, hits, Threads(), filter);
 }
 template <class S, class P, FilterOf<typename P::Scalar> Filter>
 KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
                    std::span<bool> hits, const Filter& filter) {
-    return any_hits(index, rays, hits, serial_executor(), filter);
+    return any_hits(index, rays, hits, Threads(), filter);
 }
 
-/// The closest point for each of some points, as `closest_point` finds it; the element is none where nothing
-/// lies within the distance. Points may lie in memory as they like (primitives/strided.h); a vector or a span
-/// of them will do. Throws InputError, and writes nothing, if there are fewer places for answers.
+/// Writes the closest point for each of `points`, as `closest_point` finds it. The element is none where
+/// nothing lies within the distance. The points may have any layout in memory (base/strided.h); a vector or a
+/// span of points will do. Throws InputError, and writes nothing, if there are fewer places for answers than
+/// points.
 template <class S, class P>
 void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
-                    std::span<Near<typename P::Scalar, P::dimension>> found,
-                    Executor& executor = serial_executor(),
+                    std::span<Near<typename P::Scalar, P::dimension>> found, Threads threads = {},
                     typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
     detail::expect_room("points", points.size(), found.size());
-    executor.for_each_piece(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    threads.over(points.size()).for_each_piece(points.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             found[i] = closest_point(index, points[i], max_distance2)
                            .value_or(Near<typename P::Scalar, P::dimension>{});
     });
 }
 
-/// A list for each of many questions: `found[i]` is what the function of the same name finds for question i,
-/// with the same limits (`max_distance2` is squared) and filters, which may take the ray's number too. What a
-/// filter throws comes out. Takes the memory of all answers, up to three times while it runs. O(of each
-/// question).
+/// A list for each of many queries: `found[i]` is what the function of the same name finds for query i, with
+/// the same limits (`max_distance2` is squared) and filters. A filter may also take the ray's number.
+/// Exceptions of a filter reach the caller. Memory: that of all answers, and up to three times as much while
+/// the call runs. Cost: the sum of the costs of the single queries.
 ///
 ///   const auto hits = all_hits(index, rays);
 ///   for (const Hit<float>& hit : hits[7]) ...
 template <class S, class P, class Filter = KeepAll>
 AnswerLists<Hit<typename P::Scalar>> all_hits(const Index<S, P>& index,
                                               const RayArray<typename P::Scalar, P::dimension>& rays,
-                                              Executor& executor = serial_executor(),
-                                              const Filter& filter = {}) {
-    return answer_lists<Hit<typename P::Scalar>>(rays.size(), executor, [&](std::size_t i, auto& hits) {
-        all_hits(index, rays[i], hits, filter_of_ray(filter, i));
-    });
+                                              Threads threads = {}, const Filter& filter = {}) {
+    return answer_lists<Hit<typename P::Scalar>>(
+        rays.size(), detail::executor_for<Filter>(threads, rays.size()),
+        [&](std::size_t i, auto& hits) { all_hits(index, rays[i], hits, filter_of_ray(filter, i)); });
 }
 template <class S, class P, FilterOf<typename P::Scalar> Filter>
 AnswerLists<Hit<typename P::Scalar>> all_hits(const Index<S, P>& index,
                                               const RayArray<typename P::Scalar, P::dimension>& rays,
                                               const Filter& filter) {
-    return all_hits(index, rays, serial_executor(), filter);
+    return all_hits(index, rays, Threads(), filter);
 }
 template <class S, class P>
 AnswerLists<Near<typename P::Scalar, P::dimension>> nearest(
     const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points, std::size_t k,
-    Executor& executor = serial_executor(),
-    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
+    Threads threads = {}, typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
     return answer_lists<Near<typename P::Scalar, P::dimension>>(
-        points.size(), executor,
+        points.size(), threads.over(points.size()),
         [&](std::size_t i, auto& found) { nearest(index, points[i], k, found, max_distance2); });
+}
+template <class I>
+AnswerLists<NearOf<I>> within(const I& index, const Strided<PointOf<I>>& points,
+                              typename I::Scalar max_distance2, Threads threads = {}) {
+    return answer_lists<NearOf<I>>(
+        points.size(), threads.over(points.size()),
+        [&](std::size_t i, auto& found) { within(index, points[i], max_distance2, found); });
 }
 template <class S, class P>
 AnswerLists<IdOf<P>> overlapping(const Index<S, P>& index,
                                  const Strided<Box<typename P::Scalar, P::dimension>>& boxes,
-                                 Executor& executor = serial_executor()) {
-    return answer_lists<IdOf<P>>(boxes.size(), executor,
+                                 Threads threads = {}) {
+    return answer_lists<IdOf<P>>(boxes.size(), threads.over(boxes.size()),
                                  [&](std::size_t i, auto& found) { overlapping(index, boxes[i], found); });
 }
 

@@ -1,4 +1,4 @@
-/// A structure built over primitives. The questions it answers are in ask.h.
+/// An index: a structure built over primitives. Its queries are in ask.h.
 #pragma once
 
 #include <concepts>
@@ -7,22 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include <hedgerow/geometry/transform.h>
+#include <hedgerow/engine/ray_kernels.h>
 #include <hedgerow/parallel/ieee_executor.h>
-#include <hedgerow/primitives/triangle_mesh.h>
-#include <hedgerow/queries/filter.h>
-#include <hedgerow/structures/bvh/bvh.h>
-#include <hedgerow/structures/bvh/wide/kernels.h>
-#include <hedgerow/structures/bvh/wide/wide_bvh.h>
+#include <hedgerow/structures/references.h>
+#include <hedgerow/walks/structure.h>
 
 namespace hedgerow {
-
-/// A structure that can take up and let go of single primitives.
-template <class S, class P>
-concept ChangesOneByOne = requires(S& s, const P& set, PrimitiveId id) {
-    { s.insert(set, id) } -> std::same_as<bool>;
-    { s.erase(set, id) } -> std::same_as<bool>;
-};
 
 /// A structure that can be fitted to primitives that moved.
 template <class S, class P>
@@ -33,7 +23,8 @@ concept Refittable = requires(S& s, const ReferenceList<typename P::Scalar, P::d
 };
 
 namespace detail {
-/// Takes a value, and leaves T() if there is one: of structures and views, an empty one.
+/// Moves a value out, and leaves T() behind if T has a default constructor and can be assigned to: an empty
+/// structure or view.
 template <class T>
 T taken(T& from) noexcept {
     if constexpr (std::default_initializable<T> && std::is_move_assignable_v<T>)
@@ -44,10 +35,11 @@ T taken(T& from) noexcept {
 }  // namespace detail
 
 /// A structure S over the primitives that the view P looks at. Const use is thread-safe, and queries allocate
-/// nothing (those that return lists fill the caller's vector). Movable: an index that was moved from is empty
-/// and may be asked, changed or assigned to. What it looks at is not to be changed once it is built, but
-/// through `insert` and `erase`, or with a `refit` after, where the structure has them.
-template <class S, PrimitiveSet P>
+/// nothing (those that return lists fill the caller's vector). Movable: an index that was moved from is
+/// empty, and may be queried, changed or assigned to. Once an index is built, its primitives may change only
+/// through `insert` and `erase`, or with a `refit` afterwards, if the structure has these functions.
+template <class S, class P>
+requires Structure<S, P>
 class Index {
     friend struct detail::IndexParts;
 
@@ -57,21 +49,8 @@ public:
     using Structure = S;
     using Primitives = P;
     using BoxType = Box<Scalar, dimension>;
-    /// Whether rays may be answered by the processor's vectors (structures/bvh/wide/kernels.h).
-    static constexpr bool by_kernels =
-        std::same_as<P, TriangleMeshView<float>> && requires(const S& s, const TriangleBlocks<float>& b) {
-        WideScene{s.tree(), b.data(), {}};
-    };
-
-    /// The same for rays against instances of indexes that the kernels know, on both levels.
-    static constexpr bool instances_by_kernels = requires(const S& s, const P& p) {
-        WideInstances{s.tree(), p.for_kernels(), 0.0f};
-    };
-    struct Nothing {};
-    using KernelInstance = std::conditional_t<by_kernels, WideInstance, Nothing>;
-
-    /// Over nothing: no query finds anything. (A view of a type of your own needs a T() for it, and what that
-    /// looks at is empty.)
+    /// An index over nothing: no query finds anything. A view type of your own needs a default constructor
+    /// for this, which makes an empty view.
     Index() requires std::default_initializable<S> && std::default_initializable<P>
         : primitives_(), structure_(), leaves_() {}
     Index(const Index&) = default;
@@ -91,7 +70,7 @@ public:
     }
     ~Index() = default;
 
-    /// Borrows what `primitives` looks at; `owner`, if any, keeps it alive.
+    /// Borrows the arrays that `primitives` looks at; `owner`, if any, keeps those arrays alive.
     Index(P primitives, const typename S::Options& options, Executor& executor,
           std::shared_ptr<const void> owner = {})
         : owner_(std::move(owner)),
@@ -105,9 +84,12 @@ public:
     const S& structure() const { return structure_; }
     const P& primitives() const { return primitives_; }
     const BoxType& bounds() const { return structure_.bounds(); }
-    /// Of the set, held or not.
+    /// The copy of the primitives, packed by the structure or the set, that rays are tested against; an empty
+    /// struct if neither packs.
+    const auto& packed() const { return leaves_; }
+    /// The number of primitives in the set, including those that the structure does not hold.
     std::size_t size() const { return primitives_.size(); }
-    /// Beyond the primitives themselves.
+    /// Bytes of memory beyond the primitives themselves.
     std::size_t bytes() const {
         if constexpr (packs)
             return structure_.bytes() + leaves_.bytes();
@@ -116,40 +98,43 @@ public:
     }
     std::string validate() const { return structure_.validate(primitives_); }
 
-    /// Takes up primitive `id` of the caller's set as it is now: its arrays may have grown, and moved. What
-    /// is held already must be as it was; what is not held may be anything and is asked nothing. False, and
-    /// nothing is changed, if `id` is held already. Throws InputError, and changes nothing, if there is no
-    /// such primitive or it is bad. Not to be called while others ask.
+    /// Inserts primitive `id` of the caller's set as it is now. The set's arrays may have grown and moved.
+    /// Primitives that the index already holds must be unchanged; all others may be anything, and are not
+    /// read. Returns false, and changes nothing, if `id` is held already. Throws InputError, and changes
+    /// nothing, if the set has no such primitive or the primitive is bad. Must not run while other threads
+    /// query the index.
     ///
     ///   cloud.points.push_back(p);
     ///   index.insert(cloud, id_of_p);           // a new primitive
-    ///   index.erase(cloud, 3);                  // one that moves: out, changed, in again
+    ///   index.erase(cloud, 3);                  // a primitive that moves: erase, change, insert
     ///   cloud.points[3] = q;
     ///   index.insert(cloud, 3);
     template <class Set>
     bool insert(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
         return change(set, id, [&](const P& now) { return structure_.insert(now, id); });
     }
-    /// Lets go of primitive `id`, which must still be as it was inserted. False, and nothing is changed, if
-    /// it is not held.
+    /// Erases primitive `id`, which must still be as it was inserted. Returns false, and changes nothing, if
+    /// `id` is not held.
     template <class Set>
     bool erase(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
         return change(set, id, [&](const P& now) { return structure_.erase(now, id); });
     }
-    /// After borrowed primitives moved where they lie: fits the structure to them, and returns how far its
-    /// quality has drifted, as a multiple of its cost when it was built. O(n). No query may run meanwhile.
-    /// Throws InputError as `build` does, and then the index is as it was, valid for the primitives of
-    /// before. What an executor throws comes out too, from half way on after the refit was finished.
-    double refit(Executor& executor = serial_executor()) requires(Refittable<S, P>) {
-        return refit(primitives_, executor);
-    }
-    /// The same where the moved primitives lie elsewhere: as many as before, each under its id, and borrowed.
-    double refit(const P& moved, Executor& executor = serial_executor()) requires(Refittable<S, P>) {
+    /// Fits the structure to borrowed primitives that moved within the same arrays. Returns how far the
+    /// structure's quality has drifted, as a multiple of its cost when it was built. O(n). No query may run
+    /// meanwhile. Throws InputError as `build` does; the index is then unchanged, and valid for the
+    /// primitives before they moved. Exceptions of the executor reach the caller too: from half way on, only
+    /// after the refit is finished.
+    double refit(Threads threads = {}) requires(Refittable<S, P>) { return refit(primitives_, threads); }
+    /// Fits the structure to moved primitives in other arrays, which the index then borrows. They must be as
+    /// many as before, each under its old id; throws InputError for another number.
+    double refit(const P& moved, Threads workers = {}) requires(Refittable<S, P>) {
+        Executor& executor = workers.over(moved.size());
         if (moved.size() != size())
             throw InputError("a refit is for as many primitives as the index was built over: " +
                              std::to_string(size()) + ", not " + std::to_string(moved.size()));
         return in_ieee_mode([&] {
             IeeeExecutor threads(executor);
+            // First do all that may throw. Nothing of the index changes until then.
             const auto references = references_of(moved, threads);
             auto leaves = pack(moved, structure_, threads);
             const auto take = [&](Executor& by) {
@@ -157,10 +142,12 @@ public:
                 leaves_ = std::move(leaves);
                 primitives_ = moved;
             };
+            // The last place where the executor may stop the refit and leave the index unchanged.
             threads.look();
             try {
                 take(threads);
             } catch (...) {
+                // The refit is half done: finish it in this thread before the exception leaves.
                 take(serial_executor());
                 throw;
             }
@@ -168,7 +155,7 @@ public:
         });
     }
 
-    /// Any query of yours. `count` is a Visits, or NoVisits.
+    /// Runs any query of yours by a walk. `count` is a Visits, or NoVisits.
     template <Query Q, class Count>
     void ask(Q& query, Count& count) const {
         in_ieee_mode([&] { walk(query, count); });
@@ -178,53 +165,25 @@ public:
         NoVisits none;
         ask(query, none);
     }
-    /// What Q(*this, arguments...) answers. The query is made in IEEE mode too: its probe computes.
-    template <Query Q, class Count, class... Arguments>
+    /// The answer of Q(*this, arguments...): by a kernel if there is one and nothing is counted, else by a
+    /// walk. The query is constructed in IEEE mode too, since its probe computes.
+    template <AnsweringQuery Q, class Count, class... Arguments>
     auto answer(Count& count, Arguments&&... arguments) const {
+        static_assert(AnswersProbe<S, typename Q::Probe>,
+                      "this structure does not answer queries of this probe");
         return in_ieee_mode([&] {
+            if constexpr (HasKernel<Q, Index> && std::same_as<Count, const NoVisits>)
+                if (const Kernel<Q, Index> kernel; kernel) return kernel.answer(*this, arguments...);
             Q query(*this, arguments...);
             walk(query, count);
             return query.answer();
         });
     }
 
-    /// What the kernels are told, where these primitives in this structure are what they know.
-    WideScene wide_scene(const HitFilter& filter = {}, std::size_t first_ray = 0) const requires(by_kernels) {
-        return {structure_.tree(), leaves_.data(), primitives_.faces(), filter, first_ray};
-    }
-    /// The same inside of an instance, for hits that name it.
-    WideScene wide_scene(const HitFilter& filter, std::uint32_t instance, std::uint32_t geometry) const
-        requires(by_kernels) {
-        return {structure_.tree(), leaves_.data(), primitives_.faces(), filter, 0, instance, geometry};
-    }
-    /// What they are told of an instance of this index.
-    KernelInstance kernel_instance(const Affine<3>& back, std::uint32_t mask, std::uint32_t geometry) const
-        requires(by_kernels) {
-        WideInstance placed{{}, &structure_.tree(), &leaves_, &primitives_.faces(), mask, geometry};
-        for (int k = 0; k < 3; ++k) {
-            for (int c = 0; c < 3; ++c) placed.back[c][k] = back.linear[static_cast<std::size_t>(k)][c];
-            placed.back[3][k] = back.shift[k];
-        }
-        return placed;
-    }
-    /// And of instances of such indexes in this one, for a ray.
-    WideInstances wide_instances(const Ray<Scalar, dimension>& ray, const HitFilter& filter) const
-        requires(instances_by_kernels) {
-        return {structure_.tree(), primitives_.for_kernels(), primitives_.hit_error(ray), filter};
-    }
-    /// Whichever of both this index is to them.
-    auto kernel_scene(const Ray<Scalar, dimension>& ray, const HitFilter& filter) const
-        requires(by_kernels || instances_by_kernels) {
-        if constexpr (by_kernels)
-            return wide_scene(filter);
-        else
-            return wide_instances(ray, filter);
-    }
-    /// The kernels in use, if any.
-    static const WideKernels* kernels() { return wide_kernels(); }
-
 private:
-    /// A function of its own: in one with the query's making, the compiler takes the probe apart into more
+    struct Nothing {};
+
+    /// Not inlined: in one function with the query's construction, the compiler splits the probe into more
     /// values than there are registers, and a node costs 10% more.
     template <Query Q, class Count>
     [[gnu::noinline]] void walk(Q& query, Count& count) const {
@@ -245,19 +204,22 @@ private:
         return true;
     }
 
-    static constexpr bool packs = requires(const P& p) {
+    static constexpr bool packs_itself = requires(const S& s, const P& p) { s.pack(p, serial_executor()); };
+    static constexpr bool packs = packs_itself || requires(const P& p) {
         p.template pack<S::packed_order>(std::span<const PrimitiveId>(), serial_executor());
     };
 
     static auto pack(const P& primitives, const S& structure, Executor& executor) {
-        if constexpr (packs) {
+        if constexpr (packs_itself) {
+            return structure.pack(primitives, executor);
+        } else if constexpr (packs) {
             return primitives.template pack<S::packed_order>(structure.items(), executor);
         } else {
             static_cast<void>(executor);
             return Nothing{};
         }
     }
-    /// What leaves are tested through for rays: the packed copy where there is one, else the view.
+    /// Tests leaves: in the packed copy if it has a test for the probe, else in the view.
     struct Tested {
         const Index& index;
         template <class Probe, class Query>
@@ -281,7 +243,7 @@ private:
         packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>(), serial_executor())),
         Nothing>;
 
-    /// Of parts that belong together.
+    /// An index of parts that belong together.
     Index(P primitives, S structure, Packed leaves, std::shared_ptr<const void> owner)
         : owner_(std::move(owner)),
           primitives_(std::move(primitives)),
@@ -294,17 +256,19 @@ private:
     Packed leaves_;
 };
 
-/// Builds a structure over primitives: `build<KdTree>(mesh, {.leaf_size = 2})`. An lvalue is borrowed (it
-/// must outlive the index), an rvalue is moved into the index. Throws InputError for vertices that are NaN,
-/// infinite or absurd and for indices out of range.
+/// Builds a structure over primitives: `build<KdTree>(mesh, {.leaf_size = 2})`. An lvalue or a view is
+/// borrowed: its arrays must outlive the index. An rvalue of a set that owns its arrays is moved into the
+/// index. Large sets are built on all cores unless an executor is given (Threads). Throws InputError for
+/// vertices that are NaN, infinite or beyond `largest_coordinate` and for indices out of range.
 template <template <class, int> class S, class P>
 auto build(P&& primitives,
            const typename S<typename std::remove_cvref_t<P>::Scalar,
                             std::remove_cvref_t<P>::dimension>::Options& options = {},
-           Executor& executor = serial_executor()) {
+           Threads threads = {}) {
     using Set = std::remove_cvref_t<P>;
     using Structure = S<typename Set::Scalar, Set::dimension>;
     using View = ViewOf<Set>;
+    Executor& executor = threads.over(primitives.size());
     if constexpr (std::is_lvalue_reference_v<P> || std::is_same_v<View, Set>) {
         return Index<Structure, View>(view_of(primitives), options, executor);
     } else {
@@ -313,15 +277,15 @@ auto build(P&& primitives,
         return Index<Structure, View>(std::move(view), options, executor, std::move(owner));
     }
 }
-/// With the structure's own options, over an executor: `build<KdTree>(mesh, default_executor())`.
+/// Builds a structure with its default options, over an executor: `build<KdTree>(mesh, default_executor())`.
 template <template <class, int> class S, class P>
 auto build(P&& primitives, Executor& executor) {
     return build<S>(std::forward<P>(primitives), {}, executor);
 }
-/// The default structure: the engine.
+/// Builds the default structure, WideBvh (the engine).
 template <class P>
-auto build(P&& primitives, Executor& executor = serial_executor()) {
-    return build<WideBvh>(std::forward<P>(primitives), {}, executor);
+auto build(P&& primitives, Threads threads = {}) {
+    return build<WideBvh>(std::forward<P>(primitives), {}, threads);
 }
 
 }  // namespace hedgerow

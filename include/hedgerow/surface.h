@@ -1,10 +1,10 @@
-/// Where a hit lies in the world, and which way the surface faces there. All is computed in double and
+/// The position of a hit in the world, and the surface's normal there. Everything is computed in double and
 /// rounded once.
 #pragma once
 
 #include <hedgerow/geometry/entry.h>
 #include <hedgerow/geometry/exact_sum.h>
-#include <hedgerow/primitives/instance_set.h>
+#include <hedgerow/instances/instance_set.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/hit.h>
 
@@ -24,7 +24,7 @@ template <class P>
 concept OfSpheres = requires(const P& set) {
     set.sphere(0);
 };
-/// Sets of which a hit's u and v say where it lies.
+/// Whether a hit's u and v give its position: true on triangles and segments, and on instances of these.
 template <class P>
 inline constexpr bool has_coordinates = OfTriangles<P> || OfSegments<P>;
 template <Instanced P>
@@ -32,10 +32,11 @@ inline constexpr bool has_coordinates<P> =
     has_coordinates<typename std::remove_cvref_t<decltype(std::declval<const P&>()[0].index())>::Primitives>;
 
 template <int D>
-Vec<double, D> unit(const Vec<double, D>& a) {  // by way of the largest component, whose square fits
+Vec<double, D> unit(const Vec<double, D>& a) {  // divides by the largest component first, so squares fit
     return normalized(a / max_component(abs(a)));
 }
-/// Of any triangle that rays can hit: on slivers, whose product cancels to 0, by its exact signs.
+/// The unit normal of any triangle that rays can hit. On slivers, where the computed cross product cancels to
+/// 0, the exact signs of its components are normalised instead.
 inline Vec3d unit_normal(const Triangle<double, 3>& t) {
     Vec3d e1 = t.b - t.a, e2 = t.c - t.a, n;
     const double scale = scale_to_one(max_component(max(abs(e1), abs(e2))));
@@ -60,7 +61,7 @@ Vec<double, D> normal_on(const P& set, const Ray<double, D>& ray, const Hit<T>& 
     if constexpr (Instanced<P>) {
         const auto& placed = set[hit.instance];
         const V own = normal_on(placed.index().primitives(), inside(placed, ray), hit);
-        V there;  // by the inverse transposed
+        V there;  // normals transform by the inverse transposed
         for (int k = 0; k < D; ++k)
             for (int j = 0; j < D; ++j)
                 there[j] += product(placed.transform().back().linear[static_cast<std::size_t>(k)][j], own[k]);
@@ -76,7 +77,7 @@ Vec<double, D> normal_on(const P& set, const Ray<double, D>& ray, const Hit<T>& 
         static_assert(OfSpheres<P>, "the normal of a type of your own is for you to say");
         const auto s = set.sphere(hit.element);
         const Sphere<double, D> ball{V(s.center), static_cast<double>(s.radius)};
-        double t = static_cast<double>(hit.t);  // rounded by as much as the way is long: met again in double
+        double t = static_cast<double>(hit.t);  // rounded in proportion to the distance: intersected again
         if (const auto both = meet_line(ray.origin, ray.direction, ball))
             t = std::abs(both->entry - t) < std::abs(both->exit - t) ? both->entry : both->exit;
         const V outward = ray.at(t) - ball.center;
@@ -125,23 +126,23 @@ Ray<double, D> line_of(const Ray<T, D>& ray) {
 
 }  // namespace detail
 
-/// The hit point for the ray that was asked: from u and v on triangles and segments, on the surface of a
-/// sphere, and at ray.at(t) on a type of your own. The first two err by some roundings of the primitive's
-/// coordinates, however far the ray came; a sphere's lies on it to as many, and is the place that doubles
-/// find; ray.at(t) errs by some roundings of the way. `of` is the index that was
-/// asked, or its primitives. O(1).
+/// The hit point of a ray. `of` is the index that was queried, or its primitives. On triangles and segments
+/// the point comes from u and v, and errs by some roundings of the primitive's coordinates, however far the
+/// ray came. On a sphere the ray is intersected again in double, and the point is on the surface to some
+/// roundings of the coordinates. On primitives of your own type it is ray.at(t), which errs by some roundings
+/// of the distance travelled. O(1).
 template <class Of, class T, int D>
 Vec<T, D> position(const Of& of, const Ray<T, D>& ray, const Hit<T>& hit) {
     return Vec<T, D>(detail::position_on(detail::primitives_of(of), detail::line_of(ray), hit));
 }
-/// The unit normal: of a triangle on the side from which its corners go counterclockwise, of a sphere
-/// outward, of a segment to the left on the way from a to b. An instance turns it with the surface; a mirror
-/// does not flip it. O(1).
+/// The unit normal at a hit. On a triangle it points to the side from which the corners go counterclockwise,
+/// on a sphere outward, on a segment to the left of the way from a to b. An instance transforms it with the
+/// surface, and a mirror does not flip it. O(1).
 template <class Of, class T, int D>
 Vec<T, D> normal(const Of& of, const Ray<T, D>& ray, const Hit<T>& hit) {
     return Vec<T, D>(detail::normal_on(detail::primitives_of(of), detail::line_of(ray), hit));
 }
-/// The same of triangles and segments, where the ray is not needed.
+/// The position and the normal on triangles and segments, where the ray is not needed.
 template <class Of, class T>
 requires detail::has_coordinates<detail::PrimitivesOf<Of>>
 auto position(const Of& of, const Hit<T>& hit) {

@@ -1,10 +1,10 @@
-/// What an index does to find a ray's closest hit, step by step.
+/// The walk of an index to a ray's closest hit, step by step.
 #pragma once
 
 #include <unordered_map>
 
 #include <hedgerow/ask.h>
-#include <hedgerow/structures/outline.h>
+#include <hedgerow/walks/outline.h>
 
 namespace hedgerow {
 
@@ -12,9 +12,9 @@ namespace hedgerow {
 template <std::floating_point T>
 struct TraceTest {
     PrimitiveId id;
-    /// It had been tested in an earlier leaf: a mailbox knew.
+    /// Whether a mailbox skipped the primitive, since an earlier leaf had tested it.
     bool skipped = false;
-    /// Where it is met, if it is met within the limit.
+    /// The hit's t, if the primitive is hit within the limit.
     std::optional<T> t = std::nullopt;
 };
 
@@ -22,11 +22,12 @@ struct TraceTest {
 template <std::floating_point T, int D>
 struct TraceStep {
     OutlineCell<D> cell;
-    /// The ray's part in the cell as the walk sees it, up to the limit: some roundings longer than it is.
+    /// The ray's interval in the cell as the walk computes it, up to the limit: some roundings longer than
+    /// the true one.
     Interval<T> inside{};
-    /// Where the nearest hit so far lies (or the ray ends): what begins beyond is passed over.
+    /// The t of the nearest hit so far, or the ray's end: cells that begin beyond are pruned.
     T limit = T(0);
-    /// Of a leaf that was looked into.
+    /// The tests of a leaf, if its primitives were tested.
     std::vector<TraceTest<T>> tests;
 };
 
@@ -39,7 +40,7 @@ struct Trace {
 
 namespace detail {
 
-/// The Count that listens, and what the query tells it.
+/// A Count that records the walk. The query adds the limit and the candidates that it is offered.
 template <std::floating_point T, int D>
 class TraceLog {
 public:
@@ -69,7 +70,7 @@ private:
     void add(const Place& place, const std::optional<Interval<T>>& inside) {
         entries.push_back({place, inside, limit});
     }
-    /// A grid counts a cell as a node, and then as a leaf if something stands in it: one step.
+    /// A grid counts a cell as a node, and again as a leaf if the cell has primitives: both are one entry.
     void look_into(const Place& place, const std::optional<Interval<T>>& inside) {
         if (entries.empty() || entries.back().place != place) add(place, inside);
         entries.back().looked_into = true;
@@ -98,19 +99,22 @@ private:
     Log& log_;
 };
 
-/// What the walk's places stand for. Only cells that were visited, and those beside them, are looked at.
+/// The steps of a recorded walk, with the cells that its places identify. Only visited cells and their
+/// siblings are listed. Empty if a visited cell is not within the limits.
 template <class S, class T, int D>
 std::vector<TraceStep<T, D>> steps_of(const S& structure, const RayProbe<T, D>& probe,
                                       const TraceLog<T, D>& log, const OutlineLimits<D>& limits) {
     const auto key = [](const Place& p) { return std::uint64_t(p.first) << 32 | p.second; };
     std::unordered_map<std::uint64_t, std::optional<OutlineCell<D>>> visited;
     for (const auto& e : log.entries) visited[key(e.place)] = std::nullopt;
+    // Find the cell of each visited place.
     visit_outline(structure, limits, [&](const OutlineCell<D>& cell) {
         const auto found = visited.find(key(cell.place));
         if (found == visited.end() || found->second) return false;
         found->second = cell;
         return true;
     });
+    // Each entry becomes a step.
     std::vector<TraceStep<T, D>> steps;
     for (const auto& e : log.entries) {
         const auto& cell = visited[key(e.place)];
@@ -119,6 +123,7 @@ std::vector<TraceStep<T, D>> steps_of(const S& structure, const RayProbe<T, D>& 
         const Box<T, D> box{Vec<T, D>(cell->box.low), Vec<T, D>(cell->box.high)};
         step.inside = e.inside ? *e.inside : probe.inside(box, e.limit);
         step.inside.exit = std::min(step.inside.exit, e.limit);
+        // List what became of each primitive of a tested leaf.
         for (const PrimitiveId id : e.looked_into ? cell->items : std::span<const PrimitiveId>()) {
             TraceTest<T> test{id};
             test.skipped = std::find(e.skipped.begin(), e.skipped.end(), id) != e.skipped.end();
@@ -131,7 +136,7 @@ std::vector<TraceStep<T, D>> steps_of(const S& structure, const RayProbe<T, D>& 
     return steps;
 }
 
-/// Around the ray's part in a scene: of a grid, the cells there are few among all.
+/// A box around the ray's part in a scene. Only few of a grid's cells are in it.
 template <class T, int D>
 Box<double, D> around(const RayProbe<T, D>& probe, const Box<T, D>& scene) {
     const Interval<T> in = probe.inside(scene, probe.ray().t_max);
@@ -145,8 +150,9 @@ Box<double, D> around(const RayProbe<T, D>& probe, const Box<T, D>& scene) {
 
 }  // namespace detail
 
-/// The walk is the one that `closest_hit` takes, and visits are counted alike. A step's cell points into the
-/// structure. Costs some times what the query does; allocates.
+/// Traces the query of a ray's closest hit. The walk and its visits are those of `closest_hit` without a
+/// kernel. The cells of the steps point into the structure. Costs several times as much as the query;
+/// allocates.
 template <class S, class P>
 Trace<typename P::Scalar, P::dimension> trace(const Index<S, P>& index,
                                               const Ray<typename P::Scalar, P::dimension>& ray) {
@@ -162,7 +168,7 @@ Trace<typename P::Scalar, P::dimension> trace(const Index<S, P>& index,
         OutlineLimits<D> near;
         near.within = detail::around(probe, index.bounds());
         found.steps = detail::steps_of(index.structure(), probe, log, near);
-        // A ray from very far visits cells beside its own.
+        // A ray from very far visits cells outside that box: search all cells.
         if (found.steps.empty()) found.steps = detail::steps_of(index.structure(), probe, log, {});
     });
     return found;

@@ -1,10 +1,10 @@
-/// The structures' names and options, for people.
+/// Names, options and short descriptions of all structures, for people.
 #include <hedgerow/any_index.h>
 
 namespace hedgerow {
 
 const std::vector<StructureInfo>& structure_list() {
-    // What several structures have.
+    // Options that several structures have.
     static const OptionInfo mailbox = {"mailbox", "on|off", "on",
                                        "test a primitive once a query, in however many cells it stands"};
     static const OptionInfo insert = {"insert", "exact|box", "exact",
@@ -46,6 +46,12 @@ const std::vector<StructureInfo>& structure_list() {
           {"items_per_primitive", "NUMBER", "64", fewer_cells},
           budget,
           mailbox}},
+        {"hash-grid",
+         "cells of one size, found by hashing: the neighbours of points",
+         {{"cell", "LENGTH", "0", "of a cell's side; 0: half as many cells as points in their extent"}},
+         0,
+         true,
+         false},
         {"kdtree",
          "kd-tree: space cut by axis-aligned planes",
          {{"builder", "sah|binned|median|midpoint", "sah", "how planes are chosen"},
@@ -78,7 +84,7 @@ const std::vector<StructureInfo>& structure_list() {
           empty_bonus,
           mailbox}},
         {"bvh",
-         "binary bounding volume hierarchy (the default)",
+         "binary bounding volume hierarchy",
          {{"volume", "box|sphere|obb|kdop6|kdop14|kdop18|kdop26|cylinder|hull", "box",
            "what nodes are bounded by (in the plane: box, sphere, obb, kdop4, kdop8)"},
           {"builder", "binned|sweep|equal-counts|midpoint|lbvh|ploc|agglomerative|spatial-splits", "binned",
@@ -95,7 +101,7 @@ const std::vector<StructureInfo>& structure_list() {
           {"ordered", "on|off", "on", "visit the nearer child first"},
           {"culling", "on|off", "on", "pass over what a nearer hit has put out of reach"}}},
         {"wide",
-         "wide bounding volume hierarchy: 4 to 16 children a node, tested at once (the engine)",
+         "wide bounding volume hierarchy: 4 to 16 children a node, tested at once (the engine; the default)",
          {{"builder", "fast|medium|high", "medium",
            "of the binary tree that it is collapsed from: lbvh, binned, binned and improved"},
           {"width", "0|4|8|16", "0", "children a node; 0: what this processor is best at"},

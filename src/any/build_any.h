@@ -1,5 +1,5 @@
-/// AnyIndex over each structure and kind of primitives. Each scalar is instantiated in a file of its own,
-/// since it takes the compiler a while.
+/// Implements AnyIndex over each structure and kind of primitives. Each scalar is instantiated in a file of
+/// its own, since it takes the compiler a while.
 #pragma once
 
 #include <hedgerow/any_index.h>
@@ -36,46 +36,41 @@ public:
     int depth() const override { return index_.structure().depth(); }
     std::string validate() const override { return index_.validate(); }
 
-    KernelUse closest_hits(const RayArray<T, D>& rays, std::span<Hit<T>> hits,
-                           std::span<Visits> visits) const override {
-        if (visits.empty()) return hedgerow::closest_hits(index_, rays, hits);
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            hits[i] = closest_hit(index_, rays[i], KeepAll{}, visits[i]).value_or(Hit<T>{});
-        return {rays.size(), 0, 0};
+    std::uint32_t id(PrimitiveId element) const override {
+        return reported_id(index_.primitives(), element, 0);
     }
-    KernelUse any_hits(const RayArray<T, D>& rays, std::span<bool> hits,
-                       std::span<Visits> visits) const override {
-        if (visits.empty()) return hedgerow::any_hits(index_, rays, hits);
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            hits[i] = any_hit(index_, rays[i], KeepAll{}, visits[i]);
-        return {rays.size(), 0, 0};
+    bool answers_rays() const override { return rays; }
+    KernelUse closest_hits_uncounted(const RayArray<T, D>& all, std::span<Hit<T>> hits) const override {
+        if constexpr (rays)
+            return hedgerow::closest_hits(index_, all, hits, serial_executor());
+        else
+            refuse_rays();
     }
-    // Counting costs these some percent: less than another instance of each would cost the compiler.
-    std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits) const override {
-        Visits nobodys;
-        return hedgerow::all_hits(index_, ray, hits, KeepAll{}, visits != nullptr ? *visits : nobodys);
+    KernelUse any_hits_uncounted(const RayArray<T, D>& all, std::span<bool> hits) const override {
+        if constexpr (rays)
+            return hedgerow::any_hits(index_, all, hits, serial_executor());
+        else
+            refuse_rays();
     }
-    void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
-                        std::span<Visits> visits) const override {
-        Visits nobodys;
-        for (std::size_t i = 0; i < points.size(); ++i)
-            found[i] = closest_point(index_, points[i], anywhere, visits.empty() ? nobodys : visits[i])
-                           .value_or(Near<T, D>{});
+    void walk(VirtualQuery<RayProbe<T, D>>& query, Visits& count) const override {
+        if constexpr (rays)
+            index_.ask(query, count);
+        else
+            refuse_rays();
     }
-    std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
-                        Visits* visits) const override {
-        Visits nobodys;
-        return hedgerow::nearest(index_, point, k, found, anywhere, visits != nullptr ? *visits : nobodys);
+    void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const override {
+        index_.ask(query, count);
     }
-    std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
-                            Visits* visits) const override {
-        Visits nobodys;
-        return hedgerow::overlapping(index_, box, found, visits != nullptr ? *visits : nobodys);
-    }
+    void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const override { index_.ask(query, count); }
     std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits) const override {
         return hedgerow::outline(index_.structure(), limits);
     }
-    Trace<T, D> trace(const Ray<T, D>& ray) const override { return hedgerow::trace(index_, ray); }
+    Trace<T, D> trace(const Ray<T, D>& ray) const override {
+        if constexpr (rays)
+            return hedgerow::trace(index_, ray);
+        else
+            refuse_rays();
+    }
 
     bool changes_one_by_one() const override { return one_by_one; }
     bool refittable() const override { return fits_again; }
@@ -91,41 +86,47 @@ public:
         else
             refuse("erase " + std::to_string(id));
     }
-    double refit(Executor& executor) override {
+    double refit(Threads threads) override {
         if constexpr (fits_again) {
-            return index_.refit(executor);
+            return index_.refit(threads);
         } else {
-            static_cast<void>(executor);
+            static_cast<void>(threads);
             refuse("refit");
         }
     }
 
 private:
-    static constexpr T anywhere = std::numeric_limits<T>::max();
+    static constexpr bool rays = AnswersProbe<S, RayProbe<T, D>>;
     static constexpr bool one_by_one = ChangesOneByOne<S, P>;
     static constexpr bool fits_again = Refittable<S, P>;
-    [[noreturn]] void refuse(const std::string& wanted) const {
-        throw InputError("structure '" + name_ + "' cannot " + wanted + ": build it again");
+    [[noreturn]] void refuse_rays() const {
+        refuse("answer rays", "ask it for neighbours, or take another structure");
+    }
+    [[noreturn]] void refuse(const std::string& wanted, const char* instead = "build it again") const {
+        throw InputError("structure '" + name_ + "' cannot " + wanted + ": " + instead);
     }
 
     std::string name_;
     Index<S, P> index_;
 };
 
-/// What an Orthtree is called where its cells have 2^D children.
+/// The name of an Orthtree, whose cells have 2^D children.
 constexpr std::string_view orthtree_name(int dimension) {
     return dimension == 3 ? "octree" : "quadtree";
 }
 
-/// A BVH of other volumes than boxes is a type of its own behind the same name.
+/// Internal name of a BVH of other volumes than boxes. It is another type than Bvh, but users know both as
+/// 'bvh'.
 inline constexpr std::string_view bvh_of_volumes = "bvh:volume";
 
-/// The one list of structures: its names are what the tool, the tests and the bindings know.
+/// Calls f with each structure and its name. This is the one list of structures: the tool, the tests and the
+/// bindings know its names.
 template <int D, class F>
 void for_each_structure(F f) {
     f.template operator()<BruteForce>("brute-force");
     f.template operator()<Grid>("grid");
     f.template operator()<TwoLevelGrid>("two-level-grid");
+    f.template operator()<HashGrid>("hash-grid");
     f.template operator()<KdTree>("kdtree");
     f.template operator()<PointKdTree>("point-kdtree");
     f.template operator()<Orthtree>(orthtree_name(D));
@@ -141,10 +142,12 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
                                                                                  Executor& executor) {
     using T = typename View::Scalar;
     constexpr int D = View::dimension;
+    // Split the specification into name and options.
     const auto colon = spec.find(':');
     const std::string_view wanted = spec.substr(0, colon);
     OptionReader in(wanted, colon == std::string_view::npos ? std::string_view() : spec.substr(colon + 1));
     const auto type = wanted == "bvh" && in.differs("volume", "box") ? bvh_of_volumes : wanted;
+    // Build the structure of that name.
     std::unique_ptr<AnyIndex<T, D>> built;
     std::vector<std::string_view> known;
     for_each_structure<D>([&]<template <class, int> class S>(std::string_view name) {
@@ -159,6 +162,7 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
         else
             throw UsageError("structure '" + std::string(wanted) + "' holds points alone");
     });
+    // Refuse the orthtree of the other dimension, and names that are not in the list.
     if (wanted == orthtree_name(5 - D))
         throw UsageError("structure '" + std::string(wanted) + "' holds what lies in " +
                          (D == 2 ? "space" : "the plane") + ": in " + (D == 2 ? "the plane" : "space") +
@@ -178,7 +182,7 @@ std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<
     return std::make_unique<detail::Holder<WideBvh<T, 3>, TriangleMeshView<T>>>("wide", std::move(index));
 }
 
-/// Everything for one scalar.
+/// Instantiates everything for one scalar.
 #define HEDGEROW_BUILD_ANY(T)                                                                                \
     template std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>>);           \
     template std::unique_ptr<AnyIndex<T, 3>> detail::build_any_over(std::string_view,                        \

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include <hedgerow/all.h>
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
-#include <hedgerow/spelling.h>
-#include <hedgerow/structures/all.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/base/spelling.h>
 #include <hedgerow/structures/bvh/builders/binned.h>
 #include <hedgerow/structures/bvh/builders/ploc.h>
 #include <hedgerow/structures/kdtree/builders/binned.h>
@@ -32,8 +32,9 @@ std::string shortest(T number) {
     return {text, std::to_chars(std::begin(text), std::end(text), number).ptr};
 }
 
-/// The options of one structure, as pairs; each is taken once by its reader, and what is left over is
-/// unknown.
+/// The options of one structure, as pairs of name and value. Each pair is read once. `finish` refuses pairs
+/// that are left over, since their names are unknown. Throws UsageError for text that is no option or no
+/// valid value.
 class OptionReader {
 public:
     OptionReader(std::string_view structure, std::string_view text) : structure_(structure) {
@@ -72,7 +73,7 @@ public:
     }
     void flag(const char* name, bool& value) { choice<bool>(name, value, {{"on", true}, {"off", false}}); }
 
-    /// Whether an option is given, and as something else than its standard. It is left to be taken.
+    /// Whether an option is given with another value than `standard`. The option can still be read.
     bool differs(const std::string& name, std::string_view standard) const {
         const auto found = given_.find(name);
         return found != given_.end() && found->second != standard;
@@ -109,6 +110,10 @@ template <class T, int D>
 void read_options(OptionReader& in, typename BruteForce<T, D>::Options& o,
                   std::type_identity<BruteForce<T, D>>) {
     in.flag("box", o.box);
+}
+template <class T, int D>
+void read_options(OptionReader& in, typename HashGrid<T, D>::Options& o, std::type_identity<HashGrid<T, D>>) {
+    in.number("cell", o.cell, 0.0, std::numeric_limits<double>::max());
 }
 template <class T, int D>
 void read_options(OptionReader& in, typename KdTree<T, D>::Options& o, std::type_identity<KdTree<T, D>>) {

@@ -11,7 +11,8 @@ namespace hedgerow::compare {
 
 namespace {
 
-/// The structures by what `rank` makes of them, least first; of equals the first. Infinity: not among them.
+/// Ranks the structures by the figure that `rank` returns, least first. Equal ones keep their order; those
+/// with an infinite figure are left out.
 template <class F>
 Recommendation least(const Comparison& comparison, Recommendation r, F rank) {
     for (const StructureCost& s : comparison.structures) {
@@ -31,7 +32,7 @@ const StructureCost& named(const Comparison& c, const std::string& structure) {
     return *std::find_if(c.structures.begin(), c.structures.end(),
                          [&](const StructureCost& s) { return s.structure == structure; });
 }
-/// How many times the least time a query takes, for the set of rays where that is most.
+/// The time of a query as a multiple of the fastest structure's, for the set of rays where that is greatest.
 double slowness(const Comparison& c, const StructureCost& s, Ask ask) {
     double most = 0;
     for (std::size_t i = 0; i < s.queries.size(); ++i) {
@@ -47,7 +48,8 @@ std::string ratio(double one, double other) {
     return other > 0 ? number_text(one / other) + " times" : "more than";
 }
 
-/// Sentences that compare the first of each need with the structure whose queries take least.
+/// Writes the reasons: sentences that compare the best structure for a need with the one whose queries take
+/// least.
 class Reasons {
 public:
     Reasons(const Comparison& c, Ask ask, double slack)
@@ -63,7 +65,7 @@ public:
                fastest().structure + ", and a query " + ratio(query(s), query(fastest())) + " the least";
     }
     std::string many(const StructureCost& s) const {
-        // What is slowest of all but brute force shows what the scene asks for.
+        // Compare with the slowest structure other than brute force, which shows what the scene demands.
         const StructureCost* slowest = nullptr;
         for (const StructureCost& o : c_.structures)
             if (o.nodes > 0 && (!slowest || query(o) > query(*slowest))) slowest = &o;
@@ -107,11 +109,12 @@ std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOpt
     if (c.structures.empty()) return {};
     const auto query = [&](const StructureCost& s) { return query_mean(s, ask); };
     const double frame = static_cast<double>(c.size);
-    // Structures may each be slow for another set of rays: the least slow one always counts as quick.
+    // Each structure may be slow for another set of rays. The least slow one always counts as quick.
     double slack = slowness(c, c.structures.front(), ask);
     for (const StructureCost& s : c.structures) slack = std::min(slack, slowness(c, s, ask));
     slack = std::max(slack, options.slack);
     const std::string few = number_text(options.few);
+    // Rank the structures for each need.
     std::vector<Recommendation> all = {
         least(c, {"a few queries", "a build and " + few + " queries", "s", {}, {}},
               [&](const StructureCost& s) {
@@ -151,6 +154,7 @@ std::vector<Recommendation> advise(const Comparison& c, Ask ask, const AdviceOpt
                       quick ? static_cast<double>(s.bytes) : std::numeric_limits<double>::infinity(),
                       bytes_text(static_cast<double>(s.bytes)) + ", " + seconds_text(query(s)) + " a query"};
               })};
+    // Explain the best structure of each need.
     const Reasons reasons(c, ask, slack);
     const auto first = [&](std::size_t i) -> const StructureCost& {
         return named(c, all[i].ranking[0].structure);

@@ -6,7 +6,7 @@
 namespace hedgerow::compare {
 namespace {
 
-/// What the second parameter of a law multiplies.
+/// The term that the second parameter of a law multiplies.
 double term(Law law, int dimension, double n) {
     switch (law) {
         case Law::power:
@@ -23,7 +23,7 @@ double term(Law law, int dimension, double n) {
     return n * std::log2(n);
 }
 
-/// Weighted linear regression of y on x, about the means for the sake of rounding.
+/// Weighted linear regression of y on x. Sums are about the means, which keeps rounding errors small.
 struct Line {
     double a, b;
     Line(std::span<const double> x, std::span<const double> y, std::span<const double> weight) {
@@ -49,6 +49,7 @@ double Fit::operator()(double n) const {
 
 Fit fit(Law law, std::span<const double> sizes, std::span<const double> values, int dimension) {
     const bool power = law == Law::power;
+    // Weights of 1/value² make errors relative; for the power law logarithms do.
     std::vector<double> x, y, weight;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         x.push_back(term(law, dimension, sizes[i]));

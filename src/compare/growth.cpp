@@ -21,11 +21,13 @@ double figure_of(const StructureCost& s, std::size_t figure, Ask ask) {
 }  // namespace
 
 std::vector<Growth> growth_of(std::span<const Comparison> by_size, Ask ask) {
+    // Collect all structures, in the order in which they appear.
     std::vector<std::string> structures;
     for (const Comparison& c : by_size)
         for (const StructureCost& s : c.structures)
             if (std::find(structures.begin(), structures.end(), s.structure) == structures.end())
                 structures.push_back(s.structure);
+    // Collect each figure of each structure over the sizes, and fit the laws.
     std::vector<Growth> all;
     for (const std::string& structure : structures)
         for (std::size_t figure = 0; figure < std::size(growth_figures); ++figure) {

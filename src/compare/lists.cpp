@@ -7,7 +7,7 @@
 #include <optional>
 
 #include <hedgerow/any_index.h>
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 namespace hedgerow::compare {
 namespace {
@@ -22,7 +22,7 @@ std::vector<View> parts_of(View text, char separator) {
     return parts;
 }
 
-/// A number with k, M or G behind it, or none.
+/// Parses a number with an optional suffix k, M or G. Returns nothing for other texts.
 std::optional<double> number_of(View text) {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -41,7 +41,7 @@ std::string text_of(double value) {
     const auto [end, error] = std::to_chars(text, text + sizeof text, value, std::chars_format::general);
     return error == std::errc() ? std::string(text, end) : std::to_string(value);
 }
-/// Whole numbers in full: an option that counts takes no exponent.
+/// Writes whole numbers in full, since an option that counts takes no exponent.
 std::string value_text(double value) {
     return value == std::floor(value) && std::fabs(value) < 1e18
                ? std::to_string(static_cast<long long>(value))
@@ -79,6 +79,7 @@ Sweep sweep_of(View text) {
         throw UsageError("--sweep " + std::string(text) + ": " + what +
                          "; write it as grid:resolution=8..256 or bvh:builder=binned,sweep,lbvh");
     };
+    // Split the text into the structure and its options, each with its values.
     const auto colon = text.find(':');
     if (colon == View::npos || colon + 1 == text.size()) complain("no option is named");
     struct Option {
@@ -98,6 +99,7 @@ Sweep sweep_of(View text) {
             for (const double x : range_of(value)) options.back().values.push_back(value_text(x));
         }
     }
+    // Keep options of one value with the structure, and find the one that has several.
     Sweep sweep{std::string(text.substr(0, colon)), {}, {}, {}};
     for (const Option& o : options) {
         if (o.values.size() == 1) {
@@ -110,6 +112,7 @@ Sweep sweep_of(View text) {
         }
     }
     if (sweep.option.empty()) complain("no option has several values");
+    // List a structure for each value.
     for (const std::string& value : sweep.values)
         sweep.structures.push_back(sweep.structure +
                                    (sweep.structure.find(':') == std::string::npos ? ":" : ",") +
@@ -127,10 +130,11 @@ std::vector<double> range_of(View text) {
     if (!from || !to || !(*from < *to)) complain();
     std::vector<double> values;
     if (*from > 0 && *to / *from >= 8) {
-        // A last step of less than half is taken together with the one before it.
+        // The last two steps are one if the last would be less than half a doubling, a factor of √2.
         for (double x = *from; x < *to / std::sqrt(2.0); x *= 2) values.push_back(x);
         values.push_back(*to);
     } else {
+        // Step evenly; between whole ends, round to whole numbers.
         constexpr int most = 9;
         const bool count = whole(*from) && whole(*to);
         const int steps = count ? static_cast<int>(std::min<double>(most - 1, *to - *from)) : most - 1;
@@ -165,7 +169,8 @@ std::vector<std::string> usual_structures(int dimension, bool points, std::size_
         const char *structure, *options;
         std::size_t largest;
     };
-    // A BSP tree looks at many planes a node, exact SAH builders at every edge of every box.
+    // Above `largest` primitives builds take too long: a BSP tree tests many planes a node, exact SAH
+    // builders test every edge of every box.
     static constexpr std::size_t any = ~std::size_t{0};
     static constexpr Variant slow[] = {{"bsp", "", 50'000}};
     static constexpr Variant variants[] = {

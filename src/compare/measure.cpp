@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include <hedgerow/base/error.h>
 #include <hedgerow/compare/clock.h>
-#include <hedgerow/error.h>
 #include <hedgerow/parallel/watched_executor.h>
 
 #include "motion.h"
@@ -53,6 +53,7 @@ public:
           executor_(executor, {{}, progress.cancel}) {
         if (primitives.size() == 0)
             throw InputError("there are no primitives, so there is nothing to compare");
+        // Build the default structure, whose answers are the reference for all others.
         oracle_ = build_any("bvh", primitives, executor_);
         const SceneQuestions<P> scene(primitives, *oracle_, options);
         auto all = scene.all();
@@ -65,19 +66,22 @@ public:
 
     Comparison run(std::span<const std::string> structures) {
         Comparison c{{}, noun(primitives_), primitives_.size(), D, {}, ray_sets_, seen_from_outside_, true};
+        // Build all structures and count what their queries visit.
         steps_ = structures.size() * (static_cast<std::size_t>(o_.rounds) + 2);
         try {
             for (const std::string& s : structures) {
                 contenders_.push_back(contender(s));
                 step();
             }
-        } catch (const Cancelled&) {  // the counts of the structures before this one are whole
+        } catch (const Cancelled&) {  // the structures before this one are counted in full
         }
+        // Time the queries: each round runs all structures in turn.
         for (int round = 0; round < o_.rounds; ++round)
             for (Contender& contender : contenders_)
                 if (time_round(contender)) step();
+        // Measure updates, and return the structures that were measured.
         for (Contender& contender : contenders_) {
-            // A structure without a round has no times, if it should have any.
+            // Leave out a structure that was to be timed but has no complete round.
             if (o_.rounds > 0 && contender.rounds == 0) continue;
             finish(contender);
             c.structures.push_back(std::move(contender.cost));
@@ -91,13 +95,13 @@ private:
     struct Trial {
         std::shared_ptr<Set> questions;
         QueryCost cost;
-        std::vector<double> seconds;  // of each round
+        std::vector<double> seconds;  // by round
     };
     struct Contender {
         std::unique_ptr<Any> index;
         StructureCost cost;
         std::vector<Trial> trials;
-        int rounds = 0;  // that were timed
+        int rounds = 0;  // number of timed rounds
     };
 
     void step() { progress_(++done_, steps_); }
@@ -106,6 +110,7 @@ private:
     Contender contender(const std::string& structure) {
         progress_.look();
         Contender c;
+        // Build as often as there are rounds, or until the time for builds is spent.
         std::vector<double> seconds;
         double spent = 0;
         do {
@@ -115,6 +120,7 @@ private:
             spent += seconds.back();
         } while (static_cast<int>(seconds.size()) < o_.rounds && spent < o_.build_seconds);
         const Any& index = *c.index;
+        // Record the costs of the structure, and make a trial for each kind of query.
         c.cost = {structure,
                   o_.rounds > 0 ? median(seconds) : 0,
                   static_cast<int>(seconds.size()),
@@ -128,7 +134,7 @@ private:
         for (std::size_t i = 0; i < questions_.size(); ++i) c.trials.push_back(trial(index, i));
         return c;
     }
-    /// Times each trial once. False where the progress is cancelled: nothing is kept of such a round.
+    /// Times each trial once. If the progress is cancelled, returns false and keeps nothing of the round.
     bool time_round(Contender& c) {
         std::vector<double> seconds;
         for (const Trial& t : c.trials) {
@@ -140,15 +146,17 @@ private:
         return true;
     }
 
-    /// As many of the questions as there is time for, asked once to see that the answers are right.
+    /// Makes as many of the queries as there is time for, once, to check their answers and count their
+    /// visits. Throws Disagreement where an answer differs from the default structure's, and Cancelled.
     Trial trial(const Any& index, std::size_t i) {
         Set& all = questions_[i];
         const std::size_t step = o_.rounds > 0 ? step_for(index, all) : 1;
         Trial t;
-        // Everyone who has time for all shares them.
+        // Trials with time for all queries share one set of them.
         t.questions = step == 1 ? std::shared_ptr<Set>(std::shared_ptr<void>(), &all)
                                 : std::make_shared<Set>(all.thinned(step));
         Visits visits;
+        // Check the answers and count the visits.
         const auto answers = t.questions->answers(index, visits, progress_);
         for (std::size_t k = 0; k < answers.size(); ++k)
             if (answers[k] != answers_[i][k * step])
@@ -156,6 +164,7 @@ private:
                                    std::string(oracle_->structure()) + " to query " +
                                    std::to_string(k * step) + " of '" + all.kind() + "' (seed " +
                                    std::to_string(o_.seed) + "): please report this scene");
+        // Record the means.
         const auto n = static_cast<double>(answers.size());
         t.cost = {all.ask(),
                   all.kind(),
@@ -168,8 +177,9 @@ private:
                   static_cast<double>(visits.skipped) / n};
         return t;
     }
-    /// So many that a round of every step-th question takes its share of the time: by a few of them, the
-    /// second time, when what they touch is in the cache.
+    /// Returns the step for which a round of every step-th query takes its share of the time. The estimate
+    /// comes from a few queries. They are timed twice, since the data that they touch is in the cache the
+    /// second time.
     std::size_t step_for(const Any& index, const Set& all) const {
         const double share = o_.seconds / o_.rounds;
         std::size_t asked = 1;
@@ -179,10 +189,12 @@ private:
             const double first = seconds_of([&] { some.put_to(index); });
             const double again =
                 first > share ? first : std::min(first, seconds_of([&] { some.put_to(index); }));
+            // Take four times as many queries while they need less than 1/16 of the share.
             if (again < share / 16 && asked * 4 <= all.size()) {
                 asked *= 4;
                 continue;
             }
+            // Extrapolate to all queries.
             const double whole = again / static_cast<double>(some.size()) * static_cast<double>(all.size());
             const auto step = static_cast<std::size_t>(std::ceil(whole / share));
             return std::clamp<std::size_t>(step, 1, all.size());
@@ -190,6 +202,7 @@ private:
     }
 
     void finish(Contender& c) {
+        // Record the medians of the rounds.
         for (Trial& t : c.trials) {
             if (t.seconds.empty()) {
                 c.cost.queries.push_back(t.cost);
@@ -202,23 +215,24 @@ private:
             t.cost.spread = middle > 0 ? (*most - *least) / middle : 0;
             c.cost.queries.push_back(t.cost);
         }
+        // Measure updates; a rebuild is always possible.
         c.cost.update.one = c.cost.update.all = c.cost.build_seconds;
         if (!o_.updates || o_.rounds == 0 || progress_.cancelled()) return;
         try {
             if (c.index->changes_one_by_one()) change(c);
             if (c.index->refittable()) refit(c);
-        } catch (const Cancelled&) {  // the queries are measured all the same
+        } catch (const Cancelled&) {  // the figures of the queries are still valid
         }
     }
 
-    /// Erases some primitives and inserts them again.
+    /// Times erasing up to 1000 primitives and inserting them again.
     void change(Contender& c) {
         const std::size_t n = primitives_.size(), some = std::min<std::size_t>(n, 1000);
         const std::uint64_t first = scattered(o_.seed) % n;
         std::vector<double> out, in;
         for (int round = 0; round < o_.rounds; ++round) {
             progress_.look();
-            // Steps of n / some: all different.
+            // The ids are n / some apart, hence all different.
             const auto each = [&](auto f) {
                 for (std::size_t i = 0; i < some; ++i)
                     f(static_cast<PrimitiveId>((first + i * (n / some)) % n));
@@ -228,6 +242,7 @@ private:
             in.push_back(seconds_of([&] { each([&](PrimitiveId id) { held &= c.index->insert(id); }); }));
             if (!held) throw Disagreement(c.cost.structure + ": lost a primitive, or had one twice");
         }
+        // Check the answers, and use single updates for all primitives where a rebuild takes longer.
         expect_same(c, *c.index, *oracle_, "after changes");
         UpdateCost& u = c.cost.update;
         u.erase = median(out) / static_cast<double>(some), u.insert = median(in) / static_cast<double>(some);
@@ -236,8 +251,10 @@ private:
             u.all = u.one * static_cast<double>(n), u.how = "one by one";
     }
 
-    /// Moves a copy of the primitives under an index of its own, beside one that is built after the motion.
+    /// Times a refit over a copy of the primitives that is moved, and compares its queries with those of an
+    /// index that is built after the motion.
     void refit(Contender& c) {
+        // Refit an index over the copy.
         P moved = primitives_;
         const auto fitted = build_any(c.cost.structure, moved, executor_);
         Bend<T, D>(oracle_->bounds())(moved);
@@ -245,6 +262,7 @@ private:
         double drift = 1;
         for (int round = 0; round < o_.rounds; ++round)
             seconds.push_back(seconds_of([&] { drift = fitted->refit(executor_); }, building_));
+        // Build another index, check that both give the same answers, and compare their times.
         const auto anew = build_any(c.cost.structure, moved, executor_);
         expect_same(c, *fitted, *anew, "after a refit");
         for (int round = 0; round < o_.rounds; ++round) {
@@ -257,6 +275,7 @@ private:
             }
             slowdown.push_back(rebuilt > 0 ? refitted / rebuilt : 1);
         }
+        // Record the costs of the refit.
         UpdateCost& u = c.cost.update;
         u.drift = drift;
         u.how = "refit";
@@ -276,7 +295,7 @@ private:
 
     const P& primitives_;
     const MeasureOptions& o_;
-    Clock building_;  // several threads have no time of their own
+    Clock building_;  // wall for several threads: no thread's clock shows all their work
     const Progress& progress_;
     WatchedExecutor executor_;  // throws Cancelled
     std::unique_ptr<Any> oracle_;

@@ -10,7 +10,7 @@
 namespace hedgerow::compare {
 namespace {
 
-/// Thousands parted by commas.
+/// Separates thousands by commas.
 std::string grouped(std::string digits) {
     for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3)
         digits.insert(static_cast<std::size_t>(at), ",");
@@ -34,11 +34,12 @@ std::string number_text(double value) {
     if (!std::isfinite(value)) return value > 0 ? "inf" : value < 0 ? "-inf" : "nan";
     if (value < 0) return "-" + number_text(-value);
     char text[64];
-    // Whole but for rounding: 1e-5 s are 10 us.
+    // Write a number in full if it is whole up to rounding errors: 1e-5 s are 10 us.
     if (std::fabs(value - std::round(value)) <= 1e-12 * value && value < 1e15) {
         std::snprintf(text, sizeof text, "%.0f", value);
         return grouped(text);
     }
+    // Write three significant digits, with an exponent only for very small and very large numbers.
     std::snprintf(text, sizeof text, "%.2e", value);
     const int exponent = std::atoi(std::strchr(text, 'e') + 1);
     if (exponent < -4 || exponent >= 15) return text;

@@ -1,4 +1,4 @@
-/// The questions that suit a scene.
+/// The queries that suit a scene: rays, points and boxes by its shape and size.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,7 @@ public:
     SceneQuestions(const P& primitives, const AnyIndex<T, D>& index, const MeasureOptions& options)
         : set_(view_of(primitives)), index_(index), box_(index.bounds()), o_(options) {}
 
-    /// What is asked, and how many rays of each set meet nothing.
+    /// The queries, and the number of rays in each set that hit nothing.
     struct All {
         std::vector<Set> questions;
         std::vector<RaySet> ray_sets;
@@ -34,6 +34,7 @@ public:
             Set made(ask, std::move(kind), std::move(list));
             if (wanted && made.size() > 0) found.questions.push_back(std::move(made));
         };
+        // Add rays, unless the primitives are points.
         if constexpr (can_be_asked<P>(Ask::closest_hit)) {
             const std::pair<const char*, typename Set::Rays> sets[] = {
                 {"coherent", coherent_rays()}, {"incoherent", incoherent_rays()}, {"random", random_rays()}};
@@ -45,19 +46,21 @@ public:
             for (const auto& [kind, rays] : sets)
                 if (!rays.empty()) found.ray_sets.push_back({kind, rays.size(), missed(rays)});
         }
+        // Add points and boxes.
         const auto points = random_points();
         add(Ask::closest_point, "closest point", points);
         add(Ask::nearest, std::to_string(Set::k) + " nearest", points);
         add(Ask::overlap, "box overlap", boxes());
         return found;
     }
-    /// The share of the primitives that the eye of the coherent rays sees, by a sample; 1 if it is in the
-    /// scene's box.
+    /// The share of the primitives that are visible from the eye of the coherent rays, estimated from a
+    /// sample; 1 if the eye is in the scene's box.
     double seen_from_outside() const {
         if constexpr (D == 3 && requires { shape(0); }) {
             const Vec<T, 3> eye(camera().eye);
             if (box_.contains(eye)) return 1;
             constexpr std::size_t some = 2000;
+            // Cast rays from the eye to random places on random primitives.
             typename Set::Rays rays;
             for (std::size_t i = 0; i < some; ++i) {
                 Random chance = random(of_sights, i);
@@ -66,7 +69,7 @@ public:
             }
             std::vector<Hit<T>> hits(some);
             index_.closest_hits(rays, hits);
-            // What is met a thousandth of the way before the place hides it.
+            // A hit more than 2^-10 of the way before the place hides the place.
             const auto hidden = std::count_if(hits.begin(), hits.end(),
                                               [](const auto& h) { return h && h.t < T(1) - T(0x1p-10); });
             return 1 - static_cast<double>(hidden) / static_cast<double>(some);
@@ -81,7 +84,7 @@ private:
         return static_cast<std::size_t>(
             std::count_if(hits.begin(), hits.end(), [](const auto& h) { return !h; }));
     }
-    /// Each kind has random numbers of its own.
+    /// Each kind of query draws from its own stream of random numbers.
     enum Stream : std::uint64_t { of_rays = 1, of_bounces, of_points, of_places, of_sights };
     Random random(Stream stream, std::uint64_t i) const { return Random(scattered(o_.seed) + stream, i); }
 
@@ -118,7 +121,7 @@ private:
         }
         return all;
     }
-    /// A square picture in rows; in the plane a fan.
+    /// The rays of a square picture, row by row; in the plane a fan from one eye.
     typename Set::Rays coherent_rays() const {
         typename Set::Rays all;
         if constexpr (D == 3) {
@@ -141,14 +144,14 @@ private:
     Camera camera() const requires(D == 3) {
         return o_.camera.value_or(automatic_camera(Box3f{Vec3f(box_.low), Vec3f(box_.high)}));
     }
-    /// From places on all surfaces, about the normal there by the cosine.
+    /// Rays that leave random places on all surfaces, cosine-distributed about the normal.
     typename Set::Rays incoherent_rays() const {
         typename Set::Rays all;
         const auto size_of_box = static_cast<double>(max_component(box_.extent()));
         if (!(size_of_box > 0)) return all;
         const SurfaceSamples samples([this](std::size_t i) { return shape(i); }, set_.size(), size_of_box);
         if (samples.empty()) return all;
-        // A little off the surface, by more than its error: it is left, not hit.
+        // Start off the surface by more than its rounding error, so that the ray does not hit it at once.
         const T off =
             std::max(max_component(abs(box_.low)), max_component(abs(box_.high))) * (64 * unit_roundoff<T>);
         for (std::size_t i = 0; i < o_.queries; ++i) {

@@ -42,8 +42,8 @@ SurfacePlace<T, 2> place_on(const Segment<T, 2>& s, Random& random) {
     return {point, random.uniform() < 0.5 ? n : -n};
 }
 
-/// The measure of a primitive that is `unit` long, as a share of unit: area or length, but for a factor that
-/// all of a kind have.
+/// The area of a primitive (in the plane, its length) in units of `unit`, up to a factor that all primitives
+/// of its type have in common.
 template <class T>
 double measure_of(const Triangle<T, 3>& t, double unit) {
     const Vec<double, 3> a(t.a);
@@ -59,11 +59,11 @@ double measure_of(const Segment<T, 2>& s, double unit) {
     return length((Vec<double, 2>(s.b) - Vec<double, 2>(s.a)) / unit);
 }
 
-/// Draws places from all primitives, evenly by area (in the plane by length). `shape(i)` is primitive i.
+/// Draws random places on all primitives, evenly by area (in the plane by length). `shape(i)` is primitive i.
 template <class Shape>
 class SurfaceSamples {
 public:
-    /// `unit` is a length like the scene's. O(n) time, 8 bytes a primitive.
+    /// `unit` is a length of the order of the scene's size. O(n) time, 8 bytes a primitive.
     SurfaceSamples(Shape shape, std::size_t size, double unit) : shape_(std::move(shape)) {
         double sum = 0;
         for (std::size_t i = 0; i < size; ++i) {
@@ -72,9 +72,9 @@ public:
             until_.push_back(sum);
         }
     }
-    /// Nothing has a surface.
+    /// Whether no primitive has an area (a length).
     bool empty() const { return until_.empty() || !(until_.back() > 0); }
-    /// O(log n).
+    /// A random place. O(log n) time. Not if `empty()`.
     auto place(Random& random) const {
         const double at = product(random.uniform(), until_.back());
         const auto found = std::upper_bound(until_.begin(), until_.end(), at);

@@ -1,4 +1,4 @@
-/// The BSP builder, compiled once for all sets.
+/// The BSP builder, compiled once for all sets of primitives.
 #include <hedgerow/structures/bsp/cutter.h>
 #include <hedgerow/structures/item_limit.h>
 

@@ -1,4 +1,4 @@
-/// The list of BVH builders, compiled once for all sets.
+/// The list of BVH builders, compiled once for all sets of primitives.
 #include <hedgerow/structures/bvh/builders/agglomerative.h>
 #include <hedgerow/structures/bvh/builders/binned.h>
 #include <hedgerow/structures/bvh/builders/build.h>
@@ -16,10 +16,12 @@ template <std::floating_point T, int D>
 BuildTree<T, D> build_tree(ReferenceList<T, D> references, CornersOf<T, D> corners, const BvhOptions& options,
                            Executor& executor) {
     const std::size_t count = references.size();
+    // Top-down builders differ only in their splitter.
     const auto top_down = [&]<class Splitter>(Splitter splitter, const SahOptions& sah) {
         executor.expect(count);
         return TopDown<T, D, Splitter>(splitter, sah.max_leaf_size, executor).build();
     };
+    // Build with the chosen builder, and tell the executor how much work it is.
     const auto build = [&](const SahOptions& sah) {
         switch (options.builder) {
             case BvhBuilder::sweep:
@@ -47,7 +49,8 @@ BuildTree<T, D> build_tree(ReferenceList<T, D> references, CornersOf<T, D> corne
         return top_down(BinnedSplitter<T, D>(std::move(references), sah), sah);
     };
     if (options.reinsertion == 0) return build(options);
-    SahOptions single = options;  // every primitive may move on its own; leaves are made after
+    // Reinsertion may move every primitive on its own, so leaves of several primitives are made after it.
+    SahOptions single = options;
     single.max_leaf_size = 1;
     return reinserted(build(single), options, options.reinsertion, executor);
 }

@@ -1,4 +1,4 @@
-/// The list of kd-tree builders, compiled once for all sets.
+/// The list of kd-tree builders, compiled once for all sets of primitives.
 #include <optional>
 #include <utility>
 
@@ -13,9 +13,11 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 CutTree<KdNode<T>> build_kd_tree(FunctionRef<KdCell<T, D>()> root, PartIn<T, D> part_in,
                                  const KdOptions& options, Executor& executor) {
+    // Get the root cell, which has all primitives.
     auto first = std::optional(root());
     const std::size_t count = first->inside.size();
     if (count == 0) return {};
+    // Replace options of 0 by their defaults.
     const int deepest =
         std::min(kd_max_depth, options.max_depth > 0 ? options.max_depth : usual_depth(count));
     const bool by_cost = options.builder == KdBuilder::sah || options.builder == KdBuilder::binned;
@@ -23,6 +25,7 @@ CutTree<KdNode<T>> build_kd_tree(FunctionRef<KdCell<T, D>()> root, PartIn<T, D> 
     const double items_per_primitive =
         options.items_per_primitive != 0 ? options.items_per_primitive : (by_cost ? 16 : 64);
     const std::uint64_t most = most_items(items_per_primitive, count);
+    // Grow the tree. If it is grown again by rations, the root cell is made anew.
     const auto grow = [&]<class Planes>(const Planes& planes) {
         const KdCutter<T, D, Planes> cutter(part_in, planes, cell_margin(first->box));
         return CutTreeGrowth<KdNode<T>, KdCutter<T, D, Planes>>(cutter, deepest, most, executor).grow([&] {
@@ -30,6 +33,7 @@ CutTree<KdNode<T>> build_kd_tree(FunctionRef<KdCell<T, D>()> root, PartIn<T, D> 
             return cutter.root(std::move(cell), executor);
         });
     };
+    // Choose the planes by the builder.
     switch (options.builder) {
         case KdBuilder::binned:
             return grow(KdBinnedPlanes<T, D>(options.costs, leaf_size, options.bins));

@@ -1,4 +1,4 @@
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/geometry/eigen.h>
 #include <hedgerow/geometry/hull.h>
@@ -21,14 +21,15 @@ namespace hedgerow {
 #if HEDGEROW_HAS_QHULL
 namespace {
 
-/// The points moved and scaled into [-1, 1]³, so that no tolerance of Qhull's depends on where they lie.
-/// Empty, where they lie in a plane or nearly so.
+/// The points moved and scaled into [-1, 1]³, so that Qhull's tolerances do not depend on where they lie.
+/// Empty if they lie in a plane or nearly so.
 std::vector<Vec3d> brought_to_one(std::span<const Vec3d> points) {
     Box3d box;
     for (const auto& p : points) box.expand(p);
     const Vec3d middle = box.center();
     const double extent = max_component(box.extent());
     if (points.size() < 4 || !(extent > 0x1p-1000)) return {};
+    // Scale the points, and sum their second moments about the first.
     std::vector<Vec3d> brought;
     Rows<3> moments{};
     for (const auto& p : points) {
@@ -39,6 +40,7 @@ std::vector<Vec3d> brought_to_one(std::span<const Vec3d> points) {
             row = row + (x - brought[0]) * (x - brought[0])[k];
         }
     }
+    // Find whether the extent along a principal axis is next to none.
     for (const Vec3d& axis : eigen_of_symmetric(moments).vectors) {
         double low = dot(axis, brought[0]), high = low;
         for (const auto& x : brought) low = std::min(low, dot(axis, x)), high = std::max(high, dot(axis, x));
@@ -47,7 +49,7 @@ std::vector<Vec3d> brought_to_one(std::span<const Vec3d> points) {
     return brought;
 }
 
-/// A run of Qhull, which keeps its state in a struct and its memory in that.
+/// A run of Qhull. Qhull keeps its state in the struct `qh_`, and its memory in that struct.
 class Run {
 public:
     explicit Run(std::vector<Vec3d>& points) : said_(std::fopen("/dev/null", "w"), &std::fclose) {
@@ -78,7 +80,7 @@ public:
     }
 
 private:
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // what it would print
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // takes what Qhull prints
     qhT qh_;
     bool failed_ = true;
 };

@@ -18,12 +18,34 @@ extern "C" void __tsan_release(void*);
 
 namespace hedgerow {
 
+namespace {
+
+thread_local bool working = false;
+
+}  // namespace
+
+bool is_worker() {
+    return working;
+}
+
 #if HEDGEROW_HAS_TBB
 namespace {
 
-/// Work handed to other threads and taken back: what comes before it happens before each task, and the tasks
-/// before what comes after. TBB sees to that, but is built without ThreadSanitizer, which has to be told. So
-/// that it looks at the tasks and not at TBB, this file alone is compiled without it, with HEDGEROW_TSAN.
+/// Marks the calling thread as a worker as long as the object lives.
+class Working {
+public:
+    Working() : before_(std::exchange(working, true)) {}
+    ~Working() { working = before_; }
+    Working(const Working&) = delete;
+
+private:
+    bool before_;
+};
+
+/// Tells ThreadSanitizer in which order work runs that is handed to other threads: the code before it happens
+/// before each task, and each task before the code after it. TBB ensures that order, but TBB is built without
+/// ThreadSanitizer, which cannot see it. So that ThreadSanitizer checks the tasks and not TBB, this file
+/// alone is compiled without it, with HEDGEROW_TSAN.
 class Handover {
 public:
     Handover() { released(&before_); }
@@ -34,7 +56,10 @@ public:
     auto task(F f) {
         return [this, f](const auto&... arguments) {
             acquired(&before_);
-            f(arguments...);
+            {
+                const Working here;
+                f(arguments...);
+            }
             released(&after_);
         };
     }

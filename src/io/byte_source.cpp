@@ -1,4 +1,4 @@
-/// Files through zlib, which reads plain ones too.
+/// Reads files through zlib, which reads plain files too.
 #include "byte_source.h"
 
 #include <zlib.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <system_error>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/parallel/progress.h>
 
 namespace hedgerow::detail {
@@ -16,7 +16,8 @@ namespace hedgerow::detail {
 namespace {
 constexpr std::size_t buffer_size = std::size_t(1) << 18;
 constexpr std::size_t longest_line = std::size_t(1) << 26;
-/// What unpacks to so much, at such a ratio, repeats itself without an end. Scenes reach about 50 to 1.
+/// A file that unpacks to more than this, at more than this ratio, repeats itself without an end. Scenes
+/// reach about 50 to 1.
 constexpr std::uint64_t bomb_size = std::uint64_t(1) << 28, bomb_ratio = 500;
 }  // namespace
 
@@ -65,6 +66,7 @@ void ByteSource::expect_not_cancelled() const {
 bool ByteSource::refill() {
     if (ended_) return false;
     expect_not_cancelled();
+    // Fill the buffer again, and report damaged data.
     before_ += filled_;
     at_ = filled_ = 0;
     const int got = gzread(file_, buffer_.data(), static_cast<unsigned>(buffer_.size()));
@@ -76,11 +78,13 @@ bool ByteSource::refill() {
         fail_here("the compressed data are damaged (" + message + "). Fetch the file again");
     filled_ = static_cast<std::size_t>(got);
     ended_ = got == 0;
+    // Refuse a file that unpacks to far more than a scene does.
     const auto done = gzoffset(file_);
     if (gzdirect(file_) == 0 && before_ > bomb_size &&
         before_ / bomb_ratio > static_cast<std::uint64_t>(done))
         fail_here("unpacks to more than " + std::to_string(bomb_ratio) +
                   " times its size, as no scene does. If it is one, unpack it first and read that");
+    // Report the progress in bytes of the file, compressed or not.
     if (ended_)
         progress_(total_, total_);
     else

@@ -19,7 +19,8 @@ namespace hedgerow::detail {
 /// Throws InputError if there is no regular, non-empty file.
 void check_readable(const std::filesystem::path& path);
 
-/// Reports progress and notices cancellation whenever its buffer is filled. All errors are InputError.
+/// A file that is read in pieces. Reports progress and checks for cancellation whenever its buffer is filled.
+/// All errors are InputError.
 class ByteSource {
 public:
     explicit ByteSource(const std::filesystem::path& path, const Progress& progress = {});
@@ -30,10 +31,10 @@ public:
     const std::string& name() const { return name_; }
     /// Bytes read so far, after decompression.
     std::uint64_t offset() const { return before_ + at_; }
-    /// Bytes that can follow at most: of a plain file exact, of a compressed one a bound (deflate packs at
+    /// The most bytes that can follow: exact for a plain file, a bound for a compressed one (deflate packs at
     /// most 1032 to 1).
     std::uint64_t most_left() const;
-    /// Throws Cancelled if reading was cancelled: for work on what is already read.
+    /// Throws Cancelled if reading was cancelled. For long work on data that are already read.
     void expect_not_cancelled() const;
     bool at_end() { return at_ == filled_ && !refill(); }
     /// The next byte, or −1.
@@ -41,13 +42,14 @@ public:
     int next() { return at_end() ? -1 : buffer_[at_++]; }
     /// Up to `size` bytes; fewer only at the end of the file.
     std::size_t read(void* to, std::size_t size);
-    /// Skips as many bytes; false if the file ends before.
+    /// Skips `size` bytes; false if the file ends before.
     bool skip(std::uint64_t size);
-    /// What lies ahead in the buffer: at the start of a file its first 256 KiB, or all of it.
+    /// The unread part of the buffer: at the start of a file its first 256 KiB, or the whole file if it is
+    /// shorter.
     std::string_view ahead();
     /// The next line without its end (\n, \r\n or \r); false at the end of the file.
     bool line(std::string& text);
-    /// Exactly the bytes of a U, in file order `order`; false if the file ends before.
+    /// Reads a U whose bytes are in the order `order`; false if the file ends before.
     template <class U>
     bool value(U& v, std::endian order) {
         unsigned char bytes[sizeof(U)];

@@ -1,4 +1,5 @@
-/// Checksums of large files: one for each MiB, so that they can be taken in parallel and say where damage is.
+/// Checksums of large files: one for each MiB, so that they can be computed in parallel and show where damage
+/// is.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,7 @@ constexpr std::uint64_t checksum_pieces(std::uint64_t bytes) {
     return (bytes + checksum_piece - 1) / checksum_piece;
 }
 
-/// Those of bytes that come one after the other.
+/// Computes the checksums of bytes that are added one after the other.
 class Checksums {
 public:
     Checksums() { XXH3_64bits_reset(&state_); }
@@ -35,7 +36,7 @@ public:
             if (filled_ == checksum_piece) end_piece();
         }
     }
-    /// All of them, when all bytes were added.
+    /// The checksums of all pieces, once all bytes were added.
     const std::vector<std::uint64_t>& finish() {
         if (filled_ > 0) end_piece();
         return done_;

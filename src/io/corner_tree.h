@@ -1,4 +1,4 @@
-/// Which corners of a polygon lie near a place, while corners are taken out.
+/// Finds the corners of a polygon in a region, while corners are removed.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace hedgerow::detail {
 using Point = Vec<double, 2>;
 using Corner = std::uint32_t;
 
-/// Boxes over the corners that do not turn inwards: a balanced kd-tree of all corners, whose shape stays as
-/// corners are taken out.
+/// A balanced kd-tree over all corners of a polygon. Its boxes contain only the corners in the set: those
+/// that do not turn inwards. Its shape stays the same as corners leave the set.
 class CornerTree {
 public:
     explicit CornerTree(const std::vector<Point>& points)
@@ -31,6 +31,7 @@ public:
         for (std::size_t k = 0; k < order_.size(); ++k) place_[order_[k]] = static_cast<Corner>(k);
     }
 
+    /// Puts a corner into the set or removes it, and updates the boxes above it.
     void set(Corner i, bool in) {
         if (in_[i] == in) return;
         in_[i] = in;
@@ -41,10 +42,10 @@ public:
             boxes_[node].expand(boxes_[2 * node + 1]);
         }
     }
-    /// Whether `test` is true of any corner in a box that `enters` is true of.
+    /// Whether `test` is true for a corner of the set in a box for which `enters` is true.
     template <class Enters, class Test>
     bool any(Enters enters, Test test) const {
-        std::size_t stack[64], size = 0;  // a path holds two nodes a level at most
+        std::size_t stack[64], size = 0;  // at most two nodes per level are on the stack
         stack[size++] = 1;
         while (size > 0) {
             const std::size_t node = stack[--size];
@@ -63,8 +64,8 @@ public:
 private:
     static constexpr std::size_t leaf_size = 8;
 
-    /// Sorts places begin to end, of which those beyond the last corner are empty, so that each half lies on
-    /// one side of a line.
+    /// Sorts places begin to end so that each half is on one side of a line, and then the halves likewise.
+    /// Places beyond the last corner are empty.
     void divide(std::size_t begin, std::size_t end) {
         const std::size_t middle = (begin + end) / 2, last = std::min(end, order_.size());
         if (end - begin <= leaf_size || begin >= last) return;

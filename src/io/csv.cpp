@@ -13,7 +13,7 @@ namespace {
 template <class T, int D>
 class CsvReader {
 public:
-    /// `more`: lines may go on behind the coordinates.
+    /// `more`: lines may have further fields after the coordinates.
     explicit CsvReader(ByteSource& file, bool more = false) : file_(file), more_(more) {}
 
     PointCloud<T, D> read() {

@@ -1,7 +1,7 @@
 /// EXR through OpenEXR, a scan line at a time.
 #include <hedgerow/io/exr.h>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #ifndef HEDGEROW_HAS_EXR
 #define HEDGEROW_HAS_EXR 1
@@ -43,7 +43,7 @@ void check(const std::filesystem::path& path, const Layers& layers) {
     }
 }
 
-/// OpenEXR's way into an OutputFile.
+/// Lets OpenEXR write to an OutputFile.
 class Stream : public Imf::OStream {
 public:
     explicit Stream(detail::OutputFile& file) : OStream(""), file_(file) {}
@@ -66,7 +66,8 @@ public:
     static Imf::PixelType type_of(const Channel& channel) {
         return std::holds_alternative<Strided<float>>(channel.values) ? Imf::FLOAT : Imf::UINT;
     }
-    /// Where OpenEXR finds it, whichever scan line it writes.
+    /// Describes the row to OpenEXR. The step between scan lines is 0, so every scan line is read from this
+    /// row.
     Imf::FrameBuffer buffer() {
         Imf::FrameBuffer buffer;
         char* first = bytes_.data();

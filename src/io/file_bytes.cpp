@@ -5,8 +5,8 @@
 #include <string>
 #include <system_error>
 
-#include <hedgerow/error.h>
-#include <hedgerow/stored.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/base/stored.h>
 
 #include "byte_source.h"
 

@@ -7,16 +7,17 @@
 
 namespace hedgerow::detail {
 
-/// The bytes begin at a multiple of 64, and live as long as one of its owners. They may be written to: that
-/// never changes the file.
+/// The bytes of a file, from an address that is a multiple of 64. They live as long as any copy of `owner`.
+/// Writing to them never changes the file.
 struct FileBytes {
     std::shared_ptr<void> owner;
     std::byte* data = nullptr;
     std::size_t size = 0;
 };
 
-/// All errors are InputError.
+/// Maps a file, or reads it if the system cannot map. All errors are InputError.
 FileBytes mapped_file(const std::filesystem::path& path);
+/// Reads a file into memory of its own. All errors are InputError.
 FileBytes read_file(const std::filesystem::path& path);
 
 }  // namespace hedgerow::detail

@@ -1,10 +1,10 @@
-/// glTF 2.0 scenes (`.gltf`, `.glb`): every instance of every mesh, in the scene's coordinates. Read here and
-/// not by Assimp, which damaged files can kill (docs/design/014-gltf.md).
+/// glTF 2.0 scenes (`.gltf`, `.glb`): every instance of every mesh, in the scene's coordinates. This reader
+/// replaces Assimp, which damaged files can crash (docs/design/014-gltf.md).
 #include <array>
 #include <map>
 #include <utility>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/geometry/transform.h>
 #include <hedgerow/io/load_options.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using Json = GltfFile::Json;
 
-/// First b, then a. Matrices that are singular are none of a Transform, and allowed here.
+/// The map that applies b first and then a. Singular matrices are allowed here, but not in a Transform.
 Affine<3> after(const Affine<3>& a, const Affine<3>& b) {
     Affine<3> both;
     for (std::size_t i = 0; i < 3; ++i)
@@ -35,7 +35,7 @@ bool mirrors(const Affine<3>& m) {
     return dot(cross(m.linear[0], m.linear[1]), m.linear[2]) < 0;
 }
 
-/// The rows of translation · rotation · scale; a rotation is a unit quaternion (x, y, z, w).
+/// The map translation · rotation · scale. The rotation q is a unit quaternion (x, y, z, w).
 Affine<3> from_parts(const std::vector<double>& shift, const std::vector<double>& q,
                      const std::vector<double>& scale) {
     const double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -51,7 +51,7 @@ Affine<3> from_parts(const std::vector<double>& shift, const std::vector<double>
 }
 
 Affine<3> transform_of(const GltfFile& file, const Json& node) {
-    if (const auto m = file.numbers(node, "matrix", 16)) {  // column by column
+    if (const auto m = file.numbers(node, "matrix", 16)) {  // stored column by column
         Affine<3> map;
         for (std::size_t row = 0; row < 3; ++row) map.linear[row] = {(*m)[row], (*m)[row + 4], (*m)[row + 8]};
         map.shift = {(*m)[12], (*m)[13], (*m)[14]};
@@ -63,14 +63,14 @@ Affine<3> transform_of(const GltfFile& file, const Json& node) {
                       file.numbers(node, "scale", 3).value_or(Numbers{1, 1, 1}));
 }
 
-/// A mesh, placed by a node.
+/// A mesh, and the map that a node applies to it.
 struct Placed {
     std::uint64_t mesh;
     Affine<3> to_scene;
 };
 
-/// The nodes of a scene that have a mesh, in the order of a walk that takes children in their order. A node
-/// that is reached twice is an error: glTF's nodes are strict trees, so nothing is walked in circles.
+/// The nodes of a scene that have a mesh. A node comes before its children, and children are in their order.
+/// A node that is reached twice is an error: nodes of glTF are strict trees, so no walk runs in circles.
 class NodeWalk {
 public:
     explicit NodeWalk(const GltfFile& file) : file_(file), seen_(file.count("nodes")) {}
@@ -103,7 +103,8 @@ private:
         if (open_.size() + nodes.size() > seen_.size()) file_.fail("more nodes are named than there are");
         for (auto n = nodes.rbegin(); n != nodes.rend(); ++n) open_.push_back({*n, to_scene});
     }
-    /// The nodes of the default scene; of the first if none is; without scenes the nodes that have no parent.
+    /// The nodes of the default scene, or of the first scene if there is no default. Without scenes, the
+    /// nodes that have no parent.
     std::vector<std::uint64_t> roots() const {
         if (file_.count("scenes") > 0)
             return file_.ordinals(file_.object("scenes", file_.scene().value_or(0)), "nodes");
@@ -122,13 +123,14 @@ private:
     std::vector<Open> open_;
 };
 
-/// Triangles of a primitive by their corners' ordinals among its indices.
+/// How the indices of a primitive make triangles. The values are glTF's.
 enum class Mode : std::uint64_t { triangles = 4, strip = 5, fan = 6 };
 
 std::uint64_t triangle_count(Mode mode, std::uint64_t corners) {
     return mode == Mode::triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
 }
 
+/// The corners of triangle i, as ordinals among the primitive's indices.
 std::array<std::uint64_t, 3> corners_of(Mode mode, std::uint64_t i) {
     if (mode == Mode::triangles) return {3 * i, 3 * i + 1, 3 * i + 2};
     if (mode == Mode::fan) return {0, i + 1, i + 2};
@@ -139,11 +141,11 @@ std::array<std::uint64_t, 3> corners_of(Mode mode, std::uint64_t i) {
 struct Part {
     Mode mode;
     const GltfAccessor* positions;
-    const GltfAccessor* indices;  // null: every position is a corner, in their order
+    const GltfAccessor* indices;  // null: the positions are the corners, in their order
     std::uint64_t triangles;
 };
 
-/// The parts of a mesh that have triangles, and the number of those.
+/// The parts of a mesh that have triangles, and the number of these triangles.
 struct Mesh {
     std::vector<Part> parts;
     std::uint64_t triangles = 0;
@@ -167,8 +169,8 @@ public:
     }
 
 private:
-    /// A few bytes can name a mesh many times: each is read from the JSON once, and the triangles of all
-    /// instances are counted before one of them is made.
+    /// Counts the triangles of all instances before any is made, because a few bytes can name a mesh many
+    /// times. Each mesh is read from the JSON once.
     void expect_room(const std::vector<Placed>& instances) {
         std::uint64_t triangles = 0;
         for (const Placed& p : instances) {
@@ -196,6 +198,7 @@ private:
         if (primitives == object.end() || !primitives->is_array()) file_.fail(name + " has no 'primitives'");
         Mesh mesh;
         for (const Json& primitive : *primitives) {
+            // Check the primitive and find its positions.
             if (!primitive.is_object()) file_.fail("a primitive of " + name + " is no object");
             const std::uint64_t mode = file_.number_or(primitive, "mode", 4);
             if (mode > 6)
@@ -205,6 +208,7 @@ private:
                 file_.fail("a primitive of " + name + " has no 'attributes'");
             const auto positions = file_.number(*attributes, "POSITION");
             if (mode < 4 || !positions) continue;  // points or lines, or nothing to draw
+            // Keep the parts that have triangles.
             const Part part = read_part(primitive, static_cast<Mode>(mode), accessor_of(*positions, 3));
             if (part.triangles == 0) continue;
             mesh.parts.push_back(part);
@@ -225,7 +229,7 @@ private:
     }
 
     void add_part(const Part& part, const Affine<3>& to_scene) {
-        const bool mirrored = mirrors(to_scene);  // turn what the mirror turned, so fronts stay fronts
+        const bool mirrored = mirrors(to_scene);  // a mirror turns fronts into backs, so turn them again
         for (std::uint64_t i = 0; i < part.triangles; ++i) {
             if (i % 65536 == 0) source_.expect_not_cancelled();
             std::array<std::uint32_t, 3> triangle{};

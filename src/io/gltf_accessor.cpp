@@ -9,7 +9,8 @@ namespace hedgerow::detail {
 
 namespace {
 
-/// Accessors without a buffer view are zeros, which cost a file nothing; no scene has use for more.
+/// The most elements of a sparse accessor without a buffer view. They are zeros, which cost a file nothing;
+/// no scene has use for more.
 constexpr std::uint64_t most_zeros = std::uint64_t(1) << 22;
 constexpr std::uint64_t longest_stride = 1u << 16;
 
@@ -115,7 +116,7 @@ void GltfAccessor::read_sparse(GltfFile& file, const GltfFile::Json& sparse, int
 double GltfAccessor::value(std::uint64_t i, int component) const {
     if (replaced_ > 0) {
         std::uint64_t low = 0, high = replaced_;
-        while (low < high) {  // the first place that is not before i
+        while (low < high) {  // find the first place that is not before i
             const std::uint64_t middle = (low + high) / 2;
             if (places_.value(middle, 0) < static_cast<double>(i))
                 low = middle + 1;

@@ -1,4 +1,4 @@
-/// The elements of a glTF accessor, where they lie.
+/// Reads the elements of a glTF accessor from where they are in its buffer.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hedgerow::detail {
 
-/// Numbers in a buffer: their type and how far apart the elements are.
+/// Numbers in a buffer, with their type and the bytes from one element to the next.
 struct GltfNumbers {
     enum class Type { i1 = 5120, u1 = 5121, i2 = 5122, u2 = 5123, u4 = 5125, f4 = 5126 };
 
@@ -22,16 +22,16 @@ struct GltfNumbers {
     /// Number `component` of element `i`, both in range.
     double value(std::uint64_t i, int component) const;
     std::uint64_t size_of_number() const;
-    /// Whether they may be used as indices: whole, without a sign, and as they are.
+    /// Whether the numbers can be indices: unsigned integers that are not normalized.
     bool are_ordinals() const;
 };
 
-/// Bounds are checked once, when it is made: `at` reads what is there. Elements that a sparse accessor
-/// replaces are found by a binary search.
+/// The elements of an accessor. The constructor checks all bounds, so `value` reads without checks. It finds
+/// elements that a sparse accessor replaces by a binary search.
 class GltfAccessor {
 public:
     /// Elements of `components` numbers: 1 (SCALAR) or 3 (VEC3). Throws InputError for another type, for
-    /// what lies outside of its buffer, and for strides of less than an element.
+    /// elements outside of their buffer, and for a stride that is less than an element.
     GltfAccessor(GltfFile& file, std::uint64_t number, int components);
 
     std::uint64_t size() const { return size_; }
@@ -47,7 +47,7 @@ private:
     std::uint64_t size_ = 0;
     GltfNumbers base_;             // without bytes: all zero
     std::uint64_t replaced_ = 0;   // number of elements that are replaced
-    GltfNumbers places_, values_;  // of those
+    GltfNumbers places_, values_;  // the replaced elements' places and new values
 };
 
 }  // namespace hedgerow::detail

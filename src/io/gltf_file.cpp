@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "gltf_uri.h"
 #include "json_text.h"
@@ -16,7 +16,7 @@ namespace hedgerow::detail {
 
 namespace {
 
-/// All that is left of a file.
+/// Reads the rest of a file.
 std::string read_all(ByteSource& file) {
     std::string bytes;
     while (!file.at_end()) {
@@ -30,7 +30,7 @@ std::string read_all(ByteSource& file) {
     return bytes;
 }
 
-/// The first `most` bytes of a file that is never compressed, or all of it.
+/// The first `most` bytes of a file, or all of it if it is shorter. The file is never decompressed.
 std::string first_bytes(const std::filesystem::path& path, std::uint64_t most) {
     check_readable(path);
     const std::uint64_t size = std::min<std::uint64_t>(std::filesystem::file_size(path), most);
@@ -42,13 +42,13 @@ std::string first_bytes(const std::filesystem::path& path, std::uint64_t most) {
     return bytes;
 }
 
-/// Extensions that say how a scene looks or moves, and nothing about where its triangles are.
+/// Whether an extension changes only how a scene looks or moves, and not where its triangles are.
 bool leaves_geometry_alone(const std::string& extension) {
     constexpr std::string_view beginnings[] = {"KHR_materials_",      "KHR_texture_", "EXT_texture_",
                                                "MSFT_texture_",       "KHR_lights_",  "EXT_lights_",
                                                "KHR_animation_",      "KHR_xmp",      "KHR_techniques_",
                                                "KHR_node_visibility", "MSFT_packing_"};
-    return extension == "KHR_mesh_quantization" ||  // which the accessors read
+    return extension == "KHR_mesh_quantization" ||  // the accessors read it
            std::any_of(std::begin(beginnings), std::end(beginnings),
                        [&](std::string_view b) { return extension.starts_with(b); });
 }
@@ -71,6 +71,7 @@ GltfFile::GltfFile(ByteSource& file, std::filesystem::path path)
 
 std::string_view GltfFile::json_of_container() {
     const std::string_view bytes = container_;
+    // Check the container's header: magic word, version, length.
     if (bytes.size() < 20) fail("ends in its header of 20 bytes");
     const auto word = [&](std::size_t at) { return little<std::uint32_t>(&bytes[at]); };
     const std::uint32_t version = word(4), length = word(8);
@@ -78,6 +79,7 @@ std::string_view GltfFile::json_of_container() {
     if (length > bytes.size())
         fail("should be " + std::to_string(length) + " bytes long, but has " + std::to_string(bytes.size()) +
              ": it was cut off");
+    // Find the first chunk of JSON and the first binary one.
     std::optional<std::string_view> json;
     for (std::size_t at = 12; at + 8 <= length;) {
         const std::size_t size = word(at);

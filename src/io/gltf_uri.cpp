@@ -6,7 +6,7 @@
 #include <optional>
 #include <system_error>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "text.h"
 
@@ -32,7 +32,7 @@ int hex_value(char c) {
     return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
-/// Without %XX; nothing if one is broken, or stands for a control character.
+/// Replaces each %XX by its character. Nothing if a %XX is broken or there is a control character.
 std::optional<std::string> percent_decoded(std::string_view uri) {
     std::string text;
     for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -50,7 +50,7 @@ std::optional<std::string> percent_decoded(std::string_view uri) {
     return text;
 }
 
-/// Whether a folder holds a file, once all links are followed. The folder's path is not empty.
+/// Whether a file is in a folder once all links are followed. The folder's path is not empty.
 bool holds(const std::filesystem::path& folder, const std::filesystem::path& file) {
     std::error_code error;
     const auto whole_folder = std::filesystem::weakly_canonical(folder, error);
@@ -75,6 +75,7 @@ std::string bytes_of_data_uri(std::string_view uri, const std::string& name) {
     bytes.reserve(digits.size() / 4 * 3 + 3);
     std::uint32_t bits = 0;
     int held = 0;
+    // Each digit adds 6 bits; take out a byte whenever there are 8.
     for (std::size_t i = 0; i < digits.size(); ++i) {
         const std::uint8_t value = values[static_cast<unsigned char>(digits[i])];
         if (value == no_digit)
@@ -88,7 +89,7 @@ std::string bytes_of_data_uri(std::string_view uri, const std::string& name) {
 
 std::filesystem::path file_of_uri(std::string_view uri, const std::filesystem::path& scene,
                                   const std::string& name) {
-    // A scene that is named without a folder lies in the current one.
+    // The path of a scene may have no folder: the scene is then in the current one.
     const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
     const auto fail = [&](const std::string& why) {
         throw InputError(name + ": its buffer " + shown(uri) + " " + why +

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "byte_source.h"
 #include "image_size.h"

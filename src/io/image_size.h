@@ -1,4 +1,4 @@
-/// What every image that is saved must be.
+/// The check of size that every saved image must pass.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,12 @@
 #include <string>
 #include <string_view>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 namespace hedgerow::detail {
 
-/// Throws InputError unless an image has pixels, and width × height of what is counted.
+/// Throws InputError unless width and height are positive and `count` is their product. The message calls the
+/// elements `counted`.
 inline void expect_pixels(const std::filesystem::path& path, int width, int height, std::size_t count,
                           std::string_view counted) {
     const std::string size = std::to_string(width) + "x" + std::to_string(height);

@@ -1,4 +1,4 @@
-/// Saved indexes: written once from front to back, and mapped.
+/// Saved indexes: written once from front to back, and loaded by mapping the file.
 #include <hedgerow/io/index_file.h>
 
 #include <atomic>
@@ -13,7 +13,7 @@ namespace hedgerow {
 
 namespace detail {
 
-/// What an index is made of, to those who save and load it and to nobody else.
+/// Access to the parts of an index, for saving and loading only.
 struct IndexParts {
     template <class T>
     static double built_cost(const MeshIndex<T>& index) {
@@ -58,14 +58,15 @@ IndexHeader header_of(const MeshIndex<T>& index) {
     return h;
 }
 
-/// What goes into a file, with its checksums.
+/// Writes sections to a file, with their checksums.
 class SectionWriter {
 public:
     explicit SectionWriter(OutputFile& file) : file_(file) {}
 
     void bytes(const void* from, std::size_t size) {
         const char* const begin = static_cast<const char*>(from);
-        for (std::size_t done = 0, n; done < size; done += n) {  // while they are in the cache
+        // Checksum and write each piece while it is in the cache.
+        for (std::size_t done = 0, n; done < size; done += n) {
             n = std::min(size - done, std::size_t(1) << 18);
             checksums_.add(begin + done, n);
             file_.write({begin + done, n});
@@ -73,9 +74,10 @@ public:
         }
         written_ += size;
     }
-    /// Ends a section.
+    /// Ends a section: zeros up to the next multiple of 64 bytes.
     void align() { zeros(static_cast<std::size_t>((64 - written_ % 64) % 64)); }
-    /// Records of `stride` bytes, of which those after the first `used` were never set.
+    /// Writes records of `stride` bytes. The bytes after the first `used` were never set, so zeros are
+    /// written for them.
     void records(const void* from, std::size_t count, std::size_t used, std::size_t stride) {
         if (used == stride) return bytes(from, count * stride);
         for (std::size_t i = 0; i < count; ++i) {
@@ -83,7 +85,7 @@ public:
             zeros(stride - used);
         }
     }
-    /// value(0), value(1) and on.
+    /// Writes value(0) to value(count − 1).
     template <class F>
     void values(std::size_t count, F value) {
         constexpr std::size_t at_once = 4096;
@@ -93,6 +95,7 @@ public:
             bytes(some.data(), some.size() * sizeof some[0]);
         }
     }
+    /// Writes the checksums of all that was written, and then their own checksum.
     void finish() {
         const auto& all = checksums_.finish();
         const std::size_t size = all.size() * sizeof all[0];
@@ -114,7 +117,7 @@ private:
 
 // Loading.
 
-/// `count` values from a place in the file.
+/// `count` values from byte `at` of the file on, in place.
 template <class E>
 Stored<E> stored(const FileBytes& file, std::uint64_t at, std::uint64_t count) {
     return {file.owner, reinterpret_cast<E*>(file.data + at), static_cast<std::size_t>(count)};
@@ -123,7 +126,7 @@ template <class E>
 Strided<E> strided(const FileBytes& file, std::uint64_t at, std::uint64_t count) {
     return {file.data + at, static_cast<std::size_t>(count)};
 }
-/// The index as it lies in a file of the header's layout.
+/// An index whose arrays are in the file itself.
 template <class T>
 MeshIndex<T> in_place(const IndexHeader& h, const IndexLayout& layout, const FileBytes& file) {
     using Line = typename WideNodes<T, 3>::Line;
@@ -141,6 +144,7 @@ MeshIndex<T> in_place(const IndexHeader& h, const IndexLayout& layout, const Fil
     return IndexParts::together<T>(mesh, h, std::move(tree), std::move(blocks), file.owner);
 }
 
+/// Throws InputError unless every checksum holds.
 void check_sums(const IndexLayout& layout, const FileBytes& file, const std::filesystem::path& path,
                 Executor& executor) {
     const std::byte* const sums = file.data + layout.checksums;
@@ -149,9 +153,11 @@ void check_sums(const IndexLayout& layout, const FileBytes& file, const std::fil
         std::memcpy(&value, sums + 8 * i, sizeof value);
         return value;
     };
+    // Check the checksums themselves.
     const std::uint64_t count = checksum_pieces(layout.checksums), end = layout.checksums;
     if (checksum(sums, 8 * count) != sum(count))
         refuse_index(path, "the checksums from byte " + std::to_string(end) + " on are damaged");
+    // Check the pieces in parallel, and keep the first that is bad.
     std::atomic<std::uint64_t> first_bad{count};
     executor.expect(end);
     executor.for_each_piece(count, 1, [&](std::size_t begin, std::size_t pieces_end) {
@@ -164,6 +170,7 @@ void check_sums(const IndexLayout& layout, const FileBytes& file, const std::fil
             }
         }
     });
+    // Report where the first damage is.
     if (first_bad == count) return;
     const std::uint64_t at = first_bad * checksum_piece;
     refuse_index(path, "bytes " + std::to_string(at) + " to " +
@@ -171,7 +178,7 @@ void check_sums(const IndexLayout& layout, const FileBytes& file, const std::fil
                            " are damaged");
 }
 
-/// Whether the blocks are those that the mesh is packed in.
+/// Whether the stored blocks are those that the mesh packs into.
 template <class T>
 bool blocks_match(const MeshIndex<T>& index, Executor& executor) {
     constexpr std::size_t at_once = 64, places = wide_leaf_size;
@@ -181,10 +188,10 @@ bool blocks_match(const MeshIndex<T>& index, Executor& executor) {
     executor.for_each_piece(items.size() / places, at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n; begin < end && match; begin += n) {
             n = std::min(at_once, end - begin);
-            const auto packed = index.primitives().template pack<PackedOrder::of_blocks>(
-                items.subspan(begin * places, n * places), serial_executor());
+            const auto packed =
+                pack_blocks(index.primitives(), items.subspan(begin * places, n * places), serial_executor());
             for (std::size_t i = 0; i < n; ++i)
-                if (std::memcmp(static_cast<const void*>(packed.data() + i),  // NaN too
+                if (std::memcmp(static_cast<const void*>(packed.data() + i),  // compares NaN too
                                 static_cast<const void*>(blocks + begin + i), TriangleBlock<T>::used) != 0)
                     match = false;
         }
@@ -192,7 +199,7 @@ bool blocks_match(const MeshIndex<T>& index, Executor& executor) {
     return match;
 }
 
-/// What a build sees to, so that a file whose checksums are right and whose contents are not does no harm.
+/// Checks what a build guarantees, so that a file with right checksums and wrong contents does no harm.
 template <class T>
 void check_contents(const MeshIndex<T>& index, const std::filesystem::path& path, Executor& executor) {
     Box<T, 3> bounds;
@@ -220,6 +227,7 @@ void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, co
     using Block = TriangleBlock<T>;
     const int width = index.structure().options().width;
 
+    // Write the sections in the order of IndexLayout.
     detail::OutputFile file(path, progress);
     file.expect(detail::layout_of(header).checksums);
     detail::SectionWriter out(file);
@@ -242,8 +250,7 @@ void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, co
 }
 
 template <std::floating_point T>
-MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOptions& options,
-                        Executor& executor) {
+MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOptions& options, Threads threads) {
     const auto file = options.map ? detail::mapped_file(path) : detail::read_file(path);
     const auto header = detail::checked_header(file.data, file.size, file.size, path);
     if (header.scalar_bytes != sizeof(T)) {
@@ -251,6 +258,7 @@ MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOption
         throw InputError(path.string() + ": holds " + held + "s. Load it as " + held);
     }
     const auto layout = detail::layout_of(header);
+    Executor& executor = threads.over(header.triangles);
     if (options.verify != Verify::header) detail::check_sums(layout, file, path, executor);
     auto index = detail::in_place<T>(header, layout, file);
     if (options.verify == Verify::contents) detail::check_contents(index, path, executor);
@@ -259,7 +267,7 @@ MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOption
 
 template void save_index(const std::filesystem::path&, const MeshIndex<float>&, const Progress&);
 template void save_index(const std::filesystem::path&, const MeshIndex<double>&, const Progress&);
-template MeshIndex<float> load_index(const std::filesystem::path&, const LoadIndexOptions&, Executor&);
-template MeshIndex<double> load_index(const std::filesystem::path&, const LoadIndexOptions&, Executor&);
+template MeshIndex<float> load_index(const std::filesystem::path&, const LoadIndexOptions&, Threads);
+template MeshIndex<double> load_index(const std::filesystem::path&, const LoadIndexOptions&, Threads);
 
 }  // namespace hedgerow

@@ -17,7 +17,8 @@ namespace {
 constexpr std::uint64_t most_leaves = std::uint64_t(1) << 28, most_triangles = std::uint64_t(1) << 31,
                         most_vertices = std::uint64_t(1) << 32;
 
-/// What counts say of each other, in every index; so small that no sum of sizes overflows.
+/// Whether the counts agree with each other as in every index, and are so small that no sum of sizes
+/// overflows.
 bool sound_counts(const IndexHeader& h) {
     const bool empty = h.triangles == 0;
     return h.triangles <= most_triangles && h.vertices <= most_vertices && h.leaves <= most_leaves &&
@@ -30,7 +31,8 @@ bool sound_box(const IndexHeader& h) {
     for (int k = 0; k < 3; ++k) good = good && h.low[k] <= h.high[k] && std::isfinite(h.high[k] - h.low[k]);
     return good || h.triangles == 0;
 }
-/// In IndexHeader and in WideOptions alike.
+/// Throws InputError unless the options are known and valid. The message names a field, and fields have the
+/// same names in IndexHeader and WideOptions.
 void check_options(const IndexHeader& h, const std::filesystem::path& path) {
     if (h.builder >= std::size(wide_builders) || h.width == 0)
         refuse_index(path, "the header names options that there are not");
@@ -40,7 +42,8 @@ void check_options(const IndexHeader& h, const std::filesystem::path& path) {
         refuse_index(path, std::string("the header's option ") + error.what());
     }
 }
-/// What can be said of a file before its checksum is asked, since its version decides where that stands.
+/// Checks the kind, the byte order and the version of a file. This comes before the checksum, because the
+/// version decides where the checksum is.
 void check_kind(const IndexHeader& h, std::size_t known, const std::filesystem::path& path) {
     const auto has = [&](std::size_t end) { return known >= end; };
     if (std::memcmp(h.magic, index_magic, std::min(known, sizeof h.magic)) != 0)

@@ -1,14 +1,14 @@
-/// How a saved index lies in its file.
+/// The layout of a saved index in its file.
 ///
 ///   Header
 ///   sections, each from a multiple of 64 bytes on: nodes, items, blocks, vertices, triangles, faces
-///   the checksum of every MiB of what stands before it, the header included
+///   the checksum of every MiB of all that is before it, the header included
 ///   the checksum of those checksums
 ///
-/// Numbers are in the byte order of the processor that saved. Where sections begin and how long the file is
-/// follows from the header's counts and stands nowhere, so that nothing can contradict them. What is between
-/// sections, and in nodes and blocks what no field takes, is 0. A change to any of this, or to what nodes and
-/// blocks mean, is another version.
+/// Numbers are in the byte order of the processor that saved the index. The places of sections and the length
+/// of the file follow from the header's counts and are not stored, so nothing can contradict them. Bytes
+/// between sections are 0, and so are the bytes of nodes and blocks that belong to no field. A change to any
+/// of this, or to the meaning of nodes and blocks, is another version.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +26,10 @@ struct IndexHeader {
     std::uint32_t byte_order, version, scalar_bytes;
     std::uint32_t builder, width, max_leaf_size, reinsertion, depth;
     double traversal_cost, intersection_cost;
-    double built_cost;  // of the tree before its first refit; negative: it had none
+    double built_cost;  // of the tree before its first refit; negative: no refit yet
     double low[3], high[3];
     std::uint64_t nodes, leaves, triangles, vertices, faces;
-    std::uint64_t checksum;  // of all before it
+    std::uint64_t checksum;  // of all fields before it
 
     bool holds_floats() const { return scalar_bytes == sizeof(float); }
     WideOptions options() const;
@@ -38,16 +38,16 @@ static_assert(sizeof(IndexHeader) == 168);
 inline constexpr std::size_t index_header_checked = offsetof(IndexHeader, checksum);
 inline constexpr char index_magic[16] = "hedgerow index\n";
 
-/// Where each section begins, and what comes after them.
+/// The byte where each section and the checksums begin, and the length of the file.
 struct IndexLayout {
     std::uint64_t nodes, items, blocks, vertices, triangles, faces, checksums;
     std::uint64_t file_bytes;
 };
-/// Of a header that was checked.
+/// The layout that a checked header implies.
 IndexLayout layout_of(const IndexHeader& header);
 
-/// The header at the start of a file of `file_bytes`, of which `start` has the first `size`. Throws
-/// InputError unless it is sound, and the file as long as it says.
+/// The header of a file of `file_bytes` bytes, whose first `size` are at `start`. Throws InputError unless
+/// the header is sound and the file is as long as the header implies.
 IndexHeader checked_header(const std::byte* start, std::size_t size, std::uint64_t file_bytes,
                            const std::filesystem::path& path);
 

@@ -1,7 +1,7 @@
-/// JSON through nlohmann-json, behind a look at what it will have to hold.
+/// Parses JSON through nlohmann-json, after a check of the memory that its values need.
 #include "json_text.h"
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "memory.h"
 #include "text.h"
@@ -11,12 +11,13 @@ namespace hedgerow::detail {
 namespace {
 
 constexpr int deepest = 64;
-/// Bytes that a value takes at most, as a member of an object with a short key.
+/// The most bytes that a value takes: as a member of an object with a short key.
 constexpr std::uint64_t bytes_a_value = 128;
-/// Bytes that a letter of a string takes at most: the string, and the parser's buffer, which doubles.
+/// The most bytes that a letter of a string takes: in the string, and in the parser's buffer, which doubles.
 constexpr std::uint64_t bytes_a_letter = 3;
 
-/// Counts values by what ends or opens them, outside of strings; throws where they are nested too deep.
+/// An upper bound on the number of values: counts the commas and opening brackets outside of strings. Throws
+/// if brackets are nested too deep.
 std::uint64_t count_values(std::string_view text, const std::string& name) {
     std::uint64_t values = 1;
     int depth = 0;
@@ -44,7 +45,8 @@ std::uint64_t count_values(std::string_view text, const std::string& name) {
     return values;
 }
 
-/// What the parser says, without its own number and without bytes that no message should hold.
+/// The parser's message without its number, cut to 160 letters, with '?' for bytes that no message should
+/// hold.
 std::string reason(std::string_view what) {
     if (what.starts_with('[')) what.remove_prefix(std::min(what.find(']') + 1, what.size()));
     std::string text;

@@ -1,4 +1,4 @@
-/// JSON from files that nobody vouches for.
+/// Parses JSON from files that cannot be trusted.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace hedgerow::detail {
 
-/// Parses a text, once its nesting (at most 64 deep) and the memory that its values take are known to be
-/// sane. Throws InputError, naming `name` and the byte. O(size).
+/// Parses a text after checks that it is nested at most 64 deep and that its values fit in the memory that is
+/// left. Throws InputError, naming `name` and the place. O(size).
 nlohmann::json parse_json(std::string_view text, const std::string& name);
 
 }  // namespace hedgerow::detail

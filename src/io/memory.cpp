@@ -1,4 +1,4 @@
-/// The system's own figures, where it gives them (Linux: /proc and /sys; elsewhere POSIX limits).
+/// Memory figures from the system, where it gives them (Linux: /proc and /sys; elsewhere POSIX limits).
 #include "memory.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #if __has_include(<sys/resource.h>)
 #include <sys/resource.h>
@@ -26,7 +26,7 @@ std::uint64_t difference(std::uint64_t a, std::uint64_t b) {
     return a == unlimited ? a : a - std::min(a, b);
 }
 
-/// The number behind a key of a file of "key number" lines.
+/// The number after a key in a file of "key number" lines.
 std::optional<std::uint64_t> number_behind(const std::filesystem::path& path, const std::string& key) {
     std::ifstream file(path);
     for (std::string word; file >> word;) {
@@ -36,7 +36,7 @@ std::optional<std::uint64_t> number_behind(const std::filesystem::path& path, co
     return std::nullopt;
 }
 
-/// A key of a file of "key: number kB" lines, in bytes.
+/// The number after a key in a file of "key: number kB" lines, in bytes.
 std::uint64_t kilobytes(const char* path, const std::string& key, std::uint64_t otherwise) {
     const auto found = number_behind(path, key);
     return found ? *found * 1024 : otherwise;
@@ -56,9 +56,9 @@ constexpr Hierarchy version_1{"memory", "memory.limit_in_bytes", "memory.usage_i
 constexpr Hierarchy version_2{"", "memory.max", "memory.current", "inactive_file"};
 constexpr Hierarchy version_2_beside_1{"unified", version_2.limit, version_2.use, version_2.idle_cache};
 
-/// The least that a group and the groups around it leave. Files that are cached and not in use are freed when
-/// memory is short, so they do not count as used. In a container the group's own path may be missing: what
-/// is mounted at the root is then its group.
+/// The least that a group and the groups around it leave. Cached files that are not in use are freed when
+/// memory is short, so they do not count as used. In a container the group's own path may be missing: the
+/// process's group is then the one that is mounted at the root.
 std::uint64_t left_in_groups(const std::filesystem::path& mounted, const Hierarchy& files,
                              std::filesystem::path group) {
     std::uint64_t left = unlimited;

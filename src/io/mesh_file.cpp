@@ -1,7 +1,7 @@
-/// Which reader and which writer an extension stands for.
+/// Chooses the reader and the writer of a mesh by the extension.
 #include <hedgerow/io/mesh_file.h>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/validate.h>
 
 #include "memory.h"
@@ -45,7 +45,7 @@ TriangleMesh<T> read_any(const std::filesystem::path& path, const Progress& prog
     return read(file, path);
 }
 
-/// The writers only need to know that no index is out of range.
+/// Throws InputError if an index is out of range. The writers need no other check.
 template <class T>
 void check_indices(const TriangleMesh<T>& mesh) {
     for (std::size_t i = 0; i < mesh.size(); ++i)

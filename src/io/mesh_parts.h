@@ -1,4 +1,4 @@
-/// What mesh readers fill: faces that become triangles, and corners that become vertices.
+/// Parts that mesh readers share: faces become triangles, and corners become vertices.
 #pragma once
 
 #include <bit>
@@ -17,17 +17,19 @@
 
 namespace hedgerow::detail {
 
-/// Vertices and faces that are 2^32 − 1 or more cannot be named by an index.
+/// Ordinals of vertices and faces are less than 2^32 − 1, so that an index can name them.
 inline constexpr std::uint64_t most_ordinals = 0xFFFFFFFFu;
 
+/// Throws InputError if no ordinal is left for one more thing after `count` of them.
 inline void check_room(const ByteSource& file, std::uint64_t count, const char* what) {
     if (count >= most_ordinals)
         file.fail(std::string("has more than 4294967295 ") + what + ". Split it into several files");
 }
 
 /// Throws InputError if a file cannot hold the `count` things that it declares, each of at least `file_bytes`
-/// bytes in the file, or if they cannot be held in memory, each in `memory_bytes`. Where they take little
-/// memory they are read as far as they go, since the message then names the place where they end.
+/// bytes in the file, or if the memory cannot hold them, each in `memory_bytes`. Things that take little
+/// memory are not checked here. They are read as far as they go, and the message then names the place where
+/// they end.
 inline void check_declared(const ByteSource& file, std::uint64_t count, std::uint64_t file_bytes,
                            std::uint64_t memory_bytes, const char* what) {
     check_room(file, count, what);
@@ -41,10 +43,10 @@ inline void check_declared(const ByteSource& file, std::uint64_t count, std::uin
 }
 
 /// Appends to an array that grows as a file is read. Throws InputError before the array outgrows the memory
-/// that is left: a system that overcommits would kill the process later, without a word.
+/// that is left. Without this, a system that overcommits would kill the process later, without a message.
 template <class U>
 void append(const ByteSource& file, std::vector<U>& array, const U& value) {
-    constexpr std::size_t unasked = (std::size_t(1) << 26) / sizeof(U);  // 64 MiB are taken without asking
+    constexpr std::size_t unasked = (std::size_t(1) << 26) / sizeof(U);  // 64 MiB need no check
     if (array.size() == array.capacity() && array.size() >= unasked) {
         const std::size_t grown = array.size() + array.size() / 2;
         expect_memory(file.name(), "more than the " + std::to_string(array.size()) + " entries read so far",
@@ -54,8 +56,8 @@ void append(const ByteSource& file, std::vector<U>& array, const U& value) {
     array.push_back(value);
 }
 
-/// Polygons become triangles (triangulate.h), once all vertices are known; until then they are kept as fans.
-/// Ordinals are kept from the first face on that is no triangle.
+/// The faces of a file as triangles. Polygons are stored as fans until all vertices are known, and are then
+/// triangulated (triangulate.h). Face ordinals are stored only if a face is not a triangle.
 class FaceList {
 public:
     explicit FaceList(const ByteSource& file) : file_(file) {}
@@ -76,7 +78,7 @@ public:
         }
         ++next_;
     }
-    /// Into a mesh that has its vertices.
+    /// Triangulates the polygons and moves all triangles into a mesh, which has its vertices already.
     template <class T>
     void move_to(TriangleMesh<T>& mesh) {
         for (std::size_t begin = 0, end; begin < faces_.size(); begin = end) {
@@ -97,8 +99,8 @@ private:
     bool numbered_ = false;
 };
 
-/// One vertex for all corners with the same bits, −0 being 0. An open-addressing hash table, at most half
-/// full.
+/// Makes one vertex of all corners with the same bits (−0 equals 0). An open-addressing hash table, at most
+/// half full.
 template <class T>
 class Welder {
 public:
@@ -142,7 +144,7 @@ private:
         if (grown > (std::size_t(1) << 24))
             expect_memory(file_.name(), "its more than " + std::to_string(vertices_.size()) + " vertices",
                           grown * sizeof(slots_[0]));
-        slots_ = std::vector<std::uint32_t>();  // what it held is found again from the vertices
+        slots_ = std::vector<std::uint32_t>();  // freed first: it is rebuilt from the vertices
         slots_.resize(grown);
         for (std::size_t i = 0; i < vertices_.size(); ++i) {
             std::size_t s = hash(key_of(vertices_[i])) & (slots_.size() - 1);

@@ -1,7 +1,7 @@
 /// PLY, STL, OBJ and OFF.
 #include "mesh_writers.h"
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "text.h"
 

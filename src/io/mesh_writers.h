@@ -1,4 +1,4 @@
-/// The writers of single mesh formats.
+/// The writers of meshes, one per format.
 #pragma once
 
 #include <hedgerow/primitives/triangle_mesh.h>

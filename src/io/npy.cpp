@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 #include "memory.h"
 #include "npy_format.h"
@@ -17,6 +17,7 @@ namespace hedgerow {
 
 namespace {
 
+/// Element i of an array as a To. Throws InputError if To is an integer type without that value.
 template <class To, class From>
 To converted(From x, std::size_t i) {
     if constexpr (std::is_same_v<To, From>) {
@@ -29,7 +30,7 @@ To converted(From x, std::size_t i) {
     } else {
         bool fits = false;
         if constexpr (std::is_floating_point_v<From>) {
-            // Both bounds are powers of two, so exact.
+            // Both bounds are exact: powers of two, or 0.
             const double d = static_cast<double>(x), end = std::ldexp(1.0, std::numeric_limits<To>::digits);
             fits = d == std::floor(d) && d < end && d >= (std::is_signed_v<To> ? -end : 0.0);
         } else {
@@ -82,7 +83,8 @@ std::string detail::npy_header(const std::string& dtype, const std::vector<std::
     for (const std::size_t n : shape) text += std::to_string(n) + ", ";
     text += "), }";
     if (shape.size() > 1) text.erase(text.size() - 6, 2);  // numpy writes (3, 4) but (3, )
-    constexpr std::size_t start = 10;
+    constexpr std::size_t start = 10;  // bytes before the text: magic word, version, length
+    // Elements begin at a multiple of 64 bytes.
     text.append(63 - (start + text.size()) % 64, ' ');
     text += '\n';
     std::string header("\x93NUMPY\x01\x00", 8);

@@ -1,4 +1,4 @@
-/// Reading and writing NumPy arrays, apart from the files that they lie in.
+/// Reads and writes NumPy arrays, whatever files they are in.
 #pragma once
 
 #include <hedgerow/io/npy.h>
@@ -8,14 +8,14 @@
 
 namespace hedgerow::detail {
 
-/// Axes that an array may have, as in NumPy.
+/// The most axes that an array may have, as in NumPy.
 inline constexpr std::size_t most_axes = 64;
 
 NpyArray read_npy(ByteSource& file);
-/// Only the header's elements along each axis.
+/// Reads only the header: the number of elements along each axis.
 std::vector<std::size_t> read_npy_shape(ByteSource& file);
 
-/// The header of version 1. `dtype` as in NpyArray.
+/// The header of a file of version 1. `dtype` is written as in NpyArray.
 std::string npy_header(const std::string& dtype, const std::vector<std::size_t>& shape);
 
 template <class T>

@@ -11,8 +11,8 @@ namespace hedgerow::detail {
 namespace {
 
 struct Header {
-    std::string dtype;  // "f8", as in NpyArray
-    std::size_t item = 0;
+    std::string dtype;     // "f8", as in NpyArray
+    std::size_t item = 0;  // bytes per element
     std::endian order = std::endian::little;
     bool fortran = false;
     std::vector<std::size_t> shape;
@@ -115,6 +115,7 @@ Header read_header(ByteSource& file) {
     char magic[8] = {};
     if (file.read(magic, 8) != 8 || std::string_view(magic, 6) != "\x93NUMPY")
         file.fail("is not a NumPy array. Write it with numpy.save");
+    // Read the header's length: 2 bytes in version 1, 4 bytes in versions 2 and 3.
     std::uint32_t length = 0;
     std::uint16_t short_length = 0;
     bool read = false;
@@ -126,6 +127,7 @@ Header read_header(ByteSource& file) {
     } else {
         file.fail("is version " + std::to_string(magic[6]) + " of the format; known are 1 to 3");
     }
+    // Read the header's text.
     if (length > (1u << 20))
         file.fail("the array's header says that it is " + std::to_string(length) + " bytes long");
     std::string text(length, ' ');
@@ -134,7 +136,7 @@ Header read_header(ByteSource& file) {
     return HeaderParser(file, text).parse();
 }
 
-/// Number of bytes of the elements.
+/// Bytes that all elements take.
 std::size_t size_in_bytes(const ByteSource& file, const Header& header) {
     if (std::find(header.shape.begin(), header.shape.end(), 0u) != header.shape.end()) return 0;
     std::size_t size = header.item;
@@ -159,13 +161,14 @@ std::vector<std::byte> read_elements(ByteSource& file, std::size_t size) {
     return bytes;
 }
 
-/// From first index fastest to last index fastest.
+/// Copies elements from Fortran order (first index fastest) to C order (last index fastest).
 std::vector<std::byte> transposed(const ByteSource& file, const std::vector<std::byte>& from,
                                   const Header& header) {
     const std::size_t axes = header.shape.size(), item = header.item;
     std::vector<std::byte> to(from.size());
     std::vector<std::size_t> index(axes), stride(axes);
     for (std::size_t a = 0, s = item; a < axes; s *= header.shape[a++]) stride[a] = s;
+    // Count indices in C order, and follow the element's place in Fortran order.
     std::size_t at = 0;
     for (std::size_t i = 0; i < to.size(); i += item) {
         if (i % (item << 16) == 0) file.expect_not_cancelled();

@@ -1,5 +1,5 @@
-/// Wavefront OBJ meshes. Read here and not by tinyobjloader (2.0 rc10), because that takes what is not a
-/// number, "nan" too, for 0, and does not round correctly.
+/// Wavefront OBJ meshes. This reader replaces tinyobjloader (2.0 rc10), which reads words that are not
+/// numbers, "nan" too, as 0 and does not round correctly.
 #include "mesh_parts.h"
 #include "readers.h"
 #include "text.h"
@@ -28,7 +28,7 @@ public:
     }
 
 private:
-    /// A line, with those that a \ at its end joins to it.
+    /// Reads a line and the lines that a \ at its end joins to it.
     bool next(std::string& line) {
         if (!file_.line(line)) return false;
         line_ += 1 + joined_;

@@ -14,6 +14,7 @@ public:
 
     TriangleMesh<T> read() {
         need_line("header line", 1, 2);
+        // The keyword may be missing: the file then begins with the counts.
         std::string_view first = rest_;
         const std::string_view keyword = take_word(first);
         if (lower_case(keyword).ends_with("off")) {
@@ -34,7 +35,8 @@ public:
     }
 
 private:
-    /// The next line that holds more than a comment.
+    /// Reads the next line that has more than a comment. The message for a file that ends before it names
+    /// line `i` of `all`.
     void need_line(const char* what, std::uint64_t i, std::uint64_t all) {
         do {
             if (!file_.line(text_))

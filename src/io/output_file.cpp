@@ -1,4 +1,4 @@
-/// Write, then rename.
+/// Files that are written under another name and then renamed.
 #include "output_file.h"
 
 #include <atomic>
@@ -9,7 +9,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/writable.h>
 
 #include "text.h"
@@ -27,7 +27,7 @@ std::string unique_suffix() {
     return suffix + ".part";
 }
 
-/// What a link names is replaced, and the link stays.
+/// The file that a link names: that file is replaced, and the link stays.
 std::filesystem::path followed(const std::filesystem::path& path) {
     std::error_code failed;
     if (!std::filesystem::is_symlink(path, failed)) return path;
@@ -35,7 +35,8 @@ std::filesystem::path followed(const std::filesystem::path& path) {
     return failed ? path : target;
 }
 
-/// Renaming would replace a read-only file, since it asks for permission to its folder alone.
+/// Whether a file is read-only. Renaming would replace a read-only file, since it needs permission only for
+/// the folder.
 bool read_only(const std::filesystem::path& path, const std::filesystem::file_status& status) {
     using std::filesystem::perms;
     const auto writers = perms::owner_write | perms::group_write | perms::others_write;
@@ -46,7 +47,7 @@ bool read_only(const std::filesystem::path& path, const std::filesystem::file_st
     throw OutputError(path.string() + ": cannot be written" + why);
 }
 
-/// As check_writable, of a file that is no link.
+/// Throws OutputError as check_writable does, for a path that is not a link.
 void check(const std::filesystem::path& path) {
     if (path.empty()) throw OutputError("the output has no name. Name a file");
     std::error_code ignored;
@@ -77,6 +78,7 @@ OutputFile::OutputFile(const std::filesystem::path& path, Progress progress)
     check(path_);
     std::error_code ignored;
     const auto status = std::filesystem::status(path_, ignored);
+    // Devices and pipes cannot be replaced by renaming, so they are written directly.
     const bool straight = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
     written_ = path_;
     if (!straight) written_ += unique_suffix();

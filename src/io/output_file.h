@@ -15,9 +15,9 @@
 
 namespace hedgerow::detail {
 
-/// Writes beside `path`, under another name that no other writer has, and renames that in `commit`; what was
-/// not committed is removed. A device or pipe is written straight. Throws OutputError; and Cancelled, once
-/// the progress is.
+/// Writes a file beside `path`, with a name that no other writer has, and renames it in `commit`. A file that
+/// is not committed is removed. A device or pipe is written directly. Throws OutputError, and Cancelled once
+/// the progress is cancelled.
 class OutputFile {
 public:
     explicit OutputFile(const std::filesystem::path& path, Progress progress = {});
@@ -26,6 +26,7 @@ public:
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(std::string_view bytes);
+    /// Writes the bytes of a number in little-endian order.
     template <class U>
     void little(U v) {
         char bytes[sizeof(U)];
@@ -34,8 +35,8 @@ public:
             for (std::size_t i = 0; i < sizeof(U) / 2; ++i) std::swap(bytes[i], bytes[sizeof(U) - 1 - i]);
         write({bytes, sizeof(U)});
     }
-    /// Announces how much there is to write, in the writer's unit, and then says how much more is written.
-    /// The progress is told, and asked whether to stop, about every 4096.
+    /// `expect` announces how much there is to write, in the writer's unit, and `advance` adds what has been
+    /// written. The progress is reported and checked for cancellation about once in 4096 units.
     void expect(std::uint64_t total) { total_ = total; }
     void advance(std::uint64_t more = 1) {
         done_ += more;
@@ -45,7 +46,8 @@ public:
         progress_(done_, total_);
     }
     std::FILE* stream() const { return file_; }
-    /// The next byte's place, for formats that go back to fill in what they did not know. Pipes have none.
+    /// The place of the next byte, for formats that go back to fill in values. Throws OutputError for a pipe,
+    /// which has no places.
     std::uint64_t tell() const;
     void seek(std::uint64_t place);
     void commit();

@@ -10,20 +10,20 @@ namespace hedgerow::detail {
 
 namespace {
 
-/// The values behind a header, one by one, each as T or as an integer.
+/// Reads the values after a header one by one, each as T or as an integer.
 template <class T>
 class PlyValues {
 public:
     PlyValues(ByteSource& file, const PlyHeader& header)
         : file_(file), words_(file, header.lines + 1), encoding_(header.encoding) {}
 
-    /// Where errors are: element and ordinal.
+    /// Sets the element and the ordinal of the entry that error messages name.
     void enter(const PlyElement& element) { element_ = &element; }
     void enter(std::uint64_t ordinal) { ordinal_ = ordinal; }
 
     ByteSource& file() const { return file_; }
-    /// Bytes that an entry of the element takes in the file at least: lists may be empty, words have a
-    /// letter.
+    /// The least bytes that an entry of the element takes in the file. Lists may be empty; a word has at
+    /// least one letter and a space after it.
     std::uint64_t least_bytes(const PlyElement& element) const {
         std::uint64_t bytes = 0;
         for (const PlyProperty& p : element.properties)
@@ -50,7 +50,8 @@ public:
             if (const auto i = parse_integer<std::int64_t>(w)) return *i;
             fail(shown(w) + " is not a whole number");
         }
-        // Floating-point types are refused with the header; what wraps is negative and refused by its user.
+        // The header's checks refuse floating-point types. A 64-bit number beyond int64 becomes negative, and
+        // callers refuse that.
         return decode<std::int64_t>(type, [](auto x) {
             if constexpr (std::is_floating_point_v<decltype(x)>)
                 return std::int64_t(-1);
@@ -133,7 +134,7 @@ private:
     std::uint64_t ordinal_ = 0;
 };
 
-/// What is wanted of an element: its properties at these places, −1 if there is none.
+/// Which properties of an element are wanted: their positions in the element, −1 if there is none.
 struct Wanted {
     int axis[3] = {-1, -1, -1};
     int corners = -1;
@@ -143,13 +144,14 @@ struct Wanted {
     }
 };
 
-/// Calls take(point, corners) for each of the element's entries, in their order. What is wanted of an entry
-/// takes `memory_bytes`; 0: nothing is.
+/// Calls take(point, corners) for each entry of the element, in their order. `memory_bytes` is what the
+/// wanted properties of an entry take in memory, 0 if none is wanted.
 template <class T, class F>
 void read_element(PlyValues<T>& values, const PlyElement& element, const Wanted& wanted,
                   std::size_t memory_bytes, F take) {
     values.enter(element);
     if (element.properties.empty()) return;
+    // Refuse a count that the file or the memory cannot hold.
     if (memory_bytes > 0)
         check_declared(values.file(), element.count, values.least_bytes(element), memory_bytes,
                        element.name == "face" ? "faces" : "vertices");
@@ -157,6 +159,7 @@ void read_element(PlyValues<T>& values, const PlyElement& element, const Wanted&
     for (std::uint64_t i = 0; i < element.count; ++i) {
         values.enter(i);
         Vec<T, 3> point;
+        // Read the wanted properties of the entry and skip the others.
         for (int k = 0; k < static_cast<int>(element.properties.size()); ++k) {
             const PlyProperty& p = element.properties[static_cast<std::size_t>(k)];
             const std::uint64_t n = p.count ? values.list_size(*p.count) : 1;
@@ -248,6 +251,7 @@ PointCloud<T, D> read_ply_points(ByteSource& file) {
             continue;
         }
         const Wanted wanted = coordinates_of(file, element);
+        // Read the points, and nothing after them.
         if (element.count > 0) need_axes(file, wanted, D);
         read_element(values, element, wanted, sizeof(Vec<T, D>), [&](const Vec<T, 3>& p, const auto&) {
             if constexpr (D == 3) {

@@ -16,7 +16,7 @@ enum class PlyType { i1, u1, i2, u2, i4, u4, i8, u8, f4, f8 };
 struct PlyProperty {
     std::string name;
     PlyType type;
-    std::optional<PlyType> count;  // of a list
+    std::optional<PlyType> count;  // the type of a list's length; none: not a list
 };
 
 struct PlyElement {

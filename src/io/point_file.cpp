@@ -1,7 +1,7 @@
-/// Which reader and which writer of points an extension stands for.
+/// Chooses the reader and the writer of points by the extension.
 #include <hedgerow/io/point_file.h>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/validate.h>
 
 #include "memory.h"

@@ -1,4 +1,4 @@
-/// The readers of single formats. What they return is not yet validated.
+/// The readers of meshes and points, one per format. Their results are not yet validated.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ template <class T>
 TriangleMesh<T> read_obj(ByteSource& file);
 template <class T>
 TriangleMesh<T> read_off(ByteSource& file);
-/// Buffers in files of their own are looked for beside `path`.
+/// Reads buffers that have files of their own from the folder of `path`.
 template <class T>
 TriangleMesh<T> read_gltf(ByteSource& file, const std::filesystem::path& path);
 
@@ -29,11 +29,11 @@ template <class T, int D>
 PointCloud<T, D> read_npy_points(ByteSource& file);
 template <class T, int D>
 PointCloud<T, D> read_csv_points(ByteSource& file);
-/// `.xyz`: lines that begin with the coordinates; what follows them is skipped.
+/// Reads `.xyz`: lines that begin with the coordinates. Further fields are skipped.
 template <class T, int D>
 PointCloud<T, D> read_xyz_points(ByteSource& file);
 
-/// Lower-case extension that says the format, without `.gz`.
+/// The lower-case extension that names the format, without `.gz`.
 std::string format_of(const std::filesystem::path& path);
 
 }  // namespace hedgerow::detail

@@ -1,4 +1,4 @@
-/// Meshes and points behind one door.
+/// Loads meshes, points and saved indexes by one function.
 #include <hedgerow/io/scene_file.h>
 
 #include <hedgerow/io/index_file.h>
@@ -17,6 +17,7 @@ namespace {
 
 enum class Holds { mesh, points, points2d, index };
 
+/// What a file holds: by its extension and, for PLY and NumPy files, by its header.
 Holds look_into(const std::filesystem::path& path) {
     const std::string format = detail::format_of(path);
     if (format == ".csv" || format == ".xyz") return Holds::points;

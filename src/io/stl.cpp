@@ -9,7 +9,8 @@ namespace hedgerow::detail {
 
 namespace {
 
-/// Binary files may begin with "solid" too; only text goes on with a facet, or is text for long.
+/// Whether a file is text. Binary files may begin with "solid" too. A file is text if "facet" or "endsolid"
+/// comes after that line, or if its first 512 bytes are all text.
 bool is_ascii(std::string_view start) {
     if (start.starts_with("\xEF\xBB\xBF")) start.remove_prefix(3);
     std::string_view rest = start;
@@ -41,10 +42,12 @@ public:
     }
 
 private:
-    /// So many triangles of zeros in a row are no mesh, but a hole in the file: a download that was cut off.
+    /// This many triangles of zeros in a row are not a mesh but a hole in the file: a download that was cut
+    /// off.
     static constexpr std::uint32_t most_zeros = 65536;
 
     void read_binary() {
+        // Read the header: 80 bytes that are skipped, then the number of triangles.
         std::uint32_t count = 0;
         if (!file_.skip(80) || !file_.value(count, std::endian::little))
             file_.fail("is too short for an STL file, which has a header of 84 bytes. Fetch it again");
@@ -55,6 +58,7 @@ private:
             for (float& x : numbers)
                 if (!file_.value(x, std::endian::little)) fail_truncated(i, count);
             if (!file_.skip(2)) fail_truncated(i, count);
+            // Refuse a long run of zeros.
             zeros = std::all_of(numbers, numbers + 12, [](float x) { return x == 0; }) ? zeros + 1 : 0;
             if (zeros == most_zeros)
                 file_.fail_here("the " + std::to_string(zeros) +
@@ -64,6 +68,7 @@ private:
                 add_corner(Vec<T, 3>(Vec3f(numbers[c], numbers[c + 1], numbers[c + 2])));
             close_face();
         }
+        // Refuse more triangles than the header declares.
         if (file_.skip(50))
             file_.fail("its header promises " + std::to_string(count) +
                        " triangles, but there are more. The header is wrong: write the file again");

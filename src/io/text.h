@@ -1,4 +1,4 @@
-/// Words and numbers of text files, whatever the locale.
+/// Words and numbers of text files, in any locale.
 #pragma once
 
 #include <cctype>
@@ -30,7 +30,7 @@ inline std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// Takes the first word from the front of `rest`; empty when there is none left.
+/// Removes the first word from the front of `rest` and returns it; empty if no word is left.
 inline std::string_view take_word(std::string_view& rest) {
     std::size_t begin = 0;
     while (begin < rest.size() && is_space(static_cast<unsigned char>(rest[begin]))) ++begin;
@@ -41,14 +41,15 @@ inline std::string_view take_word(std::string_view& rest) {
     return word;
 }
 
-/// A text from a file as it may stand in a message: short, and nothing but printable ASCII.
+/// A text from a file, quoted for a message: at most 40 letters, with '?' for all but printable ASCII.
 inline std::string shown(std::string_view text) {
     std::string q = "'";
     for (const char c : text.substr(0, 40)) q.push_back(c >= ' ' && c <= '~' ? c : '?');
     return q + (text.size() > 40 ? "...'" : "'");
 }
 
-/// Out of the range of T, where from_chars says nothing else.
+/// The T for a number that from_chars only reports to be out of range: infinity if it is large, else the tiny
+/// number or 0.
 template <std::floating_point T>
 T out_of_range(std::string_view text) {
     long double wide = 0;
@@ -63,7 +64,8 @@ T out_of_range(std::string_view text) {
     return text.starts_with('-') ? -magnitude : magnitude;
 }
 
-/// All of `text` as a number, correctly rounded; too large becomes infinite. "nan" and "inf" are numbers.
+/// All of `text` as a number, correctly rounded. A number that is too large becomes infinite; "nan" and "inf"
+/// are numbers.
 template <std::floating_point T>
 std::optional<T> parse_real(std::string_view text) {
     if (text.starts_with('+') && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
@@ -83,7 +85,7 @@ std::optional<I> parse_integer(std::string_view text) {
     return value;
 }
 
-/// A double of a file as a T: too large becomes infinite.
+/// A double of a file, rounded to T. A number that is too large becomes infinite.
 template <std::floating_point T>
 T rounded(double x) {
     if (x > static_cast<double>(std::numeric_limits<T>::max())) return std::numeric_limits<T>::infinity();
@@ -91,7 +93,7 @@ T rounded(double x) {
     return static_cast<T>(x);
 }
 
-/// The shortest decimals that read back as the same number.
+/// Appends the shortest decimals that read back as the same number.
 template <class T>
 void append_number(std::string& text, T value) {
     char digits[64];

@@ -23,6 +23,7 @@ int turn(const Point& a, const Point& b, const Point& c) {
     return Edge<2>(a, b).turn(c, 0, 1);
 }
 
+/// Whether p comes before q: in x, or in y if x is the same.
 bool before(const Point& p, const Point& q) {
     return p[0] < q[0] || (p[0] == q[0] && p[1] < q[1]);
 }
@@ -39,13 +40,13 @@ private:
     std::size_t first_ = 0;
 };
 
-/// Cuts the ears of a polygon that lies counterclockwise.
+/// Divides a counterclockwise polygon into triangles by cutting its ears.
 class EarClipper {
 public:
-    /// About what a corner takes at most: links, the tree, and candidates and queues that grow.
+    /// About the most bytes that a corner takes: links, the tree, and candidates and queues that grow.
     static constexpr std::uint64_t bytes_a_corner = 192;
 
-    /// Looks now and then whether the reading of `file` was cancelled.
+    /// Checks now and then whether the reading of `file` was cancelled.
     EarClipper(const ByteSource& file, const std::vector<Point>& points)
         : file_(file),
           points_(points),
@@ -63,8 +64,10 @@ public:
     /// Calls triangle(a, b, c) points.size() − 2 times.
     template <class F>
     void run(F triangle) {
+        // Put the corners that do not turn inwards into the tree, and sort all corners into queues.
         for (Corner i = 0; i < size_; ++i) tree_.set(i, turn_at(i) <= 0);
         for (Corner i = 0; i < size_; ++i) sort(i);
+        // Cut one corner after the other.
         std::size_t left = size_;
         Corner last = 0;
         for (; left > 3; --left) {
@@ -75,7 +78,7 @@ public:
             last = next_[*i];
             cut(*i);
         }
-        // Three corners are a triangle; what is left where nothing turns inwards becomes a fan.
+        // Three corners that are left are a triangle. More are left if none turns inwards: they become a fan.
         for (Corner i = next_[last]; next_[i] != last; i = next_[i]) triangle(last, i, next_[i]);
     }
 
@@ -83,15 +86,16 @@ private:
     /// A corner on the line between its neighbours is flat; one where the boundary turns back, or does not
     /// move, is a spike.
     enum class Kind : std::uint8_t { inward, blocked, flat, spike, outward, gone };
-    /// The sides of a corner's triangle: from the corner before it, from itself, from the corner after it.
+    /// The sides of a corner's triangle. They begin at the corner before it, at itself, and at the corner
+    /// after it.
     using Sides = std::array<Edge<2>, 3>;
-    /// A corner that turns inwards, with its neighbours then: what it leaves is an edge between them. The
-    /// shortest goes first, and whether it is an ear is only asked then: slivers that reach across the
-    /// polygon are held against much of its boundary.
+    /// A corner that turns inwards, with its neighbours at that time. Cutting it leaves an edge between them.
+    /// The candidate with the shortest such edge comes first, and is tested for an ear only then: slivers
+    /// that reach across the polygon would be tested against much of its boundary.
     struct Candidate {
         double length2;
         Corner corner, previous, next;
-        bool operator<(const Candidate& other) const {  // as a heap wants it: the first to go is the largest
+        bool operator<(const Candidate& other) const {  // for the heap: the first candidate is the largest
             return std::tie(other.length2, other.corner) < std::tie(length2, corner);
         }
     };
@@ -102,7 +106,7 @@ private:
 
     int turn_at(Corner i) const { return turn(points_[previous_[i]], points_[i], points_[next_[i]]); }
 
-    /// Puts a corner where it will be looked for.
+    /// Finds the kind of a corner and puts the corner into the queue of that kind.
     void sort(Corner i) {
         const int t = turn_at(i);
         const Corner p = previous_[i], n = next_[i];
@@ -111,6 +115,7 @@ private:
         if (kind_[i] == Kind::flat) flat_.push(i);
         if (kind_[i] == Kind::spike) spikes_.push(i);
     }
+    /// Removes a corner, and sorts its neighbours again.
     void cut(Corner i) {
         const Corner p = previous_[i], n = next_[i];
         next_[p] = n, previous_[n] = p;
@@ -120,13 +125,14 @@ private:
         for (const Corner k : {p, n}) sort(k);
     }
 
-    /// Of three corners on one line.
+    /// Whether a corner on one line with its neighbours is between them.
     bool is_between(Corner i) const {
         const Point &a = points_[previous_[i]], &b = points_[i], &c = points_[next_[i]];
         return (before(a, b) && before(b, c)) || (before(c, b) && before(b, a));
     }
 
-    /// Spikes have no area and go first, flat corners last: an ear beside one has an area.
+    /// The corner to cut next. Spikes have no area and come first, then ears. Flat corners come after ears,
+    /// because an ear beside a flat corner has an area. Blocked corners come last.
     std::optional<Corner> choose() {
         if (const auto spike = front(spikes_, Kind::spike)) return spike;
         while (!candidates_.empty()) {
@@ -134,7 +140,7 @@ private:
             candidates_.pop();
             if (kind_[c.corner] != Kind::inward || previous_[c.corner] != c.previous ||
                 next_[c.corner] != c.next)
-                continue;  // it was sorted again since
+                continue;  // outdated: the corner was sorted again
             if (!is_blocked(c.corner)) return c.corner;
             kind_[c.corner] = Kind::blocked;
             blocked_.push(c.corner);
@@ -142,14 +148,14 @@ private:
         if (const auto flat = front(flat_, Kind::flat)) return flat;
         return freed();
     }
-    /// The first corner of a list that is still of its kind.
+    /// Takes corners from a queue up to the first that is still of the queue's kind.
     std::optional<Corner> front(Queue& queue, Kind kind) const {
         while (!queue.empty())
             if (const Corner i = queue.pop(); kind_[i] == kind) return i;
         return std::nullopt;
     }
-    /// A blocked corner that has become an ear since, or else any. Only boundaries that touch or cross
-    /// themselves come here, so only so many corners are looked at again.
+    /// A blocked corner that has become an ear, or else any blocked corner. Only boundaries that touch or
+    /// cross themselves lead here, so at most 8n corners are tested again.
     std::optional<Corner> freed() {
         std::vector<Corner> still;
         std::optional<Corner> found;
@@ -166,6 +172,7 @@ private:
         return found ? found : front(blocked_, Kind::blocked);
     }
 
+    /// Whether the boundary enters the triangle that corner b makes with its neighbours: b is then no ear.
     bool is_blocked(Corner b) {
         const Corner a = previous_[b], c = next_[b];
         const Sides sides{{{points_[a], points_[b]}, {points_[b], points_[c]}, {points_[c], points_[a]}}};
@@ -179,8 +186,9 @@ private:
         };
         return tree_.any(enters, [&](Corner q) { return q != a && q != b && q != c && blocks(q, sides); });
     }
-    /// Whether the boundary comes into the triangle at q. On the triangle's first two sides, which are edges
-    /// of the polygon, it may pass by; the third side, which is to become an edge, must be free.
+    /// Whether the boundary enters the triangle at q. The triangle's first two sides are edges of the
+    /// polygon: the boundary may touch them and pass by. The third side is to become an edge, and must be
+    /// free.
     bool blocks(Corner q, const Sides& sides) const {
         std::array<int, 3> at{};
         for (std::size_t k = 0; k < 3; ++k)
@@ -204,8 +212,8 @@ private:
     Queue spikes_, flat_, blocked_;
 };
 
-/// Whether every corner turns to the left, and the boundary goes around once: it goes up and down in x (in y
-/// where x is the same) once each.
+/// Whether every corner turns to the left and the boundary goes around once. It goes around once if x (y
+/// where x is the same) rises along one run of edges and falls along one.
 bool is_convex(const std::vector<Point>& points) {
     const std::size_t n = points.size();
     const auto rises = [&](std::size_t i) { return before(points[i % n], points[(i + 1) % n]); };
@@ -225,8 +233,10 @@ Vec3d newell_normal(const std::vector<Vec3d>& corners) {
     return normal;
 }
 
-/// The polygon without the axis in which its normal is longest, counterclockwise; nothing where it has none.
+/// The polygon seen along the axis in which its normal is longest, counterclockwise. Nothing if it has no
+/// normal or a coordinate is not finite or too large. Scales `corners`.
 std::optional<std::vector<Point>> projected(std::vector<Vec3d>& corners) {
+    // Scale the corners, so that products neither over- nor underflow.
     double largest = 0;
     for (const Vec3d& p : corners)
         for (int k = 0; k < 3; ++k) {
@@ -235,6 +245,7 @@ std::optional<std::vector<Point>> projected(std::vector<Vec3d>& corners) {
         }
     const double scale = scale_to_one(largest);
     for (Vec3d& p : corners) p = p * scale;
+    // Drop the axis in which the normal is longest.
     const Vec3d normal = newell_normal(corners);
     int axis = 0;
     for (int k = 1; k < 3; ++k)
@@ -254,11 +265,12 @@ void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
                   std::span<const Vec<T, 3>> vertices) {
     const std::size_t size = fan.size() + 2;
     const auto expect_room = [&](std::uint64_t bytes_a_corner) {
-        constexpr std::size_t unasked = 1u << 16;  // corners, for which a few MB are taken without asking
+        constexpr std::size_t unasked = 1u << 16;  // corners; the few MB for fewer are not checked
         if (size >= unasked)
             expect_memory(file.name(), "the " + std::to_string(size) + " corners of one of its faces",
                           size * bytes_a_corner);
     };
+    // Collect the corners of the polygon from the fan.
     expect_room(sizeof(std::uint32_t) + sizeof(Vec3d) + sizeof(Point));
     std::vector<std::uint32_t> names{fan[0][0], fan[0][1]};
     names.reserve(size);
@@ -269,6 +281,7 @@ void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
         if (v >= vertices.size()) return;
         corners.push_back(Vec3d(vertices[v]));
     }
+    // Keep the fan of a polygon that is convex or has no normal, and replace any other.
     const auto points = projected(corners);
     if (!points || is_convex(*points)) return;
     expect_room(EarClipper::bytes_a_corner);

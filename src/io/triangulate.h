@@ -1,4 +1,4 @@
-/// Polygons into triangles.
+/// Divides polygons into triangles.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,23 @@
 
 namespace hedgerow::detail {
 
-/// Replaces a fan of n − 2 triangles from a polygon's first corner by as many that fill the polygon.
+/// Replaces a fan of n − 2 triangles from a polygon's first corner by n − 2 triangles that fill the polygon.
 ///
-/// The polygon is looked at along the axis in which its normal (Newell's) is longest, so that signs are those
-/// of the coordinates as they are. A convex polygon stays the fan that it is. Any other loses its ears, one
-/// after the other (Meisters 1975): corners whose triangle no other part of the boundary enters. The
-/// triangles of a polygon whose boundary does not cross itself then cover it once, turn as it does, and are
-/// not flat unless that cannot be. It may touch itself, as where a hole is joined to the outside by a bridge.
+/// The polygon is projected along the axis in which its normal (Newell's) is longest, so that signs are
+/// computed from the coordinates as they are. A convex polygon stays a fan. Any other polygon loses its ears,
+/// one after the other (Meisters 1975): corners whose triangle no other part of the boundary enters. If the
+/// boundary does not cross itself, the triangles cover the polygon once, turn as the polygon does, and are
+/// flat only where that cannot be avoided. The boundary may touch itself, for example where a bridge joins a
+/// hole to the outside.
 ///
-/// A polygon without a normal (all corners on one line, a figure of eight whose halves are equal) stays a
-/// fan. One that crosses itself has no inside to speak of: where no ear is left a corner that turns inwards
-/// is cut as it is, and what has no such corner becomes a fan.
+/// A polygon without a normal (all corners on one line, or a figure of eight whose halves are equal) stays a
+/// fan. A polygon that crosses itself has no clear inside. If it has no ear left, a corner that turns inwards
+/// is cut anyway; if it has no such corner left, the rest becomes a fan.
 ///
-/// Corners that are no vertex and coordinates that are not finite are left to who validates the mesh. O(n)
-/// for a convex polygon. Else each of the at most 11n ears that are looked at is held against the corners
-/// that do not turn inwards, through a tree of boxes over the boundary: O(n log n) for outlines as they are
-/// drawn, O(n²) at worst.
+/// Corners that name no vertex and coordinates that are not finite are left alone: the validation of the mesh
+/// refuses them. O(n) for a convex polygon. Otherwise at most 11n ears are tested against the corners that do
+/// not turn inwards, through a tree of boxes over the boundary: O(n log n) for ordinary outlines, O(n²) at
+/// worst.
 ///
 /// Throws InputError, naming `file`, before a large polygon takes more memory than there is, and Cancelled
 /// soon after the reading of the file was cancelled.

@@ -1,11 +1,11 @@
-/// The checks of meshes and points, and the leaving out of bad ones.
+/// Checks meshes and points, and leaves out bad ones.
 #include <hedgerow/io/validate.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 namespace hedgerow {
 
@@ -14,7 +14,7 @@ namespace {
 template <class T, int D>
 bool is_good(const Vec<T, D>& p) {
     for (int i = 0; i < D; ++i)
-        if (!(std::abs(p[i]) <= largest_coordinate<T>)) return false;  // NaN too
+        if (!(std::abs(p[i]) <= largest_coordinate<T>)) return false;  // false for NaN too
     return true;
 }
 
@@ -27,7 +27,7 @@ std::string bad_coordinates(std::string_view name, const std::string& what, cons
            ". Repair the file, or drop what is bad (--drop-bad, LoadOptions::drop_bad)";
 }
 
-/// What the triangle is in the file.
+/// The face that a triangle belongs to in the file.
 template <class T>
 std::string face_name(const TriangleMesh<T>& mesh, std::size_t triangle) {
     return "face " + std::to_string(mesh.faces.empty() ? triangle : mesh.faces[triangle]);
@@ -37,11 +37,13 @@ template <class T>
 void validate_faces(const TriangleMesh<T>& mesh, std::string_view name) {
     const std::string start = std::string(name) + ": ";
     const std::size_t count = mesh.vertices.size();
+    // There must be triangles.
     if (mesh.triangles.empty() && count == 0)
         throw InputError(start + "holds neither faces nor points. Is it the right file?");
     if (mesh.triangles.empty())
         throw InputError(start + "holds only points (" + std::to_string(count) +
                          " vertices, and no face with three corners). Read them as points");
+    // Ids: none, or one per triangle, never descending.
     if (!mesh.faces.empty() && mesh.faces.size() != mesh.triangles.size())
         throw InputError(start + "has " + std::to_string(mesh.faces.size()) + " face ids for " +
                          std::to_string(mesh.triangles.size()) + " triangles. Give one a triangle, or none");
@@ -49,6 +51,7 @@ void validate_faces(const TriangleMesh<T>& mesh, std::string_view name) {
     if (step != mesh.faces.end())
         throw InputError(start + "face id " + std::to_string(*step) + " stands before " +
                          std::to_string(*(step + 1)) + ". Sort the triangles by face id");
+    // Every index must name a vertex.
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         for (const std::uint32_t v : mesh.triangles[i])
             if (v >= count)
@@ -57,17 +60,19 @@ void validate_faces(const TriangleMesh<T>& mesh, std::string_view name) {
                                  " vertices (counted from 0). Repair the file");
 }
 
-/// Leaves out bad vertices and all triangles of the faces that name one.
+/// A copy of a mesh without bad vertices, and without all triangles of the faces that name one.
 template <class T>
 TriangleMesh<T> without_bad(const TriangleMesh<T>& mesh) {
     constexpr std::uint32_t gone = 0xFFFFFFFFu;
     TriangleMesh<T> kept;
+    // Keep the good vertices, and renumber them.
     std::vector<std::uint32_t> renumbered(mesh.vertices.size(), gone);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         if (!is_good(mesh.vertices[i])) continue;
         renumbered[i] = static_cast<std::uint32_t>(kept.vertices.size());
         kept.vertices.push_back(mesh.vertices[i]);
     }
+    // Keep the faces all of whose triangles name good vertices.
     const auto face = [&](std::size_t i) {
         return mesh.faces.empty() ? static_cast<std::uint32_t>(i) : mesh.faces[i];
     };
@@ -81,6 +86,7 @@ TriangleMesh<T> without_bad(const TriangleMesh<T>& mesh) {
             kept.faces.push_back(face(i));
         }
     }
+    // If no face was left out, the ids are those from before: perhaps none.
     if (kept.size() == mesh.size()) kept.faces = mesh.faces;
     return kept;
 }

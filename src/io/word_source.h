@@ -1,4 +1,4 @@
-/// The words of a text file, with the number of the line that each stands in.
+/// The words of a text file, with the number of each word's line.
 #pragma once
 
 #include "byte_source.h"
@@ -20,7 +20,7 @@ public:
         }
         return word_;
     }
-    /// Skips what is left of this line.
+    /// Skips the rest of this line.
     void skip_line() {
         for (int c = file_.peek(); c != -1 && c != '\n'; c = file_.peek()) file_.next();
     }

@@ -8,8 +8,8 @@
 
 namespace hedgerow::detail {
 
-/// 8n points of the unit circle, counterclockwise from (1, 0), symmetric to all eight of its axes: one octant
-/// by the rational parametrisation (steps differ by up to 17 %), the others mirrored.
+/// 8n points of the unit circle, counterclockwise from (1, 0), symmetric in x, in y and in both diagonals.
+/// One octant uses the rational parametrisation (steps differ by up to 17 %), and the others mirror it.
 std::vector<Vec2d> circle(std::uint64_t n);
 
 }  // namespace hedgerow::detail

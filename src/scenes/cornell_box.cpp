@@ -14,8 +14,8 @@ namespace {
 using Quad = std::array<Vec3d, 4>;
 using Pieces = std::array<std::uint32_t, 3>;
 
-/// The room's corners as measured, floor and ceiling each counterclockwise seen from below: it is not quite a
-/// box.
+/// The room's corners as measured. The floor and the ceiling are each counterclockwise seen from below. The
+/// room is not quite a box.
 constexpr double room_height = 548.8, room_depth = 559.2, light_gap = 0.1;
 constexpr Quad floor_corners = {Vec3d(552.8, 0, 0), Vec3d(549.6, 0, room_depth), Vec3d(0, 0, room_depth),
                                 Vec3d(0, 0, 0)};
@@ -57,7 +57,7 @@ TriangleMesh<double> block(const Quad& top, const Pieces& n, detail::WeldedMesh 
 }
 
 TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
-    // Triangles across (y, z), (z, x) and (x, y), two a piece.
+    // Triangles of all faces in (y, z), in (z, x) and in (x, y): two per piece.
     const Pieces pieces = detail::nearest_box_split(size, {12, 10, 10});
     TriangleMesh<double> mesh;
     const auto welded = [&] { return detail::WeldedMesh(progress, size, mesh.size()); };

@@ -24,7 +24,7 @@ TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
             };
             const auto pieces_u = pieces[static_cast<std::size_t>(u)],
                        pieces_v = pieces[static_cast<std::size_t>(v)];
-            // Counterclockwise seen from outside: on the low side the second axis is run backwards.
+            // Counterclockwise seen from outside: on the low side the second axis runs backwards.
             to.add_divided_quad({corner(-1, -side), corner(1, -side), corner(1, side), corner(-1, side)},
                                 pieces_u, pieces_v);
         }

@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-#include <hedgerow/error.h>
-#include <hedgerow/spelling.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/base/spelling.h>
 
 namespace hedgerow {
 namespace {
@@ -19,7 +19,7 @@ using P = Progress;
 template <class T>
 struct In {};  // names a precision
 
-/// A line of the list, from a function of (In<T>, size, seed, progress).
+/// An entry of the list, from a function of (In<T>, size, seed, progress).
 template <class F>
 constexpr SceneInfo scene(std::string_view name, std::uint64_t size, std::string_view yields, int dimension,
                           std::string_view description, double bytes, F) {
@@ -90,7 +90,7 @@ void check_size(std::string_view name, std::uint64_t size) {
                          " is too large; ask for at most " + std::to_string(largest_scene_size));
 }
 
-/// What a letter behind a number stands for; 0 if nothing.
+/// The factor for the letter after a number; 0 if the letter is unknown.
 std::uint64_t multiplier(std::string_view suffix) {
     if (suffix.empty()) return 1;
     if (suffix == "k" || suffix == "K") return 1'000;
@@ -107,7 +107,7 @@ std::uint64_t parse_size(std::string_view name, std::string_view text) {
     if (error == std::errc::invalid_argument || times == 0)
         throw UsageError("gen:" + std::string(name) + ": '" + std::string(text) +
                          "' is not a size; write a whole number such as 5000, 100k or 2M");
-    // Beyond 64 bits, or soon: any number above the largest allowed one will do for the message.
+    // Refuse numbers beyond 64 bits, and products beyond the largest size, without overflow.
     if (error == std::errc::result_out_of_range || value > largest_scene_size / times)
         throw UsageError("gen:" + std::string(name) + ": size " + std::string(text) +
                          " is too large; ask for at most " + std::to_string(largest_scene_size));

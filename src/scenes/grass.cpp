@@ -15,7 +15,7 @@ constexpr std::uint64_t triangles_a_blade = 3;
 constexpr double shortest = 0.02, longest = 0.05;
 constexpr double widest = 1.0 / 256;
 
-/// An even point of a triangle: of the parallelogram, folded over its diagonal.
+/// A uniform random point of a triangle: a point of the parallelogram, folded over its diagonal.
 Vec3d point_of(const TriangleMesh<double>& mesh, const TriangleIndices& t, Random& random) {
     double u = random.uniform(), v = random.uniform();
     if (u + v > 1) u = 1 - u, v = 1 - v;
@@ -23,7 +23,7 @@ Vec3d point_of(const TriangleMesh<double>& mesh, const TriangleIndices& t, Rando
     return a + (mesh.vertices[t[1]] - a) * u + (mesh.vertices[t[2]] - a) * v;
 }
 
-/// A strip of two pieces that narrows to its tip and bends over, further up the more.
+/// Adds a blade: a strip of two pieces that narrows to its tip and bends over, more so further up.
 void grow_blade(TriangleMesh<double>& mesh, const Vec3d& root, double width, Random& random) {
     const double height = random.uniform(shortest, longest);
     const Vec2d toward = random.direction<2>();
@@ -43,7 +43,7 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progres
     TriangleMesh<double> mesh = terrain<double>(size / 8, seed, detail::part_of(progress));
     const std::size_t ground = mesh.triangles.size();
     const std::uint64_t blades = size > ground ? (size - ground + 1) / triangles_a_blade : 0;
-    // As many blades as there are, a third of the ground is under their feet at most.
+    // A blade is at most a third as wide as the mean distance between blades.
     const double spacing = 1 / std::sqrt(static_cast<double>(std::max<std::uint64_t>(blades, 1)));
     const double width = std::min(widest, spacing / 3);
     mesh.vertices.reserve(mesh.vertices.size() + 5 * blades);

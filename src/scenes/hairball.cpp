@@ -12,12 +12,13 @@ namespace hedgerow {
 namespace {
 
 constexpr std::uint32_t steps = 16;       // of a strand; two triangles each
-constexpr double step_angle = 1.0 / 8;    // about, in radians: a strand goes a third of the way round
+constexpr double step_angle = 1.0 / 8;    // in radians, about: a strand spans a third of a circle
 constexpr double inner = 0.5, outer = 1;  // radii between which strands run
 constexpr double widest = 1.0 / 32, curl = 0.5;
 
-/// A strand wanders over a sphere and bends evenly to one side, while its distance from the middle goes from
-/// one radius to another. `at` and `along` are at right angles and of length 1.
+/// Adds a strand. It wanders over a sphere and bends evenly to one side, while its radius goes evenly from
+/// `from` to `to`. `at` is the direction from the middle, and `along` that of the strand: unit vectors at
+/// right angles.
 void grow_strand(TriangleMesh<double>& mesh, double width, Random& random) {
     Vec3d at = random.direction<3>();
     Vec3d along = normalized(cross(at, random.direction<3>()));
@@ -26,12 +27,14 @@ void grow_strand(TriangleMesh<double>& mesh, double width, Random& random) {
     for (std::uint32_t i = 0; i <= steps; ++i) {
         const Vec3d aside = cross(at, along);
         const double radius = from + product(to - from, static_cast<double>(i) / steps);
+        // Add two vertices across the strand, and two triangles up to the next two.
         const auto left = static_cast<std::uint32_t>(mesh.vertices.size());
         mesh.vertices.push_back(at * radius + aside * (width / 2));
         mesh.vertices.push_back(at * radius - aside * (width / 2));
         if (i == steps) break;
         mesh.triangles.push_back({left, left + 1, left + 3});
         mesh.triangles.push_back({left, left + 3, left + 2});
+        // Step along the sphere, and bend.
         const Vec3d next = normalized(at + along * step_angle);
         const Vec3d onward = along + aside * bend;
         along = normalized(onward - next * dot(onward, next));

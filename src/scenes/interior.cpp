@@ -12,7 +12,8 @@ namespace {
 
 using namespace detail;
 
-/// Adds things in order, but for those that would make it larger than `size`. The first stands always.
+/// Adds things in order, but skips each that would make the mesh larger than `size`. The first is always
+/// added.
 TriangleMesh<double> furnished(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t size,
                                std::uint64_t seed, const Progress& progress) {
     TriangleMesh<double> mesh;
@@ -26,7 +27,7 @@ TriangleMesh<double> furnished(const std::vector<Thing>& things, std::uint64_t l
     return mesh;
 }
 
-/// Whether all things together have so many triangles.
+/// Whether all things together have at least `size` triangles.
 bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t size, std::uint64_t seed,
            const Progress& progress) {
     std::uint64_t count = 0;
@@ -41,7 +42,7 @@ bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t 
 
 TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     const std::vector<Thing> things = flat();
-    // The least level that fills the size: counts grow with levels.
+    // Find the least level that fills the size. Counts grow with the level.
     std::uint64_t below = 0, enough = 0;
     for (std::uint64_t step = 1; !fills(things, enough, size, seed, progress); step *= 2)
         below = enough + 1, enough += step;

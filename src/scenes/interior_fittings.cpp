@@ -6,7 +6,7 @@
 namespace hedgerow::detail {
 namespace {
 
-/// A moulding whose profile in (y, z) goes along x.
+/// A moulding whose profile in (y, z) runs along x.
 void moulding(Model& m, const Place& p, const std::vector<Vec2d>& profile, double length) {
     m.loft(p, {}, Axis::x, {profile, false}, {{1, 0}, {1, length}});
 }
@@ -24,6 +24,7 @@ void casing(Model& m, const Place& p, const Vec2d& size) {
                                                 {width, 0.02},
                                                 {width, 0.02},
                                                 {width, 0}});
+    // Place the profile at the left, the right and the upper side of the opening.
     Outline left{{}, false}, right{{}, false}, above{{}, false};
     for (const Vec2d& q : profile) {
         left.points.push_back({-q[0], q[1]});
@@ -38,15 +39,18 @@ void casing(Model& m, const Place& p, const Vec2d& size) {
 void door(Model& m, const Place& p, const Vec2d& size, const Vec2d& ajar) {
     const Place leaf = p({0.005, -0.03, 0.004}, ajar);
     const double width = size[0] - 0.01, height = size[1] - 0.006, thick = 0.04;
+    // The leaf, and two panels on each of its faces.
     m.box(leaf, {0, -thick, 0}, {width, 0, height});
     const double low[] = {0.15, 1.05}, high[] = {0.95, height - 0.12};
     for (int row = 0; row < 2; ++row)
         for (const double side : {0.0, -thick}) {
-            // A frame of a raised panel: across y the outline is in (z, x); on the back it is turned over.
+            // The frame of a raised panel. The outline across y is in (z, x), and on the back it is turned
+            // over.
             const double a = (high[row] - low[row]) / 2, b = width / 2 - 0.1, out = side == 0 ? 1 : -1;
             m.loft(leaf, {width / 2, side, (low[row] + high[row]) / 2}, Axis::y, rectangle(a, b * out),
                    {{1, 0}, {0.98, 0.009 * out}, {0.96, 0.009 * out}, {0.94, 0.003 * out}, {0, 0.003 * out}});
         }
+    // A knob on each face.
     for (const double out : {1.0, -1.0}) {
         const Place side = leaf({width - 0.06, out > 0 ? 0 : -thick, 1.02}, out > 0 ? east : west);
         m.loft(side, {}, Axis::y, m.disc(0.025),
@@ -76,7 +80,7 @@ void window(Model& m, const Place& p, const Vec2d& size) {
 }
 
 void curtain(Model& m, const Place& p, double width, double height) {
-    // Folds as deep as a hand; they grow wider downward.
+    // Folds as deep as a hand, wider towards the floor.
     const int folds = 9;
     const double fold = width / folds;
     std::vector<Vec2d> wave = {{0, 0}};

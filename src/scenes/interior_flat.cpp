@@ -14,9 +14,9 @@ namespace {
 // Rooms are 2.8 m high; inner walls are 12 cm thick and outer walls 36 cm.
 constexpr double length = 12.4, width = 8.6, height = 2.8, inner = 0.12, outer = 0.36, slab = 0.3;
 constexpr double west_wall = 4.9, east_wall = 8.3, cross_wall = 4.7;  // the middles of inner walls
-constexpr double boards = 0.012;                                      // under z = 0
+constexpr double boards = 0.012;                                      // thickness, below z = 0
 
-/// A door or a window, along the middle of its wall in the plan.
+/// A door or a window: its ends in the plan, on the middle of its wall, and its heights.
 struct Hole {
     Vec2d from, to;
     double bottom, top;
@@ -45,7 +45,8 @@ constexpr Hole holes[] = {
     {{9.6, north_wall}, {11.2, north_wall}, 0.85, 2.35, false},
 };
 
-/// The hole in a wall that begins at the place and lies no further than `reach` from its line.
+/// A hole as an opening in the wall that begins at `wall`. Nothing if the hole is further than `reach` from
+/// the wall's line, or beyond an end of the wall.
 std::optional<Opening> seen_from(const Place& wall, double wall_length, double reach, const Hole& hole) {
     double x[2], across = 0;
     for (int i = 0; i < 2; ++i) {
@@ -85,7 +86,7 @@ class Furnishing {
 public:
     std::vector<Thing> things;
 
-    /// Adds f(model), or f(model, random).
+    /// Adds a thing that calls f(model) or f(model, random).
     template <class F>
     void add(F f) {
         if constexpr (std::is_invocable_v<F, Model&, Random>)
@@ -137,6 +138,7 @@ void Furnishing::shell() {
 
 void Furnishing::openings() {
     for (const Hole& h : holes) {
+        // A leaf is hung once, in the first room that the door leads to.
         bool hung = false;
         for (const Room& r : rooms)
             for (const Side& s : r.sides()) {
@@ -172,6 +174,7 @@ void Furnishing::dining_table() {
     add([=](Model& m) { chair(m, t({-1.4, 0, 0}, south)); });
 }
 void Furnishing::furniture() {
+    // Sofas, the dining table with its chairs, the bed, and the tables of the living room and the study.
     add([](Model& m) { sofa(m, {{0.35, 2.3, 0}, south}, 2.2); });
     add([](Model& m) { sofa(m, {{1.75, 4.5, 0}, west}, 1.6); });
     dining_table();
@@ -179,6 +182,7 @@ void Furnishing::furniture() {
     add([](Model& m) { table(m, {{1.95, 2.35, 0.008}, north}, {1.1, 0.6, 0.4}); });
     add([](Model& m) { table(m, {{2.2, 8.05, 0}, east}, {1.7, 0.75, 0.74}); });
     add([](Model& m) { chair(m, {{2.3, 7.35, 0}, {0.96, 0.28}}); });
+    // Cupboards of the kitchen, the bedroom, the dining room and the hall, and the kitchen's worktops.
     add([](Model& m) { cupboard(m, {{10.4, kitchen.high[1], 0}, west}, {3.6, 0.6, 0.9}, 6); });
     add([](Model& m) { cupboard(m, {{length, 2.7, 0}, north}, {2.4, 0.6, 0.9}, 4); });
     add([](Model& m) { cupboard(m, {{10.4, kitchen.high[1], 1.45}, west}, {3.6, 0.35, 0.75}, 6); });
@@ -187,9 +191,11 @@ void Furnishing::furniture() {
     add([](Model& m) { cupboard(m, {{4.96, 7.6, 0}, south}, {1.5, 0.5, 2.2}, 3); });
     add([](Model& m) { m.block({{10.4, 4.33, 0.9}}, {}, {3.62, 0.62, 0.03}); });  // worktops
     add([](Model& m) { m.block({{12.09, 2.7, 0.9}}, {}, {0.62, 2.42, 0.03}); });
+    // The kitchen's table and its chairs.
     add([](Model& m) { table(m, {{9.9, 1.5, 0}, east}, {0.9, 0.8, 0.74}); });
     add([](Model& m) { chair(m, {{9.9, 0.95, 0}, {0.96, -0.28}}); });
     add([](Model& m) { chair(m, {{10.55, 1.55, 0}, {0.28, 0.96}}); });
+    // Bookcases, bedside cupboards and lamps.
     shelves({{4.84, 3.85, 0}, north}, 1.3, 6);
     shelves({{2.4, 0, 0}, east}, 0.8, 6);
     for (const double x : {0.7, 1.9, 3.0}) shelves({{x, study.low[1], 0}, east}, 1.1, 7);

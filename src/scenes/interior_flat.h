@@ -1,4 +1,4 @@
-/// The plan of the flat and what stands where in it.
+/// The plan of the flat, and the place of each thing in it.
 #pragma once
 
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace hedgerow::detail {
 
-/// Adds a thing to a model; the random numbers are its own.
+/// Adds a thing to a model, with random numbers of its own.
 using Thing = std::function<void(Model&, Random)>;
 
 /// All things, in the order of their importance: the shell, what closes its openings, furniture, mouldings,

@@ -4,7 +4,7 @@
 namespace hedgerow::detail {
 namespace {
 
-/// Soft: rounded above, below and at its corners.
+/// A cushion, rounded above, below and at its corners.
 void cushion(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
     const double h = size[2];
     m.loft(p, foot, Axis::z,
@@ -19,7 +19,7 @@ void cushion(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
                     {0, h}}));
 }
 
-/// A board with edges that are broken by 2 mm.
+/// A board whose edges are bevelled by 2 mm.
 void board(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
     const double a = size[0] / 2, b = size[1] / 2, edge = 0.002, inner = 1 - edge / (a < b ? b : a);
     m.loft(p, foot, Axis::z, rectangle(a, b),
@@ -115,12 +115,14 @@ void bookcase(Model& m, const Place& p, double width, int shelves) {
 
 void bed(Model& m, const Place& p) {
     const double width = 1.6, length = 2.05;
+    // Sides, legs and pillows.
     for (const double side : {-1.0, 1.0}) {
         board(m, p, {side * (width / 2 + 0.02), length / 2, 0.18}, {0.03, length, 0.2});
         turned_leg(m, p, {side * (width / 2 + 0.02), 0.03, 0}, 0.04, 1.1);
         turned_leg(m, p, {side * (width / 2 + 0.02), length, 0}, 0.04, 0.6);
         cushion(m, p, {side * 0.38, 0.3, 0.52}, {0.7, 0.45, 0.14});
     }
+    // Slats, the headboard and the mattress.
     for (int i = 0; i < 18; ++i) m.block(p, {0, 0.1 + 0.11 * i, 0.28}, {width, 0.07, 0.012});
     board(m, p, {0, 0.03, 0.4}, {width, 0.03, 0.6});
     cushion(m, p, {0, length / 2 + 0.02, 0.295}, {width - 0.02, length - 0.06, 0.22});
@@ -128,7 +130,7 @@ void bed(Model& m, const Place& p) {
     std::vector<Vec2d> folds = {{-0.84, 0}};
     for (int i = 0; i < 40; ++i) folds.push_back({-0.82 + 0.042 * i, i % 2 ? 0.012 : 0.03});
     folds.push_back({0.84, 0});
-    std::vector<Vec2d> across;  // of the y axis it is (z, x)
+    std::vector<Vec2d> across;  // the outline across y is in (z, x)
     for (const Vec2d& f : m.curve(folds)) across.push_back({f[1], f[0]});
     m.loft(p, {0, 0.95, 0.505}, Axis::y, {across, false}, {{1, 0}, {1, 0.3}, {1, 0.7}, {1, 1.05}});
 }
@@ -136,11 +138,12 @@ void bed(Model& m, const Place& p) {
 void cupboard(Model& m, const Place& p, const Vec3d& size, int doors) {
     const double plinth = 0.08, leaf = 0.02, gap = 0.002;
     const double width = size[0] / doors, height = size[2] - plinth;
+    // The body and the plinth.
     m.box(p, {-size[0] / 2, 0, plinth}, {size[0] / 2, size[1] - leaf - gap, size[2]});
     m.box(p, {-size[0] / 2 + 0.02, 0, 0}, {size[0] / 2 - 0.02, size[1] - 0.07, plinth});
     for (int i = 0; i < doors; ++i) {
         const double x = (i - (doors - 1) / 2.0) * width;
-        // Across y the outline is in (z, x).
+        // A bevelled panel. The outline across y is in (z, x).
         const double a = (height - gap) / 2, b = (width - gap) / 2;
         const Vec3d middle(x, size[1] - leaf, plinth + height / 2);
         m.loft(p, middle, Axis::y, rectangle(a, b),
@@ -153,6 +156,7 @@ void cupboard(Model& m, const Place& p, const Vec3d& size, int doors) {
                 {0.72, leaf - 0.006},
                 {0.66, leaf - 0.001},
                 {0, leaf - 0.001}});
+        // A handle, left and right by turns.
         const double side = i % 2 ? -1 : 1;
         m.loft(p, middle + Vec3d(side * (b - 0.03), leaf, 0), Axis::y, m.disc(0.012),
                m.curve({{0.5, 0}, {0.4, 0.01}, {1, 0.015}, {1.1, 0.025}, {0, 0.03}}));

@@ -7,7 +7,7 @@
 namespace hedgerow::detail {
 namespace {
 
-/// A point across an axis and along it, as x, y, z.
+/// The point at `across` in the plane across an axis and at `along` on the axis, as x, y, z.
 Vec3d on_axis(Axis axis, const Vec2d& across, double along) {
     if (axis == Axis::x) return {along, across[0], across[1]};
     if (axis == Axis::y) return {across[1], along, across[0]};
@@ -16,7 +16,8 @@ Vec3d on_axis(Axis axis, const Vec2d& across, double along) {
 
 }  // namespace
 
-/// Circles and curves gain pieces in turn, so that a level has few triangles more than the one before.
+/// Levels divide circles and curves more finely by turns, so that a level has few triangles more than the one
+/// before.
 Model::Model(std::uint64_t level) : pieces_(1 + (level + 1) / 2), circle_(circle(1 + level / 2)) {}
 
 Outline Model::disc(double radius) const {
@@ -84,8 +85,10 @@ void Model::loft(const Place& place, const Vec3d& base, Axis axis, const Outline
         const auto [scale, along] = std::pair(section[row][0], section[row][1]);
         const bool point = scale == 0, after_point = row > 0 && section[row - 1][0] == 0;
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        // Add the row's vertices: a single one if the outline is a point.
         for (std::uint32_t i = 0; i < (point ? 1 : n); ++i)
             vertex(place, base + on_axis(axis, outline.points[i] * scale, along));
+        // Join the row to the one before.
         for (std::uint32_t i = 0; row > 0 && i < sides; ++i) {
             const std::uint32_t next = i + 1 < n ? i + 1 : 0;
             if (after_point)
@@ -106,7 +109,7 @@ void Model::leaf(const Place& place, const std::vector<Vec2d>& curve, double wid
     std::uint32_t left = 0, right = 0;
     const auto n = static_cast<double>(curve.size() - 1);
     for (std::size_t i = 0; i < curve.size(); ++i) {
-        // Widest a third of the way.
+        // Widest a quarter of the way.
         const double t = static_cast<double>(i) / n;
         const double half = width / 2 * (1 - t) * (1 + 2 * t);
         const Vec3d at(curve[i][0], 0, curve[i][1]);
@@ -123,6 +126,7 @@ void Model::leaf(const Place& place, const std::vector<Vec2d>& curve, double wid
 
 void Model::wall(const Place& place, double length, double height, double thickness,
                  const std::vector<Opening>& openings, bool with_ends) {
+    // Divide the wall by a lattice through the sides of all openings.
     std::vector<double> x = {0, length}, z = {0, height};
     for (const Opening& o : openings)
         x.insert(x.end(), {o.low[0], o.high[0]}), z.insert(z.end(), {o.low[1], o.high[1]});
@@ -136,6 +140,7 @@ void Model::wall(const Place& place, double length, double height, double thickn
             return o.low[0] <= x[i] && x[i] < o.high[0] && o.low[1] <= z[k] && z[k] < o.high[1];
         });
     };
+    // Make each vertex when it is first used.
     constexpr std::uint32_t none = ~std::uint32_t{0};
     std::vector<std::uint32_t> known(2 * x.size() * z.size(), none);
     // A corner of the lattice on the front (y < 0) or the back.
@@ -144,6 +149,7 @@ void Model::wall(const Place& place, double length, double height, double thickn
         if (id == none) id = vertex(place, {x[i], back ? thickness / 2 : -thickness / 2, z[k]});
         return id;
     };
+    // Add the front and the back of each solid cell, and its sides that border on no solid cell.
     for (std::size_t i = 0; i < columns; ++i)
         for (std::size_t k = 0; k < rows; ++k) {
             if (!solid(i, k)) continue;

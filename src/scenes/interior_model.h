@@ -9,7 +9,7 @@
 
 namespace hedgerow::detail {
 
-/// Where a thing stands: its origin, and where its x axis points in the plan (length 1). z stays up.
+/// The place of a thing: its origin, and the direction of its x axis in the plan (length 1). z stays up.
 struct Place {
     Vec3d at;
     Vec2d along{1, 0};
@@ -18,7 +18,7 @@ struct Place {
         return at + Vec3d(product(along[0], p[0]) - product(along[1], p[1]),
                           product(along[1], p[0]) + product(along[0], p[1]), p[2]);
     }
-    /// A place inside of this one: moved, then turned.
+    /// A place relative to this one: moved by p, then turned.
     Place operator()(const Vec3d& p, const Vec2d& turn) const {
         const Vec3d a = Place{{}, along}({turn[0], turn[1], 0});
         return {(*this)(p), {a[0], a[1]}};
@@ -35,11 +35,11 @@ struct Outline {
     std::vector<Vec2d> points;
     bool closed = true;
 };
-/// A rectangle around 0, by half of its sizes.
+/// A rectangle around 0 with half extents a and b.
 inline Outline rectangle(double a, double b) {
     return {{{a, b}, {-a, b}, {-a, -b}, {a, -b}}};
 }
-/// How large the outline is, and where along the axis it is that large. No size: the outline is a point.
+/// Pairs of a scale of the outline and a place along the axis. At scale 0 the outline is a point.
 using Section = std::vector<Vec2d>;
 
 /// A hole in a wall: from low to high, along the wall and upward.
@@ -47,7 +47,7 @@ struct Opening {
     Vec2d low, high;
 };
 
-/// A mesh to which things are added; curved ones are divided the more finely, the higher the level.
+/// A mesh to which things are added. A higher level divides curved things more finely.
 class Model {
 public:
     explicit Model(std::uint64_t level);
@@ -66,16 +66,16 @@ public:
     void box(const Place& place, const Vec3d& low, const Vec3d& high);
     /// A box whose base has its middle at `foot`.
     void block(const Place& place, const Vec3d& foot, const Vec3d& size);
-    /// The outline, moved along the axis through `base` and scaled as the section says. Outside is to the
-    /// right of an outline that is walked along the axis.
+    /// Moves the outline along the axis through `base`, scaled as the section says. If the section runs up
+    /// the axis, the outside is to the right of the outline, seen from the tip of the axis.
     void loft(const Place& place, const Vec3d& base, Axis axis, const Outline& outline,
               const Section& section);
-    /// A straight bar between two places on an axis, with closed ends.
+    /// A straight bar of `length` along an axis, from `base` on, with closed ends.
     void bar(const Place& place, const Vec3d& base, Axis axis, const Outline& outline, double length);
     /// A sheet along a curve in (x, z), `width` wide at its foot and pointed at its end.
     void leaf(const Place& place, const std::vector<Vec2d>& curve, double width);
-    /// A wall along x from the place on, half its thickness to either side, without top and foot. Openings
-    /// stand in order along the wall and leave some of it between them.
+    /// A wall along x from the place on, with half its thickness on either side, and without top and foot.
+    /// Openings are in order along the wall, with some wall between them. `with_ends` closes the wall's ends.
     void wall(const Place& place, double length, double height, double thickness,
               const std::vector<Opening>& openings, bool with_ends);
 

@@ -7,7 +7,7 @@ namespace hedgerow::detail {
 namespace {
 
 void sphere(Model& m, const Place& p, const Vec3d& middle, double radius) {
-    // A quarter circle nearly, twice.
+    // Two arcs, each nearly a quarter of a circle.
     const double k = 0.42;
     m.loft(
         p, middle, Axis::z, m.disc(radius),
@@ -88,6 +88,7 @@ void fruit_bowl(Model& m, const Place& p, Random random) {
 }
 
 void table_setting(Model& m, const Place& p) {
+    // The plate.
     m.loft(p, {}, Axis::z, m.disc(0.13),
            m.curve({{0, 0.003},
                     {0.6, 0.001},
@@ -98,6 +99,7 @@ void table_setting(Model& m, const Place& p) {
                     {0.95, 0.02},
                     {0.65, 0.007},
                     {0, 0.006}}));
+    // The glass.
     m.loft(p, {0.16, 0.14, 0}, Axis::z, m.disc(0.035),
            m.curve({{0, 0},
                     {1, 0},
@@ -112,9 +114,9 @@ void table_setting(Model& m, const Place& p) {
                     {1.07, 0.12},
                     {0.4, 0.094},
                     {0, 0.092}}));
-    m.block(p, {0.16, 0, 0}, {0.015, 0.2, 0.001});  // knife
+    m.block(p, {0.16, 0, 0}, {0.015, 0.2, 0.001});  // the knife
     for (int i = -1; i <= 1; ++i) m.block(p, {-0.16 + 0.006 * i, 0.075, 0.001}, {0.002, 0.05, 0.001});
-    m.block(p, {-0.16, -0.03, 0.001}, {0.012, 0.14, 0.001});  // fork
+    m.block(p, {-0.16, -0.03, 0.001}, {0.012, 0.14, 0.001});  // the fork, below its prongs
 }
 void cup(Model& m, const Place& p) {
     m.loft(p, {}, Axis::z, m.disc(0.04),

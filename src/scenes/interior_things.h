@@ -1,6 +1,6 @@
-/// What stands and hangs in rooms. Lengths are in metres. A thing that stands at a wall has its back there:
-/// x runs along the wall, y into the room, and its origin is the middle of its back on the floor. Any other
-/// thing stands on its origin.
+/// Furniture and other things in the rooms. Lengths are in metres. A thing at a wall has its back there: x
+/// runs along the wall, y into the room, and its origin is the middle of its back on the floor. Any other
+/// thing stands on its origin, or hangs from it.
 #pragma once
 
 #include <hedgerow/scenes/random.h>
@@ -18,18 +18,19 @@ void bed(Model& m, const Place& p);
 /// A body with doors side by side, each with a bevelled panel and a handle.
 void cupboard(Model& m, const Place& p, const Vec3d& size, int doors);
 
-// What is built in.
+// Fittings.
 /// The casing of an opening on the face of a wall; the opening's lower left corner is the origin.
 void casing(Model& m, const Place& p, const Vec2d& size);
-/// The leaf of a door in such an opening, turned so far.
+/// The leaf of a door in an opening whose lower left corner is the origin, opened to the direction `ajar`.
 void door(Model& m, const Place& p, const Vec2d& size, const Vec2d& ajar);
 /// A frame with bars of 15 mm in an opening whose lower left corner is the origin.
 void window(Model& m, const Place& p, const Vec2d& size);
 void curtain(Model& m, const Place& p, double width, double height);
 void blind(Model& m, const Place& p, const Vec2d& size);
 void radiator(Model& m, const Place& p, double width);
-/// Mouldings along a wall from the origin on.
+/// A moulding at the foot of a wall, from the origin on.
 void skirting(Model& m, const Place& p, double length);
+/// A moulding at the top of a wall, from the origin on.
 void cornice(Model& m, const Place& p, double length, double height);
 /// Planks of 9 cm with gaps of 2 mm over a rectangle from the origin on.
 void floorboards(Model& m, const Place& p, const Vec2d& size, Random random);
@@ -41,7 +42,7 @@ void standing_lamp(Model& m, const Place& p);
 void vase(Model& m, const Place& p, double height);
 /// A bowl of spheres.
 void fruit_bowl(Model& m, const Place& p, Random random);
-/// Plate, glass, and cutlery of a millimetre.
+/// A plate, a glass, and cutlery that is 1 mm thick.
 void table_setting(Model& m, const Place& p);
 void cup(Model& m, const Place& p);
 void pot(Model& m, const Place& p, double radius);

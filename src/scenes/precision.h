@@ -1,4 +1,4 @@
-/// From scenes in double to scenes in T.
+/// Converts scenes in double to scenes in T.
 #pragma once
 
 #include <type_traits>
@@ -48,8 +48,8 @@ SegmentSet<T> narrowed(SegmentSet<double>&& set) {
     return {narrowed<T>(set.segments)};
 }
 
-/// What `build` returns, each coordinate rounded to T once; rounding is to nearest, whatever the caller has
-/// set.
+/// Returns build() with each coordinate rounded to T once. Rounding is to nearest, whatever mode the caller
+/// has set.
 template <class T, class F>
 auto in_precision(F build) {
     return in_ieee_mode([&] {

@@ -12,7 +12,7 @@
 namespace hedgerow {
 namespace {
 
-/// element(random, i) for each i < size, with the random numbers of its own.
+/// Calls element(random) once per element, each time with the random numbers of that element.
 template <class F>
 auto collected(std::uint64_t size, std::uint64_t seed, const Progress& progress, F element) {
     std::vector<decltype(element(std::declval<Random&>()))> all;

@@ -16,6 +16,7 @@ std::uint64_t Composition::count(const Split& s) const {
 
 Split nearest_split(std::uint64_t size, const Composition& shape) {
     const double wanted = static_cast<double>(std::max<std::uint64_t>(size, 1));
+    // Try up to twice the number of rows that has the best ratio.
     const double even =
         std::sqrt(wanted / product(static_cast<double>(shape.per_cell), shape.columns_per_row));
     const std::uint64_t most_rows = 2 * static_cast<std::uint64_t>(even) + 2;
@@ -27,6 +28,7 @@ Split nearest_split(std::uint64_t size, const Composition& shape) {
         const double ratio =
             static_cast<double>(split.columns) / product(static_cast<double>(rows), shape.columns_per_row);
         const double miss = std::fabs(static_cast<double>(shape.count(split)) - wanted) / wanted;
+        // A ratio that is off by a factor of 2 counts as much as a miss of 5 %.
         const double cost = miss + product(0.05, std::max(ratio, 1 / ratio) - 1);
         if (cost < least_cost) best = split, least_cost = cost;
     }
@@ -44,6 +46,7 @@ std::array<std::uint32_t, 3> nearest_box_split(std::uint64_t size,
         const std::uint64_t n = count(s);
         return n > size ? n - size : size - n;
     };
+    // Try the same number of pieces on each axis, and then one more on the last one, two or three axes.
     const double even = std::sqrt(static_cast<double>(size) / static_cast<double>(count({1, 1, 1})));
     const auto k = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(even));
     Split3 best{k, k, k};

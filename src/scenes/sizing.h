@@ -10,7 +10,7 @@ struct Split {
     std::uint64_t rows, columns;
 };
 
-/// What a shape of rows and columns consists of: columns·(per_cell·rows + per_column) triangles.
+/// The number of triangles of a shape of rows and columns: columns·(per_cell·rows + per_column).
 struct Composition {
     std::int64_t per_cell, per_column = 0;
     double columns_per_row = 1;  ///< the ratio that looks best
@@ -19,12 +19,12 @@ struct Composition {
     std::uint64_t count(const Split& s) const;
 };
 
-/// The split whose count is nearest to `size`, trading a bad ratio of columns to rows for at most a few per
-/// cent. O(√size).
+/// The split whose count is nearest to `size`. A better ratio of columns to rows outweighs a miss of a few
+/// per cent at most. O(√size).
 Split nearest_split(std::uint64_t size, const Composition& shape);
 
-/// Divisions (a, b, c) of a box along its axes, no two further apart than 1, that bring the weighted sum of
-/// the pairs w0·b·c + w1·c·a + w2·a·b nearest to `size`.
+/// Divisions (a, b, c) of a box along its axes, which differ by 1 at most, such that the weighted sum of
+/// pairs w0·b·c + w1·c·a + w2·a·b is nearest to `size`.
 std::array<std::uint32_t, 3> nearest_box_split(std::uint64_t size,
                                                const std::array<std::uint64_t, 3>& weights);
 

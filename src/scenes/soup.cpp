@@ -1,7 +1,7 @@
 /// Random triangles.
 #include <string>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 

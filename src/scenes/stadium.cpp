@@ -15,15 +15,15 @@ namespace {
 // In units of the teapot's data; the teapot is 6.4 long.
 constexpr double field_half_length = 600, field_half_width = 400;
 constexpr double seating_depth = 490, wall_height = 10, rake_height = 250;
-constexpr double teapot_height_above_field = 0x1p-6;  // nothing touches
+constexpr double teapot_height_above_field = 0x1p-6;  // so that the teapot and the field do not touch
 
-/// A place on the half section of the bowl: how far outside the field's edge, and how high. Within the field
+/// A point of the bowl's profile: its distance outside of the field's edge, and its height. Within the field,
 /// `scale` shrinks the edge instead.
 struct SectionPoint {
     double outside, z, scale = 1;
 };
 
-/// From near the middle of the field to the foot of the outer wall.
+/// The profile, from near the middle of the field to the foot of the outer wall.
 std::vector<SectionPoint> section(std::uint64_t rows, int field_rings) {
     std::vector<SectionPoint> points;
     for (int i = 1; i <= field_rings; ++i) points.push_back({0, 0, static_cast<double>(i) / field_rings});
@@ -40,13 +40,15 @@ std::vector<SectionPoint> section(std::uint64_t rows, int field_rings) {
 
 TriangleMesh<double> bowl(std::uint64_t size, const Progress& progress) {
     const int field_rings = size < 4000 ? 1 : 2;
-    // Eight segments a column; four triangles a row of seats, and the field and the outer wall.
+    // A column has eight segments. A segment has four triangles per row of seats, and 2·field_rings + 1 for
+    // the field and the outer wall.
     const detail::Split split = detail::nearest_split(size, {32, 16 * field_rings + 8, 0.5});
     const std::vector<Vec2d> around = detail::circle(split.columns);
     const auto n = static_cast<std::uint32_t>(around.size());
     TriangleMesh<double> mesh;
     mesh.vertices.push_back({});
     std::uint32_t inner = 0;
+    // Add the rings of the profile, and join each to the one before. The first ring is joined to the middle.
     for (const SectionPoint& at : section(split.rows, field_rings)) {
         const auto outer = static_cast<std::uint32_t>(mesh.vertices.size());
         const double a = product(field_half_length, at.scale) + at.outside;

@@ -29,8 +29,8 @@ Patch control_points(const std::array<R, 4>& rows) {
             control_points(rows[3])};
 }
 
-/// The point at i/n on the way from a to b. Exactly a or b at the ends, and where a and b are equal; this is
-/// what lets patches be welded and poles be single points.
+/// The point at i/n on the way from a to b. It is exactly a or b at the ends, and where a and b are equal. So
+/// patches can be welded, and poles are single points.
 Vec3d between(const Vec3d& a, const Vec3d& b, std::uint64_t i, std::uint64_t n) {
     const auto part = [n](std::uint64_t k) { return static_cast<double>(k) / static_cast<double>(n); };
     return 2 * i < n ? a + (b - a) * part(i) : b + (a - b) * part(n - i);
@@ -65,9 +65,9 @@ void add_patch(detail::WeldedMesh& to, const Patch& patch, const detail::Split& 
 }
 
 TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
-    // 32 patches of two triangles a cell; at the two poles a patch in each quarter loses one a column. In one
-    // column handle and spout would be flat, which is left to those who ask for less than can be had
-    // otherwise.
+    // 32 patches have two triangles per cell. At the two poles, one patch in each quarter loses one triangle
+    // per column. In one column handle and spout would be flat, so one column is only for sizes that two
+    // cannot reach.
     const std::uint64_t least_columns = size < 90 ? 1 : 2;
     const detail::Split split = detail::nearest_split(size, {64, -8, 1, least_columns});
     detail::WeldedMesh to(progress, size);

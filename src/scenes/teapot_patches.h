@@ -22,7 +22,7 @@ struct TeapotOval {
     double x0, z0, x1, z1, half_width;
 };
 
-/// From the lid's inner side of the rim outward and downward; the lid from its top.
+/// Patches run from the inner side of the rim outward and downward; those of the lid run from its top.
 inline constexpr std::array<std::array<TeapotRing, 4>, 6> teapot_revolved = {{
     {{{1.4, 2.4}, {1.3375, 2.53125}, {1.4375, 2.53125}, {1.5, 2.4}}},  // rim
     {{{1.5, 2.4}, {1.75, 1.875}, {2, 1.35}, {2, 0.9}}},                // upper body
@@ -32,8 +32,8 @@ inline constexpr std::array<std::array<TeapotRing, 4>, 6> teapot_revolved = {{
     {{{1.5, 0.15}, {1.5, 0.075}, {1.425, 0}, {0, 0}}},                 // bottom
 }};
 
-/// From the upper end of the handle to the lower, from its inner side to the outer; from the root of the
-/// spout to its mouth, from its upper side to the lower.
+/// Patches of the handle run from its upper end to its lower end, across from the inner side to the outer.
+/// Patches of the spout run from its root to its mouth, across from the upper side to the lower.
 inline constexpr std::array<std::array<TeapotOval, 4>, 4> teapot_swept = {{
     {{{-1.6, 2.025, -1.5, 2.25, 0.3},
       {-2.3, 2.025, -2.5, 2.25, 0.3},

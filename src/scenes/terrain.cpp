@@ -13,8 +13,8 @@ constexpr int octaves = 11;
 constexpr double coarsest_cells = 3;  // lattice cells along the square's side in the first octave
 constexpr double relief = 0.125;      // half the height that all octaves together can reach
 
-/// A random value in [0, 1) for each point of an octave's lattice, joined by smooth steps. A field of its own
-/// for each seed.
+/// The noise at p: random values in [0, 1) at the points of an octave's lattice, with smooth steps between
+/// them. Each seed has its own noise.
 double value_noise(std::uint64_t seed, const Vec2d& p) {
     std::uint64_t cell[2];
     double weight[2];
@@ -52,12 +52,14 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progres
     TriangleMesh<double> mesh;
     mesh.vertices.reserve(std::size_t{columns + 1} * (rows + 1));
     mesh.triangles.reserve(std::size_t{2} * columns * rows);
+    // Add the vertices, in rows along x.
     for (std::uint32_t k = 0; k <= rows; ++k)
         for (std::uint32_t i = 0; i <= columns; ++i) {
             detail::step(progress, mesh.vertices.size(), mesh.vertices.capacity());
             const Vec2d p(static_cast<double>(i) / columns, static_cast<double>(k) / rows);
             mesh.vertices.push_back({p[0], p[1], height(seed, p)});
         }
+    // Add two triangles per cell.
     for (std::uint32_t k = 0; k < rows; ++k) {
         progress.look();
         for (std::uint32_t i = 0; i < columns; ++i) {

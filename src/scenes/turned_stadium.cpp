@@ -9,7 +9,7 @@
 namespace hedgerow {
 namespace {
 
-/// By 30°, first about x and then about y.
+/// Turns p by 30°, first about x and then about y.
 Vec3d turned(const Vec3d& p) {
     const double cosine = std::sqrt(3.0) / 2, sine = 0.5;
     const Vec3d q(p[0], product(cosine, p[1]) - product(sine, p[2]),

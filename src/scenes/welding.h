@@ -9,19 +9,19 @@
 
 namespace hedgerow::detail {
 
-/// Collects triangles; corners of equal coordinates (−0 being 0) become one vertex. Shapes that shall not be
-/// joined need a mesh of their own each.
+/// Collects triangles. Corners with equal coordinates (−0 equals 0) become one vertex. Shapes that must not
+/// be joined need separate meshes.
 class WeldedMesh {
 public:
-    /// Reports how many of about `total` triangles there are; `before` were made elsewhere.
+    /// Reports progress as triangles made, of about `total`; `before` of them were made elsewhere.
     explicit WeldedMesh(const Progress& progress, std::uint64_t total, std::uint64_t before = 0)
         : progress_(progress), total_(total), before_(before) {}
     /// A triangle without area is dropped.
     void add(const Vec3d& a, const Vec3d& b, const Vec3d& c);
     /// Triangles a, b, c and a, c, d.
     void add_quad(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d);
-    /// The quadrilateral a, b, c, d in across × along pieces: `across` along a-b, `along` along b-c. Two that
-    /// share an edge and its number of pieces share all vertices on it.
+    /// The quadrilateral a, b, c, d in across × along pieces: `across` along a-b, `along` along b-c. Two
+    /// quadrilaterals that share an edge and its number of pieces share all vertices on it.
     void add_divided_quad(const std::array<Vec3d, 4>& corners, std::uint32_t across, std::uint32_t along);
 
     TriangleMesh<double> mesh;
@@ -37,7 +37,7 @@ private:
     std::unordered_map<Vec3d, std::uint32_t, Hash> known_;
 };
 
-/// Puts `part` behind `whole`, its vertices moved by `offset`; nothing is joined.
+/// Appends `part` to `whole`, with its vertices moved by `offset`. Nothing is joined.
 void append(TriangleMesh<double>& whole, const TriangleMesh<double>& part, const Vec3d& offset = {});
 
 }  // namespace hedgerow::detail

@@ -1,4 +1,5 @@
-// Prints the bits of what the headers compute for fixed inputs, to be compared between builds of it.
+// Prints the bits of what the headers compute for fixed inputs, to be compared between builds of this
+// program.
 #include <bit>
 #include <cstdint>
 #include <cstdio>
@@ -22,7 +23,7 @@ void print(double x) {
     std::printf("%016llx ", static_cast<unsigned long long>(bits(x)));
 }
 
-// Products of nearly equal size, whose difference shows whether they were rounded before it was taken.
+// Prints differences of products of nearly equal size. They show whether the products were rounded first.
 template <class T>
 void products() {
     std::mt19937 random(1);
@@ -39,7 +40,7 @@ void products() {
     }
 }
 
-// FNV-1a over the bytes of values, lowest first: the same whatever the byte order.
+// FNV-1a over the bytes of values, lowest byte first, so that the hash does not depend on the byte order.
 class Hash {
 public:
     template <class U>
@@ -97,14 +98,14 @@ TriangleMesh<T> scene(Numbers<T>& numbers) {
     return mesh;
 }
 
-// One line a structure: its name, how many rays hit, and a hash of all the answers.
+// Prints one line per structure: its name, the number of rays that hit, and a hash of all answers.
 template <class T, class I>
 void answers(const char* name, const I& index, const TriangleMesh<T>& mesh, Numbers<T> numbers) {
     Hash hash;
     int hits = 0;
     for (int i = 0; i < 3000; ++i) {
         const Vec<T, 3> from = numbers.point(T(-1), T(2)), into = numbers.point(T(0), T(1));
-        // Every third ray goes to a vertex, where all depends on the last bit.
+        // Every third ray aims at a vertex, where the answer depends on the last bit.
         const Vec<T, 3> to = i % 3 == 0 ? mesh.vertices[numbers.below(mesh.vertices.size())] : into;
         const auto hit = closest_hit(index, {from, to - from}).value_or(Hit<T>{});
         hits += bool(hit);
@@ -134,5 +135,5 @@ int main() {
     products<double>();
     structures<float>();
     structures<double>();
-    default_executor().both([] {}, [] {});  // what is compiled links
+    default_executor().both([] {}, [] {});  // links the compiled core
 }

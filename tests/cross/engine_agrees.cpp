@@ -1,15 +1,15 @@
-/// What scripts/cross runs on this processor and, emulated, on others: the engine with every instruction set
-/// that there is against brute force, and a sum over the bits of all hits, which must be the same wherever it
-/// is printed.
+/// The program that scripts/cross runs on this processor and, emulated, on others. It compares the engine
+/// with brute force for every instruction set that is available, and prints a hash of the bits of all hits.
+/// The hash must be the same on every processor.
 #include <bit>
 #include <cstdio>
 #include <memory>
 
 #include <hedgerow/ask.h>
+#include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/structures/brute_force.h>
-#include <hedgerow/structures/bvh/wide/wide_bvh.h>
 
 using namespace hedgerow;
 
@@ -18,7 +18,7 @@ namespace {
 std::vector<Ray3f> rays_through(const Box3f& box, const TriangleMesh<float>& mesh, std::size_t count) {
     std::vector<Ray3f> rays;
     for (std::size_t i = 0; i < count; ++i) {
-        Random random(5, i / 64 % 2 == 0 ? i : i / 64);  // every other 64 begin in one point
+        Random random(5, i / 64 % 2 == 0 ? i : i / 64);  // the rays of every other 64 start in one point
         Vec3f p, q;
         for (int k = 0; k < 3; ++k) {
             p[k] = box.low[k] + (box.high[k] - box.low[k]) * (3 * static_cast<float>(random.uniform()) - 1);
@@ -36,13 +36,14 @@ void add(std::uint64_t& sum, std::uint32_t word) {
     sum = (sum ^ word) * 0x100000001B3u;  // FNV-1a, by words
 }
 
-/// False if some set differs from brute force.
+/// Prints the hash of brute force's hits. Returns false if the engine differs with some instruction set.
 bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count) {
     const auto brute = build<BruteForce>(mesh);
     const auto rays = rays_through(brute.bounds(), mesh, count);
     std::vector<Hit<float>> want(count), got(count);
     closest_hits(brute, std::span<const Ray3f>(rays), std::span(want));
     const std::unique_ptr<bool[]> any(new bool[count]);
+    // Hash the hits of brute force.
     std::uint64_t sum = 0xCBF29CE484222325u;
     std::size_t found = 0;
     for (const auto& h : want) {
@@ -52,6 +53,7 @@ bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count
     }
     std::printf("%-10s %zu of %zu rays hit, sum %016llx\n", name, found, count,
                 static_cast<unsigned long long>(sum));
+    // Compare every width and instruction set with brute force, in batches and alone.
     for (const int width : wide_widths) {
         WideOptions options;
         options.width = width;

@@ -1,5 +1,5 @@
-/// What a structure answers to one question, to be held against what brute force answers. Tests that the
-/// hunter writes include this file.
+/// The answers of a structure to one query, to be compared with those of brute force. Tests that the hunter
+/// writes include this file.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace hedgerow::hunter {
 
-/// Everything that can be asked of a ray, a point or a box.
+/// The answers to all queries of a ray. The overloads of `answer` make all queries of a ray, a point or a
+/// box.
 template <class T, int D>
 struct RayAnswer {
     Hit<T> closest;
@@ -28,10 +29,13 @@ RayAnswer<T, D> answer(const AnyIndex<T, D>& index, const Ray<T, D>& ray) {
 }
 template <class T, int D>
 std::vector<Near<T, D>> answer(const AnyIndex<T, D>& index, const Vec<T, D>& point) {
-    std::vector<Near<T, D>> said, closest(1);
+    std::vector<Near<T, D>> said, closest(1), all;
     index.nearest(point, 4, said);
     index.closest_points({&point, 1}, closest);
+    // Search within the distance of the last of the four nearest, inclusive.
+    if (!said.empty()) within(index, point, said.back().distance2, all);
     said.push_back(closest[0]);
+    said.insert(said.end(), all.begin(), all.end());
     return said;
 }
 template <class T, int D>
@@ -40,12 +44,13 @@ std::vector<PrimitiveId> answer(const AnyIndex<T, D>& index, const Box<T, D>& bo
     index.overlapping(box, said);
     return said;
 }
-inline constexpr std::size_t answers_to_a_ray = 3, answers_to_a_point = 2, answers_to_a_box = 1;
+/// The number of queries that each `answer` makes.
+inline constexpr std::size_t answers_to_a_ray = 3, answers_to_a_point = 3, answers_to_a_box = 1;
 
-/// What happens to an index between its build and the question. Its primitives are the same after it.
+/// A change to an index between its build and the query. It leaves the primitives the same.
 enum class Then { nothing, erased_and_inserted, refitted };
 
-/// False if the structure cannot do that.
+/// Makes a change. Returns false if the structure cannot make it.
 template <class T, int D>
 bool carry_out(Then then, AnyIndex<T, D>& index) {
     if (then == Then::refitted && index.refittable()) return index.refit(), true;
@@ -56,7 +61,7 @@ bool carry_out(Then then, AnyIndex<T, D>& index) {
     return true;
 }
 
-/// Whether a structure over some shapes is sound, and answers a question as brute force does.
+/// Whether an index over some shapes, built and changed, is valid and answers a query like brute force.
 template <class Shape, class Question>
 bool as_brute_force(const std::string& spec, const std::vector<Shape>& shapes, const Question& question,
                     Then then = Then::nothing) {

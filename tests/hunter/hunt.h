@@ -1,5 +1,5 @@
-/// One round: a scene, questions about it, and every structure's answers beside those of brute force, whose
-/// own are held against exact arithmetic.
+/// One round of the hunter: it draws a scene and queries, compares the answers of every structure with those
+/// of brute force, and compares these with exact arithmetic.
 #pragma once
 
 #include <sstream>
@@ -12,7 +12,7 @@
 
 namespace hedgerow::hunter {
 
-/// A structure with options drawn from what the list of structures says they may be.
+/// A structure with random options, whose values are from the list of structures or from the lists below.
 inline std::string any_options(const StructureInfo& structure, Random& random) {
     std::string spec(structure.name);
     const auto one_of = [&](auto... values) {
@@ -20,9 +20,11 @@ inline std::string any_options(const StructureInfo& structure, Random& random) {
         return all[random.bits() % sizeof...(values)];
     };
     for (const auto& option : structure.options) {
+        // Change one option in four.
         if (random.bits() % 4 != 0) continue;
         std::string value;
         const std::string_view values = option.values;
+        // Draw from the values that the list of structures names, or from those of the option below.
         if (values.find('|') != std::string_view::npos) {
             const auto count = static_cast<std::uint64_t>(std::count(values.begin(), values.end(), '|')) + 1;
             std::string_view rest = values;
@@ -42,6 +44,8 @@ inline std::string any_options(const StructureInfo& structure, Random& random) {
             value = one_of("0", "0.1");
         } else if (option.name == "duplicates") {
             value = one_of("1", "3", "10");
+        } else if (option.name == "cell") {
+            value = one_of("1e-30", "0.001", "1", "1e6", "1e30");
         } else {
             continue;
         }
@@ -68,7 +72,7 @@ public:
         const auto oracle = build_any("brute-force", set_);
         answer_all(*oracle, truth_);
         hold_brute_force_against_exact_arithmetic();
-        constexpr std::size_t enough = 3;  // of a round, which often finds one fault many times
+        constexpr std::size_t enough = 3;  // a round often finds one fault many times
         for (const auto& structure : structure_list()) {
             if (report_.found.size() >= enough) break;
             if (!structure.holds(D, PointSet<ViewOf<Set>>)) continue;
@@ -85,14 +89,17 @@ private:
         std::vector<std::vector<PrimitiveId>> boxes;
     };
 
-    /// Rays in one batch, but one by one for what a batch does not answer.
+    /// Queries the rays in one batch for closest and any hits, and one by one for all hits.
     void answer_all(const AnyIndex<T, D>& index, Answers& said) {
-        const std::size_t n = questions_.rays.size();
+        const std::size_t n = index.answers_rays() ? questions_.rays.size() : 0;
         said.rays.assign(n, {});
         closest_.assign(n, {});
         const std::unique_ptr<bool[]> any(new bool[n]);
-        index.closest_hits(std::span<const Ray<T, D>>(questions_.rays), closest_);
-        index.any_hits(std::span<const Ray<T, D>>(questions_.rays), {any.get(), n});
+        const auto rays = std::span<const Ray<T, D>>(questions_.rays).first(n);
+        if (n > 0) {
+            index.closest_hits(rays, closest_);
+            index.any_hits(rays, {any.get(), n});
+        }
         for (std::size_t i = 0; i < n; ++i) {
             said.rays[i] = {closest_[i], any[i], {}};
             index.all_hits(questions_.rays[i], said.rays[i].all);
@@ -104,14 +111,14 @@ private:
                              questions_.boxes.size() * answers_to_a_box;
     }
 
-    /// Builds a structure and asks it, and then perhaps again after changes that leave the primitives the
-    /// same.
+    /// Builds a structure and compares its answers. One time in four, compares again after a change that
+    /// leaves the primitives the same.
     void look_at(const std::string& spec) {
         std::unique_ptr<AnyIndex<T, D>> index;
         try {
             index = build_any(spec, set_);
         } catch (const InputError& e) {
-            // A refusal is an answer where options do not go together, or memory would be exceeded.
+            // A refusal counts as an answer: options may contradict each other, or memory be exceeded.
             ++report_.questions;
             return;
         }
@@ -119,14 +126,14 @@ private:
         const auto then = random_.bits() % 2 == 0 ? Then::erased_and_inserted : Then::refitted;
         if (carry_out(then, *index)) compare(spec, *index, then);
     }
-    /// False if something was found.
+    /// Reports the first fault, if any. Returns false if there is one.
     bool compare(const std::string& spec, const AnyIndex<T, D>& index, Then then) {
         if (const auto fault = index.validate(); !fault.empty()) return invalid(spec, fault, then), false;
         Answers said;
         answer_all(index, said);
         for (std::size_t i = 0; i < said.rays.size(); ++i) {
             if (!(said.rays[i] == truth_.rays[i])) return differs(spec, questions_.rays[i], then), false;
-            // Kernels answer a ray alone in another way than a batch.
+            // Kernels trace single rays in another way than batches.
             if (spec.starts_with("wide") && i % 4 == 0) {
                 report_.questions += answers_to_a_ray;
                 if (!(answer(index, questions_.rays[i]) == truth_.rays[i]))
@@ -179,7 +186,7 @@ private:
         return "as_brute_force(\"" + spec + "\", shapes, question" + changes[static_cast<std::size_t>(then)] +
                ")";
     }
-    /// As a test that fails.
+    /// Reports a fault as a test that fails.
     template <class Question>
     void print(const std::string& remark, const std::vector<Shape>& shapes, const Question& question,
                const std::string& expected) {
@@ -199,7 +206,7 @@ private:
         report_.found.push_back(out.str());
     }
 
-    /// Overlaps and distances of all shapes with a few questions, and rays against triangles.
+    /// Checks brute force: a few boxes against all shapes but points, and a few rays against triangles.
     void hold_brute_force_against_exact_arithmetic() {
         if constexpr (!std::is_same_v<Shape, Vec<T, D>>)
             for (std::size_t i = 0; i < questions_.boxes.size(); i += 8)
@@ -221,7 +228,7 @@ private:
             if (!(std::abs(ray.origin[k]) <= largest_coordinate<T>) ||
                 !(std::abs(ray.direction[k]) <= largest_coordinate<T>) ||
                 (ray.direction[k] != 0 && !std::isnormal(ray.direction[k])))
-                return;  // it means another ray, or none
+                return;  // the query means another ray, or none
         if (!(ray.t_min <= ray.t_max) || !std::isfinite(ray.t_min) ||
             !(max_component(abs(ray.direction)) > 0))
             return;
@@ -230,7 +237,7 @@ private:
             std::optional<T> t;
             for (const auto& hit : all)
                 if (hit.element == s) t = hit.t;
-            if (t && !std::isfinite(*t)) continue;  // beyond the scalar's range, as its crossing is
+            if (t && !std::isfinite(*t)) continue;  // t is beyond the range of T, like the exact crossing
             if (const auto fault = wrong(shapes_[s], ray, t); !fault.empty())
                 print("// " + fault, {shapes_[s]}, ray, "is_exact(shapes[0], question)");
         }

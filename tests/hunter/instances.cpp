@@ -18,6 +18,7 @@ std::vector<Transform<3>> any_places(Random& random) {
     while (places.size() < count) {
         Vec3d scales = Vec3d::all(1), by;
         const auto kind = random.bits() % 4;
+        // Scale by powers of two, evenly or unevenly, and move by multiples of 0.1.
         const double size = std::ldexp(1.0, static_cast<int>(random.bits() % 41) - 20);
         for (int k = 0; k < 3; ++k) {
             if (kind == 1) scales[k] = size;
@@ -27,7 +28,9 @@ std::vector<Transform<3>> any_places(Random& random) {
             by[k] = nasty::nudged(0.1 * static_cast<double>(random.bits() % 41),
                                   static_cast<int>(random.bits() % 3));
         }
+        // Move one in eight far away.
         Transform<3> place = Transform<3>::translation(by * (random.bits() % 8 == 0 ? 1e6 : 1.0));
+        // Turn three in four, half of them about an axis and half of them by right angles.
         if (random.bits() % 4 != 0) {
             const int axis = static_cast<int>(random.bits() % 3);
             Vec3d about;
@@ -38,6 +41,7 @@ std::vector<Transform<3>> any_places(Random& random) {
             place = place * Transform<3>::rotation(about, angle);
         }
         places.push_back(place * Transform<3>::scaling(scales));
+        // Repeat a placement now and then.
         if (random.bits() % 8 == 0) places.push_back(places[random.bits() % places.size()]);
     }
     return places;
@@ -61,6 +65,7 @@ public:
         : seed_(seed), round_(round), random_(seed, round) {}
 
     Report run() {
+        // Draw a mesh, its placements and queries.
         Places<T, 3> places(random_);
         shapes_ = scene<Triangle<T, 3>>(places);
         if (shapes_.size() > 64) shapes_.resize(64);
@@ -71,6 +76,7 @@ public:
         Asking<T, 3> asking(places, corners);
         questions_ = asking.questions(64, 16);
         try {
+            // Compare pairs of structures with brute force over brute force.
             const TwoLevels<BruteForce, BruteForce, T> truth(shapes_, places_);
             look_at<WideBvh, WideBvh>("WideBvh, WideBvh", truth);
             look_at<Bvh, WideBvh>("Bvh, WideBvh", truth);
@@ -99,6 +105,7 @@ private:
     }
     template <template <class, int> class Outer, template <class, int> class Inner, class Question>
     void differs(const char* names, Question question) {
+        // Shrink the placements, the shapes and the query.
         auto shapes = shapes_;
         auto places = places_;
         const auto fails = [&](const auto& some, const auto& at, const Question& asked) {
@@ -111,6 +118,7 @@ private:
         places = fewer(places, [&](const auto& some) { return fails(shapes, some, question); });
         shrink(shapes, question,
                [&](const auto& some, const Question& asked) { return fails(some, places, asked); });
+        // Report the fault as a test that fails.
         std::ostringstream out;
         out << "// Seed " << seed_ << ", round " << round_ << ".\nTEST(Found, Round" << seed_ << 'x' << round_
             << ") {\n"

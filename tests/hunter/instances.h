@@ -1,4 +1,4 @@
-/// Instances: what a structure over placed indexes answers, held against brute force over brute force.
+/// Answers of a structure over instances, compared with those of brute force over brute force.
 #pragma once
 
 #include <optional>
@@ -39,7 +39,7 @@ std::vector<PlacedId> placed_answer(const Index& index, const Box<T, 3>& box) {
     return said;
 }
 
-/// A mesh in a structure `Inner`, placed by some transforms in a structure `Outer`.
+/// A mesh in an index of structure `Inner`, and instances of it in an index of structure `Outer`.
 template <template <class, int> class Outer, template <class, int> class Inner, class T>
 class TwoLevels {
 public:
@@ -71,6 +71,7 @@ private:
     decltype(build<Outer>(std::declval<const Set&>())) outer_;
 };
 
+/// Whether an index of instances is valid and answers a query like brute force over brute force.
 template <template <class, int> class Outer, template <class, int> class Inner, class T, class Question>
 bool placed_as_brute_force(const std::vector<Triangle<T, 3>>& shapes, const std::vector<Transform<3>>& places,
                            const Question& question) {

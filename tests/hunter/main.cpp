@@ -1,17 +1,17 @@
-/// The hunter: makes up scenes and questions of numbers that rounding errors live on, asks every structure,
-/// builder, scalar and instruction set, holds the answers against brute force and that against exact
-/// arithmetic, shrinks what differs to a few primitives and prints it as a test.
+/// The hunter draws scenes and queries of numbers that provoke rounding errors, and queries every structure,
+/// builder, scalar and instruction set. It compares the answers with those of brute force, and these with
+/// exact arithmetic. It shrinks what differs to a few primitives and prints it as a test.
 ///
 ///   hunter [--seconds 60 | --rounds N | --round N] [--seed 1] [--most 10]
 ///
-/// It hunts for some time, for some rounds, or one round again that has found something. One thread; several
-/// processes with other seeds look elsewhere. Exit code 1 where something was found.
+/// It hunts for some time, for some rounds, or repeats one round that has found something. It uses one
+/// thread; processes with other seeds search other scenes. The exit code is 1 if something was found.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
-#include <hedgerow/structures/bvh/wide/kernels.h>
+#include <hedgerow/engine/kernels.h>
 
 #include "hunt.h"
 
@@ -20,7 +20,8 @@ using namespace hedgerow::hunter;
 
 namespace {
 
-/// Kinds of shapes take turns, and so do instruction sets, which are for triangles of float alone.
+/// Rounds alternate between kinds of shapes and, every 16 rounds, between instruction sets. Only triangles of
+/// float use an instruction set.
 Report run(std::uint64_t seed, std::uint64_t round) {
     const auto sets = instruction_sets();
     use_instruction_set(sets[round / 16 % sets.size()]);
@@ -88,6 +89,7 @@ int main(int argc, char** argv) {
     const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
     std::uint64_t rounds = 0, questions = 0, exact = 0, found = 0;
     double told = 0;
+    // Run rounds, and print what each has found.
     for (std::uint64_t round = options->round.value_or(0); found < options->most; ++round) {
         const Report report = run(options->seed, round);
         ++rounds, questions += report.questions, exact += report.checked_exactly,
@@ -95,6 +97,7 @@ int main(int argc, char** argv) {
         for (const auto& test : report.found) std::printf("%s\n", test.c_str()), std::fflush(stdout);
         if (options->round || (options->rounds ? rounds >= *options->rounds : seconds() > options->seconds))
             break;
+        // Report the progress every ten seconds.
         if (seconds() - told > 10) {
             told = seconds();
             std::fprintf(stderr, "hunter: %.0f of %.0f s, %llu rounds, %.3g questions\n", told,

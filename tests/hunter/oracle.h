@@ -1,4 +1,4 @@
-/// Whether brute force is right, by rational arithmetic.
+/// Checks brute force by rational arithmetic.
 #pragma once
 
 #include "../rational.h"
@@ -31,7 +31,7 @@ inline Number distance2(const Point& p, const Point& a, const Point& b) {
     const Point away = ap - Point{ab[0] * u, ab[1] * u, ab[2] * u};
     return dot(away, away);
 }
-/// Over the triangle where the foot lies in it, else to the nearest edge.
+/// The squared distance to a triangle: to its plane if the foot is inside, else to the nearest edge.
 inline Number distance2(const Point& p, const std::array<Point, 3>& t) {
     const Point n = cross(t[1] - t[0], t[2] - t[0]);
     const Number area = dot(n, n);
@@ -59,7 +59,7 @@ Number distance2(const Vec<T, D>& p, const Vec<T, D>& q) {
     return dot(away, away);
 }
 
-/// The bound e of the numerics contract: how far a hit may lie from what is hit, along each axis.
+/// The bound e of the numerics contract: the most that a hit may be off its primitive, along each axis.
 template <class T, int D>
 double hit_error(const Ray<T, D>& ray, const Box<T, D>& box) {
     double reach = 0, from = 0;
@@ -73,7 +73,8 @@ double hit_error(const Ray<T, D>& ray, const Box<T, D>& box) {
            64 * static_cast<double>(std::numeric_limits<T>::denorm_min());
 }
 
-/// Where the ray's line crosses a triangle: t, or nothing where it misses or runs along it.
+/// The t at which the line of a ray crosses a triangle. Empty if the line misses it, runs along it or meets
+/// the line through an edge.
 inline std::optional<Number> crossing(const Point& origin, const Point& direction,
                                       const std::array<Point, 3>& t) {
     std::array<Point, 3> corner;
@@ -88,17 +89,20 @@ inline std::optional<Number> crossing(const Point& origin, const Point& directio
     return Number(dot(corner[0], n) / dot(direction, n));
 }
 
-/// What is wrong with a triangle's hit, or with none; empty if nothing is. A hit lies within e of the
-/// triangle; and a triangle that all lines within e of the ray's cross well inside the interval is hit.
+/// Describes what is wrong with a triangle's hit, or with the lack of one. Empty if nothing is. A hit lies
+/// within e of the triangle. A triangle is hit if all lines within e of the ray's line cross it well inside
+/// the interval.
 template <class T>
 std::string wrong(const Triangle<T, 3>& tri, const Ray<T, 3>& ray, const std::optional<T>& t) {
     const double e = hit_error(ray, tri.bounds());
     const std::array<Point, 3> corners{rational::point(tri.a), rational::point(tri.b),
                                        rational::point(tri.c)};
     const Point origin = rational::point(ray.origin), direction = rational::point(ray.direction);
+    // Allow a hit to be off by twice the bound along each axis.
     if (t) {
         const Number away2 = distance2(moved(origin, direction, static_cast<double>(*t)), corners);
-        // t is rounded: a step of that along the direction, which may be long, is no error of the hit.
+        // t may be off by the least subnormal number. A step of that along a long direction is no error of
+        // the hit.
         const double step = static_cast<double>(max_component(abs(ray.direction))) *
                             static_cast<double>(std::numeric_limits<T>::denorm_min());
         const Number most = 2 * (e + step);
@@ -106,6 +110,8 @@ std::string wrong(const Triangle<T, 3>& tri, const Ray<T, 3>& ray, const std::op
     }
     // A hit beyond the largest T has no t.
     const double last = static_cast<double>(std::min(ray.t_max, std::numeric_limits<T>::max()));
+    // A miss is right unless the line, and the line moved by 4e both ways along each axis, all cross well
+    // inside.
     for (int i = -1; i < 6; ++i) {
         Point from = origin;
         if (i >= 0) from[static_cast<std::size_t>(i / 2)] += Number(4 * e) * (i % 2 == 0 ? 1 : -1);
@@ -116,7 +122,7 @@ std::string wrong(const Triangle<T, 3>& tri, const Ray<T, 3>& ray, const std::op
     return "a triangle that the ray crosses well inside is not hit";
 }
 
-/// Whether a shape's overlap with a box, or a triangle's meeting with a ray, is right.
+/// Whether the library is right about a shape's overlap with a box, or a triangle's hit by a ray.
 template <class Shape, class T, int D>
 bool is_exact(const Shape& shape, const Box<T, D>& box) {
     return overlap(shape, box) == rational::overlap(shape, box);
@@ -124,7 +130,7 @@ bool is_exact(const Shape& shape, const Box<T, D>& box) {
 template <class T>
 bool is_exact(const Triangle<T, 3>& tri, const Ray<T, 3>& ray) {
     const auto meeting = meet_watertight(ray, tri);
-    const bool hit = meeting && std::isfinite(meeting->t);  // as queries have it
+    const bool hit = meeting && std::isfinite(meeting->t);  // queries report only finite t
     return wrong(tri, ray, hit ? std::optional(meeting->t) : std::nullopt).empty();
 }
 

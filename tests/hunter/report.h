@@ -1,4 +1,4 @@
-/// What a round of the hunter reports.
+/// The report of a round of the hunter.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,13 @@
 
 namespace hedgerow::hunter {
 
-/// What a round has done, and as C++ what went wrong in it.
+/// The numbers of queries and of exact checks in a round, and the faults that it found as C++ tests.
 struct Report {
     std::uint64_t questions = 0, checked_exactly = 0;
     std::vector<std::string> found;
 };
 
-/// A round over instances (instances.cpp).
+/// Runs a round over instances (instances.cpp).
 Report hunt_instances(std::uint64_t seed, std::uint64_t round);
 
 }  // namespace hedgerow::hunter

@@ -1,4 +1,4 @@
-/// Scenes and questions of nasty numbers.
+/// Draws scenes and queries of nasty numbers.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace hedgerow::hunter {
 
-/// Of a round: how places are drawn, along each axis by numbers of a kind of its own.
+/// Draws the points of a round. In half of the rounds each axis has its own kind of numbers.
 template <class T, int D>
 class Places {
 public:
@@ -39,7 +39,8 @@ template <class T, int D>
 Vec<T, D> shape_at(Places<T, D>& places, const Vec<T, D>&) {
     return places();
 }
-/// A third of the triangles and segments are small, and some have no area or length.
+/// Draws a second point for a shape with a point p. A third of these are close to p, so some shapes are small
+/// or have no area or length.
 template <class T, int D>
 Vec<T, D> beside(Places<T, D>& places, const Vec<T, D>& p) {
     const Vec<T, D> q = places();
@@ -72,7 +73,8 @@ Sphere<T, 3> shape_at(Places<T, 3>& places, const Sphere<T, 3>&) {
     return {center, places.random().bits() % 16 == 0 ? T(0) : max_component(abs(other - center))};
 }
 
-/// Turns a scene about an axis and back, as CAD programs do: what was flat is flat but for the last digits.
+/// Rotates pairs of a shape's numbers by an angle and back, as CAD programs turn scenes. Flat shapes stay
+/// flat except for the last digits.
 template <class T, class Shape>
 void turn_and_turn_back(std::vector<Shape>& shapes, double angle) {
     const T c = static_cast<T>(std::cos(angle)), s = static_cast<T>(std::sin(angle));
@@ -89,8 +91,8 @@ void turn_and_turn_back(std::vector<Shape>& shapes, double angle) {
     }
 }
 
-/// Of 1 to 64 shapes, now and then 1024: drawn one by one, around a common corner, the same one again, a
-/// wall.
+/// A scene of 1 to 64 shapes, now and then of up to 1024. Shapes are drawn one by one, share a corner, are
+/// repeated, lie in a wall, or are turned and turned back.
 template <class Shape, class T, int D>
 std::vector<Shape> scene(Places<T, D>& places) {
     Random& random = places.random();
@@ -104,9 +106,11 @@ std::vector<Shape> scene(Places<T, D>& places) {
     while (shapes.size() < count) {
         Shape shape = shape_at(places, Shape());
         int number = 0;
+        // Share a corner: the first one of the shape.
         if (kind == 1)
             for_each_number(shape, [&](T& x) { number < D ? void(x = corner[number]) : void(), ++number; });
-        if (kind == 2)  // a wall; a sphere's radius is no coordinate
+        // Lie in a wall, up to the last digits. A sphere's radius is no coordinate.
+        if (kind == 2)
             for_each_number(shape, [&](T& x) {
                 if (number < 3 * D && number % D == flat &&
                     !(D == 3 && number == 3 && sizeof(Shape) == 4 * sizeof(T)))
@@ -114,8 +118,10 @@ std::vector<Shape> scene(Places<T, D>& places) {
                 ++number;
             });
         shapes.push_back(shape);
+        // Repeat an earlier shape.
         if (kind == 3 && random.bits() % 2 == 0) shapes.push_back(shapes[random.bits() % shapes.size()]);
     }
+    // Turn all shapes and turn them back.
     if constexpr (sizeof(Shape) % (D * sizeof(T)) == 0)
         if (kind == 4) turn_and_turn_back<T>(shapes, random.uniform(0, 2 * std::numbers::pi));
     return shapes;
@@ -128,7 +134,7 @@ struct Questions {
     std::vector<Box<T, D>> boxes;
 };
 
-/// The points that shapes are given by.
+/// The points that define the shapes.
 template <class Shape, class T, int D>
 std::vector<Vec<T, D>> corners_of(std::vector<Shape> shapes, const Vec<T, D>&) {
     std::vector<Vec<T, D>> corners;
@@ -154,6 +160,7 @@ public:
         Questions<T, D> all;
         const bool picture = below(8) == 0;
         const Vec<T, D> eye = place(), target = place(), across = place() - eye;
+        // In one round of eight the rays are those of a picture, 16 to a row.
         for (std::size_t i = 0; i < rays; ++i) {
             all.rays.push_back(ray());
             if (!picture) continue;
@@ -161,6 +168,7 @@ public:
             d[0] += across[0] * T(i % 16) / 64, d[1] += across[1] * T(i / 16) / 64;
             all.rays.back() = {eye, d};
         }
+        // Boxes may be flat or a single point.
         for (std::size_t i = 0; i < others; ++i) {
             all.points.push_back(place());
             Box<T, D> box = Box<T, D>().expand(place()).expand(place());
@@ -174,7 +182,8 @@ public:
 private:
     std::uint64_t below(std::uint64_t n) { return random_.bits() % n; }
     Vec<T, D> corner() { return corners_[below(corners_.size())]; }
-    /// A corner, next to one, between some, or anywhere.
+    /// A corner, a point next to a corner or between some, a near or far point on a line through two, or a
+    /// point anywhere.
     Vec<T, D> place() {
         Vec<T, D> p = corner();
         switch (below(6)) {
@@ -221,6 +230,7 @@ private:
         Ray<T, D> r;
         r.origin = place();
         r.direction = place() - r.origin;
+        // Change the direction: along an axis, nearly along one, or any.
         const auto axis = static_cast<int>(below(D));
         switch (below(8)) {
             case 0: {  // along an axis
@@ -240,6 +250,7 @@ private:
             default:
                 break;
         }
+        // Multiply one direction in eight by a power of two.
         constexpr int most = std::is_same_v<T, float> ? 148 : 1073;  // lengths down to subnormal ones
         if (const auto lengths = below(16); lengths < 2) {
             const int reach = lengths == 0 ? 60 : most;
@@ -247,6 +258,7 @@ private:
                 std::ldexp(T(1), static_cast<int>(below(2 * static_cast<std::uint64_t>(reach) + 1)) - reach);
             r.direction = r.direction * length;
         }
+        // Set special numbers, and intervals that begin or end on the way.
         if (below(16) == 0) r.direction[axis] = special();
         if (below(64) == 0) r.origin[axis] = special();
         if (below(4) == 0) r.t_min = below(2) ? T(1) : T(0.5);

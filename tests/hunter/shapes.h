@@ -66,7 +66,7 @@ void for_each_number(Ray<T, D>& r, F f) {
     f(r.t_min), f(r.t_max);
 }
 
-/// C++ that gives the same bits.
+/// Writes C++ code that gives the same bits.
 template <std::floating_point T>
 void write(std::ostream& out, T x) {
     if (x != x)

@@ -1,4 +1,4 @@
-/// Makes a scene and a question that fail as small and as plain as they still fail.
+/// Shrinks a scene and a query that fail to a smaller and plainer scene and query that still fail.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace hedgerow::hunter {
 
-/// Leaves out shapes, first half of them at a time, at last one by one (Zeller and Hildebrandt 2002, the
-/// greedy part). `fails(shapes)`.
+/// Leaves out shapes for which `fails(shapes)` stays true: first half of the shapes at a time, at last one by
+/// one (the greedy part of Zeller and Hildebrandt 2002).
 template <class Shape, class Fails>
 std::vector<Shape> fewer(std::vector<Shape> shapes, Fails fails) {
     for (std::size_t piece = shapes.size() / 2; piece > 0; piece /= 2)
@@ -26,7 +26,7 @@ std::vector<Shape> fewer(std::vector<Shape> shapes, Fails fails) {
     return shapes;
 }
 
-/// Tries plainer values of each number of `thing`, which `fails()` looks at.
+/// Replaces each number of `thing` by a plainer value for which `fails()`, which reads `thing`, stays true.
 template <class Thing, class Fails>
 void plainer(Thing& thing, Fails fails) {
     for_each_number(thing, [&](auto& x) {

@@ -1,4 +1,4 @@
-/// Which structure is right for what, with the figures that say so.
+/// Recommends a structure for each need, with the figures behind the advice.
 #pragma once
 
 #include <hedgerow/compare/costs.h>
@@ -6,29 +6,32 @@
 namespace hedgerow::compare {
 
 struct AdviceOptions {
+    /// Number of queries in the need "a few queries".
     double few = 1000;
-    /// How many times the fastest's time a query may take where memory counts, for each set of rays: beyond
-    /// that a structure is absurdly slow. Where every structure is, for one set or another, the least slow
-    /// ones count. The engine's kernels alone are several times as fast as any other structure.
+    /// For the need "little memory": the most that a query may take in each set of rays, as a multiple of the
+    /// fastest structure's time. Slower structures are absurdly slow, and are left out. If every structure is
+    /// slow for some set, the least slow ones stay in. The engine's kernels alone are several times as fast
+    /// as any other structure.
     double slack = 10;
 };
 
 struct Ranked {
     std::string structure;
-    double figure;      ///< what it is ranked by
-    std::string terms;  ///< what that is made of: "12.1 ms build + 1000 x 0.8 us"
+    double figure;      ///< the figure to rank by, in Recommendation::unit
+    std::string terms;  ///< parts of the figure: "12.1 ms to build + 1,000 x 812 ns"
 };
 struct Recommendation {
     std::string need;    ///< "many queries"
-    std::string rule;    ///< what the figure is, and what was left out
-    std::string unit;    ///< of the figure: "s" or "bytes"
-    std::string reason;  ///< a sentence: why the first is the first, by its counts and the figures of others
-    /// Best first, never empty.
+    std::string rule;    ///< the definition of the figure, and which structures are left out
+    std::string unit;    ///< unit of the figure: "s" or "bytes"
+    std::string reason;  ///< why the first is the best, by its counts and the others' figures
+    /// The structures, best first. Never empty.
     std::vector<Ranked> ranking;
 };
 
-/// For a few queries, many queries, moving primitives and little memory. Queries are those of one kind, the
-/// mean over its sets of rays. Empty for no structures.
+/// Recommends structures for a few queries, many queries, moving primitives and little memory. Queries are
+/// those of the kind `ask`, as the mean over its sets of rays. Returns nothing for a comparison without
+/// structures.
 std::vector<Recommendation> advise(const Comparison& comparison, Ask ask, const AdviceOptions& options = {});
 
 }  // namespace hedgerow::compare

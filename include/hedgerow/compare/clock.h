@@ -1,15 +1,17 @@
-/// Clocks to measure with.
+/// Clocks for measurements.
 #pragma once
 
 namespace hedgerow::compare {
 
-/// Time on the wall, or what this thread, or all threads of the process, have worked: there what else runs on
-/// the machine does not count.
+/// Wall-clock time, or the processor time of this thread, or of all threads of the process. Processor time
+/// leaves out other load on the machine.
 enum class Clock { wall, thread, process };
 
-/// Seconds since some start. Where the system does not tell what was worked, the clock on the wall.
+/// Seconds since an arbitrary start. Where the system has no clock for processor time, the wall clock is
+/// used.
 double now(Clock clock);
 
+/// Seconds that a call of f takes.
 template <class F>
 double seconds_of(F f, Clock clock = Clock::thread) {
     const double start = now(clock);

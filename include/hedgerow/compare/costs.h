@@ -1,4 +1,4 @@
-/// What structures cost on a scene: plain figures, as they were measured.
+/// The costs of structures on a scene: plain figures, as measured.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace hedgerow::compare {
 
-/// What an index can be asked.
+/// Kinds of query.
 enum class Ask { closest_hit, any_hit, all_hits, closest_point, nearest, overlap };
 inline constexpr std::string_view ask_names[] = {"closest-hit",   "any-hit", "all-hits",
                                                  "closest-point", "nearest", "overlap"};
@@ -16,23 +16,25 @@ constexpr std::string_view name_of(Ask ask) {
     return ask_names[static_cast<std::size_t>(ask)];
 }
 
-/// One kind of query of one structure. Counts are means a query, and the same on every machine.
+/// The cost of one kind of query in one structure. Counts are means a query. They are the same on every
+/// machine if all queries were measured; a slow structure may have measured a sample whose size depends on
+/// the machine.
 struct QueryCost {
     Ask ask = Ask::closest_hit;
     std::string kind;       ///< "closest hit, random rays"
-    std::size_t asked = 0;  ///< how many queries the figures are from
-    double seconds = 0;     ///< a query: the median of the rounds
-    double spread = 0;      ///< between the slowest and the fastest round, as a share of the median
+    std::size_t asked = 0;  ///< number of queries that were measured
+    double seconds = 0;     ///< seconds a query, the median of the rounds
+    double spread = 0;      ///< slowest minus fastest round, as a share of the median
     double nodes = 0, leaves = 0, primitives = 0, skipped = 0;
 };
 
-/// How a structure follows primitives that move.
+/// The cost of updating a structure when primitives move.
 struct UpdateCost {
-    std::string_view how = "rebuild";  ///< all are followed: by a "refit", a "rebuild" or "one by one"
-    double one = 0, all = 0;           ///< seconds to follow one primitive, and all of them
-    double insert = 0, erase = 0;      ///< seconds a primitive, where single ones can change; else 0
-    /// After a refit: its SAH cost as a multiple of what it was, and its time a query as a multiple of what
-    /// one takes that is built anew over the moved primitives.
+    std::string_view how = "rebuild";  ///< update of all: "refit", "rebuild" or "one by one"
+    double one = 0, all = 0;           ///< seconds to update one primitive, and all of them
+    double insert = 0, erase = 0;      ///< seconds a primitive; 0 if single ones cannot change
+    /// After a refit: the SAH cost as a multiple of the cost before, and the time a query as a multiple of
+    /// the time in a structure that is rebuilt over the moved primitives.
     double drift = 1, slowdown = 1;
 };
 
@@ -40,35 +42,36 @@ struct StructureCost {
     std::string structure;
     double build_seconds = 0;  ///< the median of the builds
     int builds = 0;
-    std::size_t bytes = 0;  ///< beyond the primitives themselves
+    std::size_t bytes = 0;  ///< without the primitives themselves
     std::size_t nodes = 0, leaves = 0, items = 0;
     int depth = 0;
     std::vector<QueryCost> queries;
     UpdateCost update;
 };
 
-/// How many rays of a set meet nothing.
+/// The number of rays in a set, and how many of them hit nothing.
 struct RaySet {
     std::string_view kind;  ///< "coherent", "incoherent" or "random"
     std::size_t rays = 0, missed = 0;
 };
 
-/// Structures over one scene, all asked the same.
+/// The costs of structures over one scene, all measured with the same queries.
 struct Comparison {
-    std::string scene, primitive;  ///< what, and of what: "triangles"
+    std::string scene, primitive;  ///< the scene's name, and the kind of its primitives: "triangles"
     std::size_t size = 0;          ///< primitives
     int dimension = 3;
     std::vector<StructureCost> structures;
-    std::vector<RaySet> rays = {};  ///< none for points
-    /// The share of the primitives that the eye of the coherent rays sees from outside of the scene's box; 1
-    /// for an eye in the box. Nearly 0: an outer shell hides the rest.
+    std::vector<RaySet> rays = {};  ///< empty for points
+    /// The share of the primitives that are visible from the eye of the coherent rays, if that is outside the
+    /// scene's box; 1 if it is inside, for points and in the plane. Nearly 0 means that an outer shell hides
+    /// the rest.
     double seen_from_outside = 1;
-    bool finished = true;  ///< false: it was stopped, and holds the structures that were done
+    bool finished = true;  ///< false: the measurement was stopped, and some structures are missing
 };
 
-/// A figure of a kind of query, the mean over its sets of rays; 0 where it was not asked.
+/// The mean of a figure over the sets of rays of a kind of query; 0 if the kind was not measured.
 double query_mean(const StructureCost& structure, Ask ask, double QueryCost::*figure = &QueryCost::seconds);
-/// What is asked of most scenes of a kind: the closest hit, or the nearest points where rays meet nothing.
+/// The usual kind of query for the scene: closest hits if they were measured, else the nearest points.
 Ask usual_ask(const Comparison& comparison);
 
 }  // namespace hedgerow::compare

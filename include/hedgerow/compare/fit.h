@@ -1,4 +1,4 @@
-/// How a cost grows with the number of primitives: laws of two parameters, fitted by least squares.
+/// Growth of a cost with the number of primitives: laws with two parameters, fitted by least squares.
 #pragma once
 
 #include <span>
@@ -21,19 +21,20 @@ constexpr std::string_view name_of(Law law) {
 
 struct Fit {
     Law law = Law::power;
-    int dimension = 3;  ///< D of the root
+    int dimension = 3;  ///< D in Law::root
     double a = 0, b = 0;
-    /// Root of the mean square of (law − value) / value.
+    /// Root mean square of the relative errors (law − value) / value.
     double residual = 0;
 
     double operator()(double n) const;
 };
 
-/// The law's best parameters for values at sizes, both positive, at least two. Relative errors are what is
-/// made least (of their logarithms, for the power law), so that small sizes count as much as large ones.
+/// Fits the law's parameters to values at sizes. Both are positive, and there are at least two. Least squares
+/// are of the relative errors (of the errors of logarithms, for the power law), so that small sizes count as
+/// much as large ones.
 Fit fit(Law law, std::span<const double> sizes, std::span<const double> values, int dimension = 3);
 
-/// All laws, the one of the least residual first.
+/// Fits all laws and returns them by residual, the least first.
 std::vector<Fit> fits(std::span<const double> sizes, std::span<const double> values, int dimension = 3);
 
 }  // namespace hedgerow::compare

@@ -1,4 +1,4 @@
-/// How what structures cost grows with the scene.
+/// Growth of the costs of structures with the size of the scene.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace hedgerow::compare {
 
-/// One figure of one structure over scenes of several sizes.
+/// One figure of one structure, over scenes of several sizes.
 struct Growth {
     std::string structure;
     std::string_view figure;  ///< one of `growth_figures`
@@ -20,8 +20,9 @@ struct Growth {
 inline constexpr std::string_view growth_figures[] = {"build seconds", "seconds a query", "nodes a query",
                                                       "primitives a query"};
 
-/// For each structure that was measured on at least three of the scenes, its figures of queries of one kind
-/// (the mean over sets of rays). A figure that is 0 somewhere has no law, and is left out.
+/// Fits the figures of each structure that was measured on at least three of the scenes. Figures of queries
+/// are those of the kind `ask`, as the mean over its sets of rays. A figure that is 0 on some scene is left
+/// out, since no law fits.
 std::vector<Growth> growth_of(std::span<const Comparison> by_size, Ask ask);
 
 }  // namespace hedgerow::compare

@@ -1,4 +1,4 @@
-/// Builds structures over one scene, asks all the same, and measures.
+/// Builds structures over one scene, and measures the same queries on all of them.
 #pragma once
 
 #include <functional>
@@ -16,48 +16,55 @@
 namespace hedgerow::compare {
 
 struct MeasureOptions {
-    /// Of each kind; a structure that is too slow for its time is asked every second, third, ... of them.
+    /// Queries of each kind. A structure that is too slow for `seconds` gets only every second, third, ... of
+    /// them.
     std::size_t queries = 10'000;
-    /// Time for each structure and kind of query, over all rounds. At least one query is asked a round.
+    /// Seconds for each structure and kind of query, over all rounds. Each round makes at least one query.
     double seconds = 0.1;
-    /// 0: counts alone. Everything is built once, asked everything once, and not timed: seconds are 0.
+    /// Timed rounds. With 0 only counts are measured: everything is built once, each query is made once, and
+    /// seconds are 0.
     int rounds = 5;
-    /// A structure is built `rounds` times, or as often as begins within this time.
+    /// Seconds for builds: a structure is built `rounds` times, or as often as builds begin within this time.
     double build_seconds = 1;
-    /// Only what is asked here; empty: all.
+    /// The kinds of query to measure; empty: all.
     std::vector<Ask> asks;
-    /// Whether to change and move primitives too. Costs two builds more of what can be refitted.
+    /// Whether to measure updates too. For structures that can be refitted this takes two more builds.
     bool updates = true;
     std::uint64_t seed = 0;
-    /// Where coherent rays come from; none: from outside, as a picture is taken of what nobody knows.
+    /// Camera of the coherent rays; without one they come from an automatic camera outside the scene.
     std::optional<Camera> camera;
 };
 
-/// Whether primitives can be asked this: rays pass between points.
+/// Whether a set answers queries of this kind. Points do not answer rays, which pass between them.
 template <class P>
 constexpr bool can_be_asked(Ask ask) {
     return ask >= Ask::closest_point || !PointSet<ViewOf<P>>;
 }
 
-/// Two structures answered differently, which none may: a fault of the library.
+/// Thrown if two structures gave different answers, which is a fault of the library.
 class Disagreement : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Structures by their names and options. Rounds go through all structures in turn, so that whatever else
-/// the machine does meets them alike; all are held at once. Every answer is compared with that of the
-/// default structure: throws Disagreement where one differs, naming structure and query. Builds run on
-/// `executor`, queries on one thread. When the progress is cancelled, those that were measured in full are
-/// returned. Throws InputError for unknown names and options, and for a set without primitives.
+/// Builds structures, given by names and options, and measures builds, queries and updates. Each round runs
+/// all structures in turn, so that other load on the machine affects them alike; all structures are in memory
+/// at once. Builds run on `executor`, queries on one thread. Answers are compared with those of the default
+/// structure.
 ///
-/// Times are the thread's own, where the system tells it: what else runs does not count. Only builds on
-/// several threads are measured by the clock on the wall.
+/// Throws Disagreement, which names structure and query, where an answer differs. Throws InputError for
+/// unknown names and options, and for a set without primitives. If the progress is cancelled, returns the
+/// structures that were timed in at least one round (with `rounds` 0: that were counted), perhaps without
+/// updates; throws Cancelled if that happens before the first structure is begun.
 ///
-/// Coherent rays are a picture's. Incoherent ones leave random places on all surfaces, spread evenly by area,
-/// from the front of triangles and about the normal by the cosine. Random ones join two random points of the
-/// scene's box. Points are random in that box; boxes, 1/100 of its
-/// diagonal wide, stand around random primitives. What moves is bent by a tenth of the scene.
+/// Times are processor time of the thread, where the system has such a clock: other load does not count. Only
+/// builds on several threads are measured on the wall clock.
+///
+/// Coherent rays are those of a picture. Incoherent rays start at random places on all surfaces, spread
+/// evenly by area, and leave the front of triangles, cosine-distributed about the normal. Random rays go from
+/// one random point of the scene's box through another. Points are random in that box. Boxes are centred at
+/// random primitives and 1/100 of its diagonal wide. Moving primitives are bent by up to a tenth of the
+/// scene.
 ///
 /// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T>, T float or double.
 template <class P>
@@ -65,7 +72,7 @@ Comparison measure(const P& primitives, std::span<const std::string> structures,
                    const MeasureOptions& options = {}, Executor& executor = serial_executor(),
                    const Progress& progress = {});
 
-/// The middle one; of an even number, the mean of both. Not of none.
+/// The median; of an even number of values, the mean of the middle two. There must be at least one value.
 double median(std::vector<double> all);
 
 }  // namespace hedgerow::compare

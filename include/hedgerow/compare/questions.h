@@ -1,4 +1,4 @@
-/// What all structures of a comparison are asked: one kind of query, many times.
+/// The queries of a comparison: many of one kind, the same for all structures.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace hedgerow::compare {
 
-/// 64 bits that tell answers apart: FNV-1a over words (Fowler, Noll and Vo 1991). Numbers count by value, so
-/// that 0 and −0 are the same.
+/// A hash of 64 bits to compare answers by: FNV-1a over words (Fowler, Noll and Vo 1991). Numbers are hashed
+/// by value, so that 0 and −0 are the same.
 class Fingerprint {
 public:
     std::uint64_t value() const { return value_; }
@@ -47,7 +47,7 @@ private:
     std::uint64_t value_ = 0xCBF29CE484222325u;
 };
 
-/// Queries of one kind, and room for their answers, so that asking again allocates nothing.
+/// Queries of one kind, with memory for their answers, so that repeating the queries allocates nothing.
 template <std::floating_point T, int D>
 class Questions {
 public:
@@ -55,10 +55,10 @@ public:
     using Points = std::vector<Vec<T, D>>;
     using Boxes = std::vector<Box<T, D>>;
     using List = std::variant<Rays, Points, Boxes>;
-    /// How many are nearest.
+    /// Number of neighbours that Ask::nearest finds.
     static constexpr std::size_t k = 8;
 
-    /// `list` holds what `ask` is about.
+    /// `list` holds the probes of the queries: rays, points or boxes, as `ask` needs.
     Questions(Ask ask, std::string kind, List list)
         : ask_(ask), kind_(std::move(kind)), list_(std::move(list)), any_(new bool[size()]) {
         hits_.resize(ask == Ask::closest_hit ? size() : 0);
@@ -70,7 +70,7 @@ public:
     std::size_t size() const {
         return std::visit([](const auto& all) { return all.size(); }, list_);
     }
-    /// Each step-th of them, from the first on.
+    /// Every step-th query, from the first on.
     Questions thinned(std::size_t step) const {
         return std::visit(
             [&](const auto& all) {
@@ -81,12 +81,12 @@ public:
             list_);
     }
 
-    /// Asks them all and lets the answers go: what is timed.
+    /// Makes all queries and discards the answers. This is the timed work.
     void put_to(const AnyIndex<T, D>& index) {
         each_answer(index, 0, size(), {}, [](const auto&) {});
     }
-    /// A fingerprint of each answer, and what was visited in all. Throws Cancelled if `progress` is
-    /// cancelled, which is looked at every 16 queries.
+    /// Makes all queries, adds their visits to `visits`, and returns a fingerprint of each answer. Checks the
+    /// progress every 16 queries, and throws Cancelled if it is cancelled.
     std::vector<std::uint64_t> answers(const AnyIndex<T, D>& index, Visits& visits,
                                        const Progress& progress = {}) {
         std::vector<std::uint64_t> prints;
@@ -106,10 +106,13 @@ public:
     }
 
 private:
-    /// f(answer) for `count` questions in turn, from the first on. `visits`: one for each of them, or none.
+    /// Calls f(answer) for each of `count` queries, in order from number `first` on. `visits` has one element
+    /// for each of these queries, or none.
     template <class F>
     void each_answer(const AnyIndex<T, D>& index, std::size_t first, std::size_t count,
                      std::span<Visits> visits, F f) {
+        // Queries with an answer of fixed size run as one batch; those with a list of answers run one by one
+        // and reuse the list.
         const auto part = [&]<class E>(std::vector<E>& all) { return std::span(all).subspan(first, count); };
         const auto batch = [&](const auto& found, auto ask) {
             ask();

@@ -1,4 +1,4 @@
-/// Two boxes side by side, the volumes of a binary node: of each axis both low planes, then both high ones.
+/// The boxes of a binary node's two children. For each axis: both low planes, then both high planes.
 #pragma once
 
 #include <hedgerow/geometry/box.h>

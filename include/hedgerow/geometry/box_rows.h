@@ -1,4 +1,4 @@
-/// Up to 16 boxes in rows, the volumes of a wide node, and how a probe enters four of them at a time.
+/// The boxes of a wide node's children (up to 16), stored in rows, so that a probe tests four at a time.
 #pragma once
 
 #include <hedgerow/geometry/box.h>
@@ -6,14 +6,14 @@
 
 namespace hedgerow {
 
-/// Of each axis the row of the low planes, then that of the high ones. A row has `places`, a multiple of
-/// four, of which the first `boxes` are in use.
+/// A view of boxes stored in rows: for each axis the row of low planes, then the row of high planes. A row
+/// has `places` numbers, a multiple of four, of which the first `boxes` are in use.
 template <std::floating_point T, int D>
 class BoxRows {
 public:
     using Scalar = T;
     static constexpr int dimension = D;
-    static constexpr int width = 16;  // at most
+    static constexpr int width = 16;  // the most boxes
 
     BoxRows(const T* rows, int places, int boxes) : rows_(rows), places_(places), boxes_(boxes) {}
 
@@ -23,11 +23,12 @@ public:
         for (int k = 0; k < D; ++k) b.low[k] = low(k)[i], b.high[k] = high(k)[i];
         return b;
     }
-    /// The planes across an axis.
+    /// The row of low planes and the row of high planes across an axis.
     const T* low(int axis) const { return rows_ + 2 * axis * places_; }
     const T* high(int axis) const { return low(axis) + places_; }
 
-    /// Bit i says what bit i − k of f(k) does, f being asked of the boxes from k to k + 3.
+    /// Calls f(k) for each group of four boxes k..k+3 and concatenates the bits. Bits past the last box are
+    /// 0.
     template <class F>
     unsigned by_fours(F f) const {
         unsigned bits = 0;

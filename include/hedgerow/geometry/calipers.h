@@ -8,7 +8,7 @@
 
 namespace hedgerow {
 
-/// A rectangle by the direction of one side, of length 1, and the lengths of that side and the other.
+/// A rectangle: the direction of one side, of length 1, and the lengths of that side and of the other.
 struct Rectangle {
     Vec2d side;
     double along, across;
@@ -21,15 +21,15 @@ inline double turn(const Vec2d& o, const Vec2d& a, const Vec2d& b) {
 }
 }  // namespace detail
 
-/// The rectangles around points that have a side along an edge of the points' hull. An object keeps its
-/// memory for the next points.
+/// Finds the rectangles around points in the plane that have a side along an edge of the points' convex hull.
+/// An object reuses its memory for the next points.
 class Calipers {
 public:
-    /// Calls f(rectangle) for each edge of the hull (Freeman and Shapira 1975): the rectangle of least area
-    /// is among them, and the one of least perimeter. Their sides may be too short by some roundings. No call
-    /// where all points are equal. Sorts the points and drops repeated ones. O(n log n + h²) for h corners of
+    /// Calls f(rectangle) for each edge of the hull (Freeman and Shapira 1975). The rectangles of least area
+    /// and of least perimeter are among them. Their sides may be too short by some roundings. Makes no call
+    /// if all points are equal. Sorts the points and drops repeated ones. O(n log n + h²) for h corners of
     /// the hull: each edge measures all corners, since pointers that only move forward (Toussaint 1983) get
-    /// stuck at corners that are there by rounding alone.
+    /// stuck at corners that exist by rounding alone.
     template <class F>
     void for_each_rectangle(std::vector<Vec2d>& points, F f) {
         find_hull(points);
@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    /// The hull's corners counterclockwise (Andrew 1979).
+    /// Stores the corners of the hull in counterclockwise order (Andrew 1979).
     void find_hull(std::vector<Vec2d>& points) {
         std::sort(points.begin(), points.end(), [](const Vec2d& a, const Vec2d& b) {
             return a[0] < b[0] || (a[0] == b[0] && a[1] < b[1]);
@@ -60,6 +60,7 @@ private:
                 hull_.pop_back();
             hull_.push_back(p);
         };
+        // The lower chain, then the upper chain back to the first point.
         for (const Vec2d& p : points) add(p, 0);
         const std::size_t top = hull_.size() - 1;
         for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], top);

@@ -1,4 +1,4 @@
-/// The part of a shape that lies in a box, by its bounds.
+/// Bounds of the part of a shape that lies in a box.
 #pragma once
 
 #include <array>
@@ -10,12 +10,11 @@ namespace hedgerow {
 namespace detail {
 /// A convex polygon of few corners.
 struct ClipPolygon {
-    std::array<Vec3d, 9> corner;  // a triangle cut by six planes
+    std::array<Vec3d, 9> corner;  // enough for a triangle cut by six planes
     std::size_t size = 0;
 
     void add(const Vec3d& p) { corner[size++] = p; }
-    /// What lies on the side of the plane x[axis] = position where sign·(x − position) <= 0 (Sutherland and
-    /// Hodgman 1974).
+    /// The part with sign·(x[axis] − position) <= 0 (Sutherland and Hodgman 1974).
     ClipPolygon cut(int axis, double position, double sign) const {
         ClipPolygon kept;
         for (std::size_t i = 0; i < size; ++i) {
@@ -28,8 +27,9 @@ struct ClipPolygon {
     }
 
 private:
-    /// Where an edge between heights a and b of unlike signs crosses the plane, from the nearer end: it errs
-    /// by fewer than 8 roundings of the largest coordinate.
+    /// The point at which the edge from p (at height a) to q (at height b, of the other sign) crosses the
+    /// plane. Starts from the end nearer to the plane, so that the point errs by fewer than 8 roundings of
+    /// the largest coordinate.
     static Vec3d crossing(const Vec3d& p, double a, const Vec3d& q, double b, int axis, double position) {
         if (std::abs(a) > std::abs(b)) return crossing(q, b, p, a, axis, position);
         Vec3d at = p + (q - p) * (a / (a - b));
@@ -40,8 +40,8 @@ private:
 }  // namespace detail
 
 /// Bounds of a triangle's part in a box; empty if there is none. Computed in double and rounded to T. A
-/// corner of the part is a crossing of crossings, six deep at most: each side errs by fewer than 48 roundings
-/// of double of the largest coordinate, and one of T.
+/// corner of the part may be a crossing of crossings, at most six deep. Each side of the bounds therefore
+/// errs by fewer than 48 roundings of double of the largest coordinate, and one of T.
 template <class T>
 Box<T, 3> clipped_bounds(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
     const Box<T, 3> whole = tri.bounds();
@@ -56,10 +56,12 @@ Box<T, 3> clipped_bounds(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
     return intersection(bounds, intersection(whole, box));
 }
 
-/// The same of a segment (Liang and Barsky 1984).
+/// Bounds of a segment's part in a box; empty if there is none (Liang and Barsky 1984). Computed in double
+/// and rounded to T.
 template <class T, int D>
 Box<T, D> clipped_bounds(const Segment<T, D>& s, const Box<T, D>& box) {
     const Vec<double, D> a(s.a), along = Vec<double, D>(s.b) - a;
+    // Intersect, over all axes, the intervals of the parameter that lie between the box's planes.
     double first = 0, last = 1;
     for (int k = 0; k < D; ++k) {
         const double low = static_cast<double>(box.low[k]) - a[k];

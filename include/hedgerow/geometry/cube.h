@@ -5,8 +5,8 @@
 
 namespace hedgerow {
 
-/// By its middle and half its width, which is a power of two. Bit k of an orthant's number says that it lies
-/// on the high side of the middle along axis k.
+/// A cube, given by its middle and half its width, which is a power of two. Orthant i is on the high side of
+/// the middle along axis k if bit k of i is set.
 template <std::floating_point T, int D>
 struct Cube {
     Vec<T, D> middle;
@@ -19,13 +19,13 @@ struct Cube {
         for (int k = 0; k < D; ++k) c.middle[k] += i >> k & 1u ? quarter : -quarter;
         return c;
     }
-    /// Twice as wide, away from the corner that it shares with this cube: which is orthant i of it.
+    /// The cube of twice the width that has this cube as its orthant i.
     constexpr Cube doubled(unsigned i) const {
         Cube c{middle, half * 2};
         for (int k = 0; k < D; ++k) c.middle[k] += i >> k & 1u ? -half : half;
         return c;
     }
-    /// Whether middle ± by are numbers of T, so that nothing is rounded.
+    /// Whether middle − by and middle + by are exact in T along every axis.
     constexpr bool exact(T by) const {
         for (int k = 0; k < D; ++k) {
             const T low = middle[k] - by, high = middle[k] + by;
@@ -34,7 +34,7 @@ struct Cube {
         }
         return true;
     }
-    /// Whether the orthants' middles are numbers of T.
+    /// Whether the middles and half widths of the orthants are exact in T.
     constexpr bool divisible() const {
         const T quarter = half * T(0.5);
         return quarter > 0 && quarter * 2 == half && exact(quarter);

@@ -1,6 +1,6 @@
-/// The point of a shape closest to a given one, and squared distances. Squares are summed in the order of the
-/// axes everywhere, so that a bound by a box never exceeds the distance to what is inside it (rounding is
-/// monotone, and closest points are clamped into the box of their shape).
+/// Closest points of shapes, and squared distances. Squares are always summed in the order of the axes. The
+/// computed distance to a box therefore never exceeds the computed distance to a shape inside it: rounding is
+/// monotone, and closest points are clamped into the box of their shape.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr T distance2(const Vec<T, D>& p, const Vec<T, D>& q) {
     return length2(abs(p - q));
 }
 
-/// Per axis how far p lies outside the box; 0 inside.
+/// How far p is outside the box along each axis; 0 inside.
 template <class T, int D>
 constexpr Vec<T, D> offset_outside(const Vec<T, D>& p, const Box<T, D>& box) {
     Vec<T, D> d;
@@ -34,7 +34,8 @@ constexpr Vec<T, D> clamped(const Vec<T, D>& p, const Box<T, D>& box) {
 }
 
 namespace detail {
-/// What brings vectors to lengths whose fourth powers are numbers. Floats in double need nothing.
+/// A power of two that scales the vectors so that fourth powers of their lengths neither overflow nor
+/// underflow. Returns 1 for floats, which need no scaling in double.
 template <class T, int D, class... More>
 double safe_scale(const Vec<double, D>& first, const More&... more) {
     if constexpr (std::is_same_v<T, float>) return 1;
@@ -42,6 +43,7 @@ double safe_scale(const Vec<double, D>& first, const More&... more) {
 }
 }  // namespace detail
 
+/// The closest point of a segment, in double.
 template <class T, int D>
 Vec<T, D> closest_point(const Vec<T, D>& query, const Segment<T, D>& s) {
     using V = Vec<double, D>;
@@ -53,8 +55,9 @@ Vec<T, D> closest_point(const Vec<T, D>& query, const Segment<T, D>& s) {
     return clamped(Vec<T, D>(V(s.a) + (V(s.b) - V(s.a)) * u), s.bounds());
 }
 
-/// The foot on the plane if it lies inside, else the best of the edges: in double. In a sliver rounding may
-/// take a foot for inside or not, so there both are tried; it then errs by no more than the sliver's width.
+/// The closest point of a triangle, in double: the foot of the perpendicular to its plane if the foot is
+/// inside, else the closest point of the edges. In a sliver, rounding may decide whether the foot is inside,
+/// so the edges are tried in either case. The point then errs by no more than the sliver's width.
 template <class T, int D>
 Vec<T, D> closest_point(const Vec<T, D>& query, const Triangle<T, D>& tri) {
     using V = Vec<double, D>;
@@ -67,11 +70,13 @@ Vec<T, D> closest_point(const Vec<T, D>& query, const Triangle<T, D>& tri) {
     const double area2 = product(bb, cc) - product(bc, bc);
     const double v = (product(cc, pb) - product(bc, pc)) / area2;
     const double w = (product(bb, pc) - product(bc, pb)) / area2;
-    const bool inside = v >= 0 && w >= 0 && v + w <= 1;  // no, if there is no area
+    const bool inside = v >= 0 && w >= 0 && v + w <= 1;  // false if there is no area
     const Vec<T, D> foot =
         inside ? clamped(Vec<T, D>(V(tri.a) + whole_ab * v + whole_ac * w), tri.bounds()) : tri.a;
+    // Return a foot that is inside unless the triangle is a sliver: sin² of its angle at a is at most 2^-8.
     if (inside && area2 > 0x1p-8 * product(bb, cc)) return foot;
 
+    // Take the closest of the foot, if it is inside, and the edges.
     Vec<T, D> best = foot;
     for (const auto& edge : {Segment<T, D>{tri.a, tri.b}, {tri.b, tri.c}, {tri.c, tri.a}}) {
         const auto q = clamped(closest_point(query, edge), tri.bounds());
@@ -80,7 +85,8 @@ Vec<T, D> closest_point(const Vec<T, D>& query, const Triangle<T, D>& tri) {
     return best;
 }
 
-/// On the surface; for the center itself, the point along the first axis.
+/// The closest point of the sphere's surface, in double. For the center itself, the point along the first
+/// axis.
 template <class T, int D>
 Vec<T, D> closest_point(const Vec<T, D>& p, const Sphere<T, D>& s) {
     Vec<double, D> from = Vec<double, D>(p) - Vec<double, D>(s.center);

@@ -1,4 +1,4 @@
-/// Ray meets shape: triangle (in the three ways of the field), sphere, segment, box.
+/// Ray intersection tests: triangle (by the three usual methods), sphere, segment, box.
 #pragma once
 
 #include <algorithm>
@@ -11,23 +11,23 @@
 
 namespace hedgerow {
 
-/// Where a ray meets a surface: parameter t, and the surface's own coordinates. On a triangle the point is
-/// (1 − u − v)·a + u·b + v·c; on a segment a + u·(b − a); on a sphere u and v are 0.
+/// An intersection of a ray and a surface: the ray's parameter t, and coordinates u, v on the surface. On a
+/// triangle the point is (1 − u − v)·a + u·b + v·c; on a segment a + u·(b − a); on a sphere u and v are 0.
 template <std::floating_point T>
 struct Meeting {
     T t, u, v;
     friend constexpr bool operator==(const Meeting&, const Meeting&) = default;
 };
 
-/// Both ends of the part of a ray that lies in a box; none if entry > exit.
+/// The part of a ray or line inside a box or other volume, from `entry` to `exit`. Empty if entry > exit.
 template <std::floating_point T>
 struct Interval {
     T entry, exit;
 };
 
-/// Ray against box by slabs (Kay and Kajiya 1986), clipped to the ray's own interval. A flat box is a box,
-/// and a ray parallel to a slab is inside it or not: no 0·∞ is formed. The plain form, in the working
-/// precision; what structures use is the conservative RayProbe::enter.
+/// Ray-box test by slabs (Kay and Kajiya 1986). Returns the part of the ray's own interval inside the box. A
+/// flat box can be hit. A ray parallel to a slab is inside it or not, so 0·∞ is never computed. This is the
+/// plain form, in the working precision; structures use the conservative RayProbe::enter.
 template <class T, int D>
 constexpr std::optional<Interval<T>> meet(const Ray<T, D>& ray, const Box<T, D>& box) {
     Interval<T> in{ray.t_min, ray.t_max};
@@ -46,8 +46,8 @@ constexpr std::optional<Interval<T>> meet(const Ray<T, D>& ray, const Box<T, D>&
     return in;
 }
 
-/// First way: meet the triangle's plane, then ask whether the point lies on the inner side of the three
-/// edges. The readable one; it leaks where edges meet.
+/// Ray-triangle test, first method: intersects the triangle's plane, then tests whether the point is on the
+/// inner side of the three edges. Easy to read, but leaks where edges meet.
 template <class T>
 constexpr std::optional<Meeting<T>> meet_by_plane(const Ray<T, 3>& ray, const Triangle<T, 3>& tri) {
     const Vec<T, 3> n = tri.normal();
@@ -64,8 +64,8 @@ constexpr std::optional<Meeting<T>> meet_by_plane(const Ray<T, 3>& ray, const Tr
     return Meeting<T>{t, u / area, v / area};
 }
 
-/// Second way: the triangle as the affine image of the unit triangle; Cramer's rule for (t, u, v) (Möller and
-/// Trumbore 1997). Fast, and still open at edges.
+/// Ray-triangle test, second method (Möller and Trumbore 1997): takes the triangle as the affine image of the
+/// unit triangle, and solves for (t, u, v) by Cramer's rule. Fast, but still leaks at edges.
 template <class T>
 constexpr std::optional<Meeting<T>> meet_by_barycentrics(const Ray<T, 3>& ray, const Triangle<T, 3>& tri) {
     const Vec<T, 3> e1 = tri.b - tri.a;
@@ -84,9 +84,9 @@ constexpr std::optional<Meeting<T>> meet_by_barycentrics(const Ray<T, 3>& ray, c
     return Meeting<T>{t, u, v};
 }
 
-/// Third way, the default: watertight (Woop, Benthin, Wald, JCGT 2013). Space is sheared so that the ray runs
-/// along its longest axis; then only the signs of three 2D edge functions matter, and two triangles that
-/// share an edge compute the same number with opposite sign.
+/// Ray-triangle test, third method and the default: watertight (Woop, Benthin, Wald, JCGT 2013). Space is
+/// sheared so that the ray runs along its longest axis. Then only the signs of three 2D edge functions
+/// matter, and two triangles that share an edge compute the same number for it, with opposite signs.
 template <std::floating_point T>
 struct WatertightRay {
     Vec<T, 3> origin;
@@ -105,7 +105,7 @@ struct WatertightRay {
     }
 };
 
-/// One corner in the sheared space of a ray.
+/// A triangle's corner in the sheared space of a ray.
 template <std::floating_point T>
 struct ShearedCorner {
     T x, y, z;
@@ -120,14 +120,14 @@ constexpr ShearedCorner<T> shear(const WatertightRay<T>& ray, const Vec<T, 3>& c
 }
 
 namespace detail {
-/// Powers of two that bring the corners to about 1, each axis by itself: a triangle may be 10³⁰⁰ times as
-/// long as it is wide.
+/// Powers of two that scale the corners to about 1, one for each axis: a triangle may be 10³⁰⁰ times as long
+/// as it is wide.
 struct ShearedScale {
     double x = 1, y = 1;
 };
 constexpr ShearedScale scale_of(const ShearedCorner<float>&, const ShearedCorner<float>&,
                                 const ShearedCorner<float>&) {
-    return {};  // products of floats are exact in double as they are
+    return {};  // products of floats are exact in double without scaling
 }
 inline ShearedScale scale_of(const ShearedCorner<double>& a, const ShearedCorner<double>& b,
                              const ShearedCorner<double>& c) {
@@ -137,14 +137,15 @@ inline ShearedScale scale_of(const ShearedCorner<double>& a, const ShearedCorner
     return {scale_to_one(largest(a.x, b.x, c.x)), scale_to_one(largest(a.y, b.y, c.y))};
 }
 
-/// x1·y2 − x2·y1, exact in sign.
+/// The edge function p.x·q.y − p.y·q.x, exact in sign.
 constexpr double edge(const ShearedCorner<float>& p, const ShearedCorner<float>& q, const ShearedScale&) {
     return product(double(p.x), double(q.y)) - product(double(p.y), double(q.x));
 }
-/// The same where the scaled products may underflow: the sign of the exact value, and the least magnitude.
+/// The edge function where the scaled products may underflow: the sign of the exact value, and a magnitude of
+/// at least the smallest subnormal.
 [[gnu::noinline]] inline double tiny_edge(const ShearedCorner<double>& p, const ShearedCorner<double>& q,
                                           double value) {
-    if ((p.x == 0 || q.y == 0) && (p.y == 0 || q.x == 0)) return 0;  // common, and plain
+    if ((p.x == 0 || q.y == 0) && (p.y == 0 || q.x == 0)) return 0;  // common: both products are 0
     const int sign = ExactSum().add(p.x, q.y).subtract(p.y, q.x).sign();
     return sign * std::max(std::fabs(value), std::numeric_limits<double>::denorm_min());
 }
@@ -154,9 +155,9 @@ inline double edge(const ShearedCorner<double>& p, const ShearedCorner<double>& 
 }
 }  // namespace detail
 
-/// Second pass: U, V, W again with exact signs, then t, u, v with real divisions, in this one order. Every
-/// way to a hit (scalar, lanes, any instruction set) ends here, which is what makes the bits equal. The
-/// interval of t is not asked. For what it leaves of the error see RayProbe.
+/// Second pass of the watertight test: computes U, V, W again with exact signs, then t, u, v with real
+/// divisions, always in this order. Every path to a hit (scalar, lanes, any instruction set) ends here, so
+/// all paths give the same bits. Does not check t against an interval. For the remaining error see RayProbe.
 template <class T>
 std::optional<Meeting<T>> meet_exactly(const WatertightRay<T>& ray, const ShearedCorner<T>& a,
                                        const ShearedCorner<T>& b, const ShearedCorner<T>& c) {
@@ -166,12 +167,13 @@ std::optional<Meeting<T>> meet_exactly(const WatertightRay<T>& ray, const Sheare
     const double w = detail::edge(b, a, scale);
     if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
     const double det = u + v + w;
-    if (det == 0) return std::nullopt;  // seen edge-on, or of no area
+    if (det == 0) return std::nullopt;  // the triangle is seen edge-on or has no area
     const double wa = u / det, wb = v / det, wc = w / det;
     const double z = (product(wa, double(a.z)) + product(wb, double(b.z))) + product(wc, double(c.z));
     return Meeting<T>{rounded_to<T>(z / double(ray.direction_z)), rounded_to<T>(wb), rounded_to<T>(wc)};
 }
 
+/// The watertight test for any t: a filter in the working precision, then meet_exactly.
 template <class T>
 std::optional<Meeting<T>> meet(const WatertightRay<T>& ray, const Triangle<T, 3>& tri) {
     const auto a = shear(ray, tri.a), b = shear(ray, tri.b), c = shear(ray, tri.c);
@@ -190,9 +192,9 @@ std::optional<Meeting<T>> meet_watertight(const Ray<T, 3>& ray, const Triangle<T
     return m;
 }
 
-/// Both crossings of a ray's line with a sphere's surface, in double; the caller takes the first inside its
-/// interval. The discriminant is formed from the point of closest approach, which keeps far origins accurate
-/// (Haines et al., Ray Tracing Gems 2019, ch. 7).
+/// The two intersections of a ray's line with a sphere's surface, in double; the caller takes the first one
+/// inside its interval. The discriminant is computed from the line's point closest to the center, which stays
+/// accurate for far origins (Haines et al., Ray Tracing Gems 2019, ch. 7).
 template <class T, int D>
 std::optional<Interval<T>> meet_line(const Vec<T, D>& origin, const Vec<T, D>& direction,
                                      const Sphere<T, D>& s) {
@@ -210,8 +212,9 @@ std::optional<Interval<T>> meet_line(const Vec<T, D>& origin, const Vec<T, D>& d
     return Interval<T>{rounded_to<T>((b / a - half) * unit), rounded_to<T>((b / a + half) * unit)};
 }
 
-/// Ray against segment in the plane: signs of cross products in double, exact for float; a segment that lies
-/// along the ray is met nowhere, as a triangle edge-on is.
+/// Ray-segment test in the plane, for the ray's whole line. The offsets of the ends from the line are
+/// computed in T, each from its end alone, and their signs decide; u and t follow in double. A segment that
+/// lies along the ray is not hit, like a triangle seen edge-on.
 template <class T>
 std::optional<Meeting<T>> meet_line(const Vec<T, 2>& origin, const Vec<T, 2>& direction,
                                     const Segment<T, 2>& s) {

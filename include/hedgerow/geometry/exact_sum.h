@@ -1,4 +1,4 @@
-/// Exact signs of polynomials: what a predicate asks where rounding leaves the sign in doubt.
+/// Exact signs of polynomials, for predicates whose sign rounding leaves in doubt.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace hedgerow {
 
-/// A sum of products of up to three finite doubles, without any rounding, overflow or underflow. The positive
-/// and the negative products are summed apart, each in a fixed-point number that is wide enough for all of
-/// them (Kulisch 2008, the long accumulator). A product costs some 20 ns: predicates filter first.
+/// A sum of products of up to three finite doubles, without any rounding, overflow or underflow. Positive and
+/// negative products are summed separately, each in a fixed-point number that is wide enough for all of them
+/// (Kulisch 2008, the long accumulator). A product costs some 20 ns, so predicates filter first.
 class ExactSum {
 public:
     ExactSum& add(double a, double b, double c = 1) { return add_product(a, b, c, false); }
@@ -25,15 +25,15 @@ public:
     }
 
 private:
-    // Products are integers of 159 bits times 2^e, where e lies between 3·(−1074) and 3·971.
+    // A product is an integer of 159 bits times 2^e, with e from 3·(−1074) to 3·971.
     static constexpr int least_exponent = -1074;
     static constexpr std::size_t words = (3 * (971 - least_exponent) + 159) / 32 + 3;
     using Accumulator = std::array<std::uint32_t, words>;
-    using Product = std::array<std::uint32_t, 6>;  // 159 bits, and up to 31 by which they are shifted
+    using Product = std::array<std::uint32_t, 6>;  // 159 bits, shifted by up to 31 more
 
     struct Parts {
         std::uint64_t significand;
-        int exponent;  // of the significand's last bit, counted from the least of all doubles
+        int exponent;  // of the significand's last bit, relative to least_exponent
         bool negative;
     };
     static Parts parts(double x) {
@@ -59,10 +59,12 @@ private:
         const Parts p = parts(a), q = parts(b), r = parts(c);
         if (p.significand == 0 || q.significand == 0 || r.significand == 0) return *this;
         const auto exponent = static_cast<unsigned>(p.exponent + q.exponent + r.exponent);
+        // Multiply the significands, and shift the product to the accumulator's words.
         Product x{static_cast<std::uint32_t>(p.significand), static_cast<std::uint32_t>(p.significand >> 32)};
         multiply(x, q.significand);
         multiply(x, r.significand);
         multiply(x, std::uint64_t(1) << exponent % 32);
+        // Add the product to the sum of its sign, word by word.
         Accumulator& sum = (p.negative != q.negative) != (r.negative != subtracted) ? negative_ : positive_;
         std::uint64_t carry = 0;
         std::size_t at = exponent / 32;
@@ -71,6 +73,7 @@ private:
             sum[at++] = static_cast<std::uint32_t>(carry);
             carry >>= 32;
         }
+        // Propagate the carry.
         for (; carry != 0; carry >>= 32) {
             carry += sum[at];
             sum[at++] = static_cast<std::uint32_t>(carry);
@@ -81,8 +84,8 @@ private:
     Accumulator positive_{}, negative_{};
 };
 
-/// On which side of the line through p and q a point lies, in the plane of two axes: 1 where p, q, x turn
-/// counterclockwise, −1 clockwise, 0 on the line. Exact.
+/// The side of the line through p and q on which x lies, in the plane of axes u and v: 1 if p, q, x turn
+/// counterclockwise, −1 if clockwise, 0 if x is on the line. Exact.
 template <int D>
 [[gnu::noinline]] int exact_turn(const Vec<double, D>& p, const Vec<double, D>& q, const Vec<double, D>& x,
                                  int u, int v) {
@@ -92,8 +95,8 @@ template <int D>
     return sum.sign();
 }
 
-/// On which side of a triangle's plane a point lies: 1 where the normal (b − a) × (c − a) points to, −1
-/// behind, 0 on the plane. Exact.
+/// The side of a triangle's plane on which x lies: 1 if the normal (b − a) × (c − a) points to it, −1 if x is
+/// behind, 0 if x is on the plane. Exact.
 [[gnu::noinline]] inline int exact_side(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& x) {
     ExactSum sum;
     const auto add_determinant = [&](const Vec3d& p, const Vec3d& q, const Vec3d& r) {

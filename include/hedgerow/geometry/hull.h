@@ -1,4 +1,4 @@
-/// Convex hulls: the half-spaces of their facets.
+/// Convex hulls, given by the half-spaces of their facets.
 #pragma once
 
 #include <span>
@@ -15,7 +15,8 @@ struct HalfSpace {
     T offset;
 };
 
-/// What half-spaces share; they are kept elsewhere. Their normals have length 1 but for the rounding to T.
+/// A convex hull: the intersection of half-spaces, which are stored elsewhere. Their normals have length 1 up
+/// to their rounding to T.
 template <std::floating_point T>
 struct Hull {
     using Scalar = T;
@@ -32,8 +33,8 @@ struct Hull {
 };
 
 /// The outward unit normals of the facets of the points' convex hull, by Qhull (Barber, Dobkin and Huhdanpaa
-/// 1996; O(n log n)). Empty where there is no volume, or so little that rounding decides: then one is to do
-/// without. Throws InputError where the library was built without Qhull.
+/// 1996; O(n log n)). Empty if the hull has no volume, or so little that rounding decides; the caller must
+/// then do without. Throws InputError if the library was built without Qhull.
 std::vector<Vec3d> hull_normals(std::span<const Vec3d> points);
 
 }  // namespace hedgerow

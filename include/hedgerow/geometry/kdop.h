@@ -5,7 +5,8 @@
 
 namespace hedgerow {
 
-/// The directions of k-DOPs: the axes, then the diagonals of the cube (or square), then those of its faces.
+/// The directions of k-DOPs: the axes, then the diagonals of the cube (or square), then the diagonals of the
+/// cube's faces.
 template <int D>
 struct KdopDirections;
 template <>
@@ -19,8 +20,9 @@ struct KdopDirections<2> {
     static constexpr Vec2d all[] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
 };
 
-/// k/2 slabs in fixed directions (Klosowski, Held, Mitchell, Sowizral and Zikan 1998): in space the axes (6),
-/// with the cube's corners cut off (14), its edges (18), or both (26); in the plane 4 or 8.
+/// A k-DOP: k/2 slabs in fixed directions (Klosowski, Held, Mitchell, Sowizral and Zikan 1998). In space: the
+/// axes alone (6), a box with its corners cut off (14), with its edges cut off (18), or with both (26). In
+/// the plane: 4 or 8.
 template <std::floating_point T, int D, int k>
 struct Kdop {
     static_assert(D == 3 ? k == 6 || k == 14 || k == 18 || k == 26 : k == 4 || k == 8);

@@ -1,6 +1,6 @@
-/// Four numbers side by side: the one file that knows an instruction set. SSE2, which every x86-64 processor
-/// has, for float and double; NEON, which every AArch64 processor has, for float; elsewhere plain loops with
-/// the same results.
+/// Four numbers side by side. This is the only file with vector intrinsics: SSE2, which every x86-64
+/// processor has, for float and double; NEON, which every AArch64 processor has, for float. Elsewhere plain
+/// loops give the same results.
 #pragma once
 
 #include <bit>
@@ -73,11 +73,11 @@ struct Lanes {
     }
     /// Lanes 2, 3, 0, 1.
     Lanes halves_swapped() const { return {{lane[2], lane[3], lane[0], lane[1]}}; }
-    /// Lanes 1, 2, 0 (the fourth is of no use): the next corner's.
+    /// Lanes 1, 2, 0: each lane gets the value of a triangle's next corner. The fourth lane is of no use.
     Lanes next_corner() const { return {{lane[1], lane[2], lane[0], lane[3]}}; }
-    /// Lanes 2, 0, 1 (the fourth is of no use): the corner's before.
+    /// Lanes 2, 0, 1: each lane gets the value of a triangle's previous corner. The fourth lane is of no use.
     Lanes previous_corner() const { return {{lane[2], lane[0], lane[1], lane[3]}}; }
-    /// Bit i says a[i] < 0 (or > 0); −0 and NaN give 0.
+    /// Bit i is set if lane i is < 0 (`negative`) or > 0 (`positive`); −0 and NaN give 0.
     unsigned negative() const {
         return each_bit([&](int i) { return lane[i] < T(0); });
     }
@@ -122,7 +122,7 @@ struct Lanes<float> {
     friend Lanes operator-(Lanes a, Lanes b) { return {_mm_sub_ps(a.v, b.v)}; }
     friend Lanes operator*(Lanes a, Lanes b) {
         __m128 p = _mm_mul_ps(a.v, b.v);
-        asm("" : "+x"(p));  // rounded before it is added
+        asm("" : "+x"(p));  // rounded before a sum, so no multiply-add is formed
         return {p};
     }
     friend Lanes min(Lanes a, Lanes b) { return {_mm_min_ps(a.v, b.v)}; }
@@ -147,7 +147,7 @@ struct Lanes<float> {
 private:
     static unsigned bits(__m128 mask) { return static_cast<unsigned>(_mm_movemask_ps(mask)); }
 };
-/// Two registers.
+/// Two SSE2 registers of two doubles each.
 template <>
 struct Lanes<double> {
     __m128d low, high;
@@ -172,7 +172,7 @@ struct Lanes<double> {
     }
     friend Lanes operator*(Lanes a, Lanes b) {
         __m128d p = _mm_mul_pd(a.low, b.low), q = _mm_mul_pd(a.high, b.high);
-        asm("" : "+x"(p), "+x"(q));  // rounded before they are added
+        asm("" : "+x"(p), "+x"(q));  // rounded before a sum, so no multiply-add is formed
         return {p, q};
     }
     friend Lanes min(Lanes a, Lanes b) { return {_mm_min_pd(a.low, b.low), _mm_min_pd(a.high, b.high)}; }
@@ -266,19 +266,21 @@ private:
 };
 #endif
 
-/// A number kept in a lane that arithmetic runs over, though nobody reads what comes of it: as the bits of an
-/// ordinary value. Bits of small numbers as they are would be subnormal values, and processors take a hundred
-/// cycles and more for an operation on those: the binned SAH builder took twice as long. (Beyond 2^30 the
-/// values are not ordinary either; that costs time alone.)
+/// Stores an integer in a lane as the bits of an ordinary floating-point value. Arithmetic runs over that
+/// lane too, although its result is not used. The bits of a small integer itself would be a subnormal value,
+/// on which an operation takes processors a hundred cycles and more: the binned SAH builder took twice as
+/// long. (Floats from 2^30 on are not ordinary values either; that only costs time.)
 template <std::floating_point T>
 T number_as_lane(std::uint32_t number) {
     return std::bit_cast<T>(static_cast<BitsOf<T>>(number + std::bit_cast<BitsOf<T>>(T(1))));
 }
+/// The integer that number_as_lane stored.
 template <std::floating_point T>
 std::uint32_t number_of_lane(T lane) {
     return static_cast<std::uint32_t>(std::bit_cast<BitsOf<T>>(lane) - std::bit_cast<BitsOf<T>>(T(1)));
 }
 
+/// The first D lanes.
 template <int D, std::floating_point T>
 Vec<T, D> first(Lanes<T> a) {
     T l[4];

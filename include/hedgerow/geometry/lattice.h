@@ -1,4 +1,4 @@
-/// Equal cells over a box, numbered by bricks.
+/// A regular grid of equal cells over a box. Cells are numbered by bricks.
 #pragma once
 
 #include <array>
@@ -8,25 +8,28 @@
 
 namespace hedgerow {
 
-/// Coordinates are double whatever the scene's scalar. Points outside the box belong to the nearest cell.
+/// A grid of cells. Coordinates are double whatever the scene's scalar. Points outside the box belong to the
+/// nearest cell.
 template <int D>
 struct Lattice {
     using Cell = std::array<std::int32_t, static_cast<std::size_t>(D)>;
 
-    Vec<double, D> low, size, per_size;  // of the box, of one cell (> 0), and 1 / that
+    Vec<double, D> low, size, per_size;  // the box's low corner, a cell's size (> 0), 1 / size
     Cell resolution{};
-    /// A primitive is entered in every cell that it comes this near to along each axis: a probe that errs by
-    /// less than half of it need not look beside its way.
+    /// A primitive is inserted into every cell that is this near to it along each axis. So a probe that errs
+    /// by less than half of `pad` need not visit the neighbours of the cells on its way.
     Vec<double, D> pad;
 
-    /// `pad`, in cells, if nothing else is said.
+    /// The default `pad`, in cells.
     static constexpr double inflation = 0x1p-7;
 
-    /// So many cells over a box. Along an axis in which it is flat there is to be one.
+    /// A lattice of `resolution` cells over a box. Along an axis in which the box is flat there must be one
+    /// cell.
     template <std::floating_point T>
     static Lattice over(const Box<T, D>& box, const Cell& resolution) {
         const Vec<double, D> extent = Vec<double, D>(box.high) - Vec<double, D>(box.low);
-        // Where the box is flat a cell is as thick as the thinnest that is divided: rays beside it pass by.
+        // Along a flat axis a cell is as thick as the thinnest that a divided axis has in space: 1/1024 of
+        // the largest extent (or of 2^-10 of the magnitude of box.low, if more). Rays beside the box pass by.
         const double thin =
             std::max(max_component(extent), 0x1p-10 * max_component(abs(Vec<double, D>(box.low)))) / 1024;
         Lattice lattice;
@@ -34,14 +37,14 @@ struct Lattice {
         for (int a = 0; a < D; ++a) {
             lattice.low[a] = static_cast<double>(box.low[a]);
             const double size = extent[a] > 0 ? extent[a] / resolution[static_cast<std::size_t>(a)] : thin;
-            lattice.size[a] = std::max(size, 0x1p-1000);  // so that per_size is a number
+            lattice.size[a] = std::max(size, 0x1p-1000);  // so that per_size is finite
             lattice.per_size[a] = 1 / lattice.size[a];
         }
         lattice.pad = lattice.size * inflation;
         return lattice;
     }
 
-    /// Half as many cells over the same box, along each axis.
+    /// A lattice with half as many cells along each axis, rounded up, over the same box.
     template <std::floating_point T>
     Lattice halved(const Box<T, D>& box) const {
         Cell fewer = resolution;
@@ -49,19 +52,23 @@ struct Lattice {
         return over(box, fewer);
     }
 
-    /// Cells are numbered by bricks of 4³ (in the plane 8²), and bricks by blocks of as many bricks: the 64
-    /// cells of a brick, and bricks of a block, fit the bits of a word.
+    /// Cells are numbered within bricks of 4³ cells (in the plane 8²), and bricks within blocks of as many
+    /// bricks. So one 64-bit word has a bit for each cell of a brick, or for each brick of a block.
     static constexpr int brick_bits = D == 3 ? 2 : 3;
-    /// Along an axis, so that numbers have 30 bits.
+    /// The most cells along an axis, so that cell numbers have 30 bits.
     static constexpr std::int32_t most_cells = D == 3 ? 1024 : 32768;
 
+    /// The cell of a coordinate along an axis; the nearest if x is outside the box.
     std::int32_t coordinate(double x, int axis) const {
         const double c = product(x - low[axis], per_size[axis]);
         const double last = resolution[static_cast<std::size_t>(axis)] - 1;
         const double inside = c > 0 ? (c < last ? c : last) : 0;
         return static_cast<std::int32_t>(inside);
     }
+    /// The coordinate of the low plane of cell i along an axis.
     double plane(std::int32_t i, int axis) const { return low[axis] + product(double(i), size[axis]); }
+    /// The number of a cell: from the low bits up, 6 for the cell in its brick, 6 for the brick in its block,
+    /// then the block's number.
     std::uint32_t number(const Cell& c) const {
         std::uint32_t block = 0, brick = 0, inside = 0;
         for (std::size_t a = D; a-- > 0;) {
@@ -72,6 +79,7 @@ struct Lattice {
         }
         return block << 12 | brick << 6 | inside;
     }
+    /// The cell with a number.
     Cell cell(std::uint32_t number) const {
         Cell c;
         std::uint32_t block = number >> 12, brick = number >> 6 & 63, inside = number & 63;
@@ -109,7 +117,8 @@ private:
     }
 };
 
-/// Goes on to the next cell of the block from `first` to `last`, both included; false after the last.
+/// Moves c to the next cell of the block from `first` to `last`, both included. Returns false after the last
+/// cell.
 template <class Cell>
 bool next_in_block(Cell& c, const Cell& first, const Cell& last) {
     std::size_t a = 0;
@@ -118,7 +127,8 @@ bool next_in_block(Cell& c, const Cell& first, const Cell& last) {
     ++c[a];
     return true;
 }
-/// Calls f(cell) for every cell of the block from `first` to `last`, both included, until it returns false.
+/// Calls f(cell) for every cell of the block from `first` to `last`, both included, until f returns false.
+/// Returns false if f did, else true.
 template <class Cell, class F>
 bool for_each_cell(const Cell& first, const Cell& last, F f) {
     Cell c = first;

@@ -5,7 +5,7 @@
 
 namespace hedgerow {
 
-/// The points x with low[i] <= axis[i]·x <= high[i]. The axes are orthonormal but for their rounding to T.
+/// The points x with low[i] <= axis[i]·x <= high[i]. The axes are orthonormal up to their rounding to T.
 template <std::floating_point T, int D>
 struct Obb {
     using Scalar = T;

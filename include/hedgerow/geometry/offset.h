@@ -1,4 +1,4 @@
-/// Where a new ray starts that leaves a surface.
+/// The origin of a new ray that leaves a surface.
 #pragma once
 
 #include <hedgerow/geometry/ray.h>
@@ -6,10 +6,11 @@
 
 namespace hedgerow {
 
-/// A new ray's origin at a hit, on the side of the surface that `toward` points to: ray.at(t) moved along the
-/// surface's normal by the error that it can have, which grows with how far the primitive reaches (not the
-/// hit), and as far along the ray: back, or on when `toward` goes through. Along the normal alone, a hit at
-/// an edge may come to lie behind the neighbouring surface; only the way that the ray came is known to be
+/// The origin of a new ray at the hit ray.at(t), on the side of the surface that `toward` points to. The
+/// point is moved along the surface's normal by the error that it can have, and by as much along the ray:
+/// back, or forward if `toward` goes through the surface. The error grows with how far the whole primitive
+/// reaches, from 0 and from the ray's origin, not with how far the hit is. A move along the normal alone
+/// could put a hit at an edge behind the neighbouring surface; only the way that the ray came is known to be
 /// free.
 ///
 /// `bounds` is the primitive's box; `normal` and `toward` may have any length but 0.
@@ -17,7 +18,7 @@ template <class T>
 Vec<T, 3> offset_origin(const Ray<T, 3>& ray, T t, const Box<T, 3>& bounds, const Vec<T, 3>& normal,
                         const Vec<T, 3>& toward) {
     const auto largest = [](const Vec<T, 3>& a) { return max_component(abs(a)); };
-    // Unit vectors by way of the largest component, whose square neither over- nor underflows.
+    // Divide by the largest component first: its square neither overflows nor underflows.
     const auto unit = [&](const Vec<T, 3>& a) { return normalized(a / largest(a)); };
     const T far = std::max(largest(bounds.low), largest(bounds.high));
     const T reach = std::max(largest(bounds.low - ray.origin), largest(bounds.high - ray.origin));
@@ -27,7 +28,8 @@ Vec<T, 3> offset_origin(const Ray<T, 3>& ray, T t, const Box<T, 3>& bounds, cons
     const T way = (dot(n, d) < 0) == (side < 0) ? step : -step;
     return ray.at(t) + d * way + n * side;
 }
-/// The same for a triangle of any size: its normal's square may be beyond what T holds.
+/// The origin of a new ray at a hit on a triangle of any size. The edges are scaled to 1 first, since the
+/// square of the normal may be beyond the range of T.
 template <class T>
 Vec<T, 3> offset_origin(const Ray<T, 3>& ray, T t, const Triangle<T, 3>& hit, const Vec<T, 3>& toward) {
     const Vec<T, 3> e1 = hit.b - hit.a, e2 = hit.c - hit.a;

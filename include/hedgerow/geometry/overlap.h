@@ -1,7 +1,7 @@
-/// Does a shape overlap a box? Closed sets: touching counts. The answers are those of exact arithmetic on the
-/// coordinates as given: where rounding leaves a sign in doubt, ExactSum decides. So a yes never lies outside
-/// of the shape's own box, and cells that hold a common point of a shape and a box are always among those
-/// that the shape is inserted into.
+/// Overlap tests of shapes and boxes. Sets are closed: touching counts. The results are those of exact
+/// arithmetic on the given coordinates: ExactSum decides where rounding leaves a sign in doubt. So a box that
+/// overlaps a shape always overlaps the shape's own box, and the cells that contain a common point of a shape
+/// and a box are always among the cells that the shape is inserted into.
 #pragma once
 
 #include <hedgerow/geometry/distance.h>
@@ -17,30 +17,31 @@ constexpr bool overlap(const Box<T, D>& a, const Box<T, D>& b) {
 }
 
 namespace detail {
-/// What products that underflow may add to a sum of few of them, and far below what any filter has to tell.
+/// A bound of what underflow may add to a sum of few products. Far below what any filter must resolve.
 inline constexpr double underflow = 0x1p-1000;
 
-/// An edge from p to q, seen in the planes across the axes.
+/// An edge from p to q, for tests in the planes across the axes.
 template <int D>
 struct Edge {
     Vec<double, D> p, q, along;
 
     Edge(const Vec<double, D>& from, const Vec<double, D>& to) : p(from), q(to), along(to - from) {}
 
-    /// 1 where the edge and then x turn counterclockwise in the plane of axes u and v, −1 clockwise, 0 on the
-    /// line. The filter's bound is (3 + 16u)u of the products' magnitudes (Shewchuk 1997, section 4.2).
+    /// Returns 1 if p, q, x turn counterclockwise in the plane of axes u and v, −1 if clockwise, 0 if x is on
+    /// the line. With ε the unit roundoff, the sum errs by at most (3 + 16ε)ε of the products' magnitudes
+    /// (Shewchuk 1997, section 4.2); the filter takes 4ε.
     int turn(const Vec<double, D>& x, int u, int v) const {
         const double left = product(along[u], x[v] - p[v]), right = product(along[v], x[u] - p[u]);
         const double sum = left - right;
         const double error = product(4 * unit_roundoff<double>, std::abs(left) + std::abs(right)) + underflow;
         if (std::abs(sum) > error) [[likely]]
             return sum > 0 ? 1 : -1;
-        // Edges along an axis and corners on the edge itself are common, and plain zeros.
+        // Edges along an axis and corners on the edge are common; both products are then exactly 0.
         if ((along[u] == 0 || x[v] == p[v]) && (along[v] == 0 || x[u] == p[u])) return 0;
         return exact_turn(p, q, x, u, v);
     }
-    /// Does the whole box lie beyond the edge's line: clockwise of it (sign 1) or counterclockwise (−1)? The
-    /// box's corner that is farthest the other way decides (Schwarz and Seidel 2010).
+    /// Whether the whole box is beyond the edge's line: clockwise of it (sign 1) or counterclockwise (sign
+    /// −1). Tests the box's corner that is farthest the other way (Schwarz and Seidel 2010).
     bool beyond(const Box<double, D>& box, int u, int v, int sign) const {
         Vec<double, D> corner = box.low;
         if ((along[u] > 0) == (sign > 0)) corner[v] = box.high[v];
@@ -50,10 +51,10 @@ struct Edge {
 };
 }  // namespace detail
 
-/// A triangle, to be asked about boxes. They overlap unless one of these separates them: an axis, the
-/// triangle's plane, or in the plane across an axis one of the triangle's edges (Akenine-Möller 2001; as edge
-/// functions Schwarz and Seidel 2010). Only the part of the box within the triangle's own box matters. Exact
-/// for all coordinates, triangles without area included.
+/// A triangle, prepared for overlap tests with many boxes. Triangle and box overlap unless one of these
+/// separates them: an axis, the triangle's plane, or an edge of the triangle in the plane across an axis
+/// (Akenine-Möller 2001; with edge functions Schwarz and Seidel 2010). Only the part of the box inside the
+/// triangle's own box matters. Exact for all coordinates, also for triangles without area.
 template <class T>
 class TriangleOverlap {
 public:
@@ -80,7 +81,7 @@ public:
         for (int k = 0; k < 3; ++k) {
             const int u = (k + 1) % 3, v = (k + 2) % 3;
             for (const auto& edge : edges_) {
-                // Seen edge-on, the triangle is a line and either side of it is outside.
+                // A triangle seen edge-on (turn 0) is a line, and both of its sides are outside.
                 if (turn_[k] >= 0 && edge.beyond(box, u, v, 1)) return false;
                 if (turn_[k] <= 0 && edge.beyond(box, u, v, -1)) return false;
             }
@@ -89,12 +90,13 @@ public:
     }
 
 private:
-    /// Does the box lie on one side of the triangle's plane? The error of a corner's height is below 7u +
-    /// 56u² of its products' magnitudes (Shewchuk 1997, section 4.3), and the filter takes 16u of the
-    /// greatest that any corner can have, so that corners found by a normal whose sign is in doubt serve as
-    /// well.
+    /// Whether the box is strictly on one side of the triangle's plane. The height of a corner errs by less
+    /// than 7u + 56u² of its products' magnitudes, where u is the unit roundoff (Shewchuk 1997, section 4.3).
+    /// The filter takes 16u of the greatest magnitudes of any corner. It therefore also holds for a corner
+    /// that was found by a normal whose sign is in doubt.
     bool beside_plane(const Box3d& box) const {
         const Vec3d low = box.low - edges_[0].p, high = box.high - edges_[0].p;
+        // Bound the heights of all corners, and the magnitudes of their products.
         double least = 0, most = 0, magnitude = 0, reach = 0;
         for (int k = 0; k < 3; ++k) {
             const double from = product(normal_[k], low[k]), to = product(normal_[k], high[k]);
@@ -103,15 +105,18 @@ private:
             magnitude += product(size_[k], farther);
             reach += farther;
         }
+        // Filter: the heights decide if they are clear of the error.
         const double error = product(16 * unit_roundoff<double>, magnitude) +
                              product(detail::underflow, reach) + detail::underflow;
         if (least > error || most < -error) return true;
         if (least < -error && most > error) [[likely]]
             return false;
+        // In doubt: decide exactly by the lowest and the highest corner.
         if (magnitude == 0 && lies_in_plane(low, high)) return false;
         return exact_height(box, -1) > 0 || exact_height(box, 1) < 0;
     }
-    /// A flat box in the plane of a triangle across an axis: all products are plain zeros.
+    /// Whether every product of the corners' heights has a factor of exactly 0, as for a flat box in the
+    /// plane of a triangle across an axis.
     bool lies_in_plane(const Vec3d& low, const Vec3d& high) const {
         for (int k = 0; k < 3; ++k)
             if (turn_[k] != 0 && (low[k] != 0 || high[k] != 0)) return false;
@@ -129,7 +134,7 @@ private:
     Box<T, 3> bounds_;
     std::array<detail::Edge<3>, 3> edges_;
     Vec3d normal_, size_;  // the normal, and the magnitudes of the products that it is made of
-    int turn_[3];          // exact signs of the normal
+    int turn_[3];          // exact signs of the normal's components
 };
 template <class T>
 bool overlap(const Triangle<T, 3>& tri, const Box<T, 3>& box) {
@@ -145,7 +150,7 @@ bool overlap(const Segment<T, 2>& s, const Box<T, 2>& whole) {
     return !edge.beyond(box, 0, 1, 1) && !edge.beyond(box, 0, 1, -1);
 }
 
-/// The solid ball against the box.
+/// Whether the solid ball overlaps the box.
 template <class T, int D>
 bool overlap(const Sphere<T, D>& s, const Box<T, D>& box) {
     if (!overlap(s.bounds(), box)) return false;
@@ -157,6 +162,7 @@ bool overlap(const Sphere<T, D>& s, const Box<T, D>& box) {
     const double error = product(8 * unit_roundoff<double>, away2 + radius2) + detail::underflow;
     if (std::abs(away2 - radius2) > error) [[likely]]
         return away2 < radius2;
+    // In doubt: the exact sign of |nearest − center|² − radius².
     ExactSum sum;
     for (int k = 0; k < D; ++k) {
         const double c = center[k], x = nearest[k];

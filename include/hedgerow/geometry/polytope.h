@@ -1,4 +1,4 @@
-/// Convex polytopes: cells between planes.
+/// Convex polytopes: cells bounded by planes.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace hedgerow {
 
-/// A bounded convex polytope by its faces, each the corners of a convex polygon in space, or in the plane the
-/// two ends of an edge. In double; what a cut leaves thinner than rounding may be lost, so that measures are
-/// estimates and nothing more is asked of them.
+/// A bounded convex polytope, stored as its faces. A face is the corners of a convex polygon, or in the plane
+/// the two ends of an edge. Computed in double; a part that a cut leaves thinner than rounding may be lost,
+/// so measures are estimates, and are used as such only.
 template <int D>
 class Polytope {
 public:
@@ -32,13 +32,13 @@ public:
             for (const Point& p : f) box.expand(p);
         return box;
     }
-    /// The surface's area, or in the plane the perimeter.
+    /// The surface area, or in the plane the perimeter.
     double surface() const {
         double sum = 0;
         for (const Face& f : faces_) sum += measure(f);
         return sum;
     }
-    /// In the plane the area: the sum of the pyramids over the faces.
+    /// The volume, or in the plane the area: the sum of the pyramids over the faces, with one corner as apex.
     double volume() const {
         if (empty()) return 0;
         const Point apex = faces_[0][0];
@@ -52,7 +52,7 @@ public:
             }
         return sum;
     }
-    /// The corners as they go round.
+    /// The corners in counterclockwise order.
     Face corners() const requires(D == 2) {
         Face all;
         for (const Face& f : faces_) all.insert(all.end(), f.begin(), f.end());
@@ -60,8 +60,8 @@ public:
         all.erase(std::unique(all.begin(), all.end()), all.end());
         return all;
     }
-    /// What a plane has of it: the corners of a convex polygon, the ends of a segment in the plane. Fewer
-    /// than D: nothing.
+    /// The section of the polytope by a plane: the corners of a convex polygon, or in the plane the ends of a
+    /// segment. Fewer than D corners mean that the section is empty.
     Face section(const CutPlane<D>& plane) const {
         Face low, high, cap;
         for (const Face& f : faces_) clip(f, plane, low, high, cap);
@@ -69,9 +69,11 @@ public:
         return cap;
     }
 
-    /// The two parts on the sides of a plane: low, high. Of a plane along a face, but for roundings, one is
-    /// that face, seen from both sides, and the other the whole; of one that meets nothing, one has no faces.
+    /// Cuts the polytope into its parts on the low and the high side of a plane. If the plane is along a
+    /// face, up to roundings, one part is that face, seen from both sides, and the other is the whole
+    /// polytope. If the plane misses the polytope, one part has no faces.
     std::pair<Polytope, Polytope> cut(const CutPlane<D>& plane) const {
+        // Find the range of the corners' heights, and what the heights may err by.
         double lowest = 0, highest = 0, largest = 0;
         for (const Face& f : faces_)
             for (const Point& p : f) {
@@ -80,8 +82,10 @@ public:
                 largest = std::max(largest, max_component(abs(p)));
             }
         const double rounding = 0x1p-40 * product(plane.reach(), largest);
+        // The plane touches or misses the polytope.
         if (highest <= rounding) return {*this, touched(plane, rounding)};
         if (lowest >= -rounding) return {touched(plane, rounding), *this};
+        // Split every face, and close both parts with the section.
         std::pair<Polytope, Polytope> sides;
         Face cap;
         for (const Face& f : faces_) {
@@ -97,7 +101,8 @@ public:
     }
 
 private:
-    /// The part within a distance of a plane that the rest lies on one side of.
+    /// The face along a plane, for a polytope on one side of it: the corners within `height` of the plane,
+    /// seen from both sides. No faces if there are fewer than D corners.
     Polytope touched(const CutPlane<D>& plane, double height) const {
         Face cap;
         for (const Face& f : faces_)
@@ -131,7 +136,7 @@ private:
             return length(sum) / 2;
         }
     }
-    /// Corners on the plane go to both parts, and to the cap.
+    /// Splits a face at a plane. Corners on the plane go to both parts, and to the cap.
     static void clip(const Face& f, const CutPlane<D>& plane, Face& low, Face& high, Face& cap) {
         const std::size_t n = f.size();
         for (std::size_t i = 0; i < n; ++i) {
@@ -139,7 +144,7 @@ private:
             if (a <= 0) low.push_back(f[i]);
             if (a >= 0) high.push_back(f[i]);
             if (a == 0) cap.push_back(f[i]);
-            if (D == 2 && i + 1 == n) break;  // an edge has no way back
+            if (D == 2 && i + 1 == n) break;  // an edge has no side back to its first end
             const Point& q = f[(i + 1) % n];
             const double b = plane.height(q);
             if (!((a < 0 && b > 0) || (a > 0 && b < 0))) continue;
@@ -147,7 +152,8 @@ private:
             for (Face* part : {&low, &high, &cap}) part->push_back(crossing);
         }
     }
-    /// The cap's corners, each met from two faces, in the order in which they go round.
+    /// Sorts the corners of the cap around it, or in the plane keeps its two ends. A corner may be in the cap
+    /// several times, once for each face that has it.
     static void close(Face& cap, const Point& normal) {
         if (cap.size() < D) return;
         if constexpr (D == 2) {
@@ -161,8 +167,8 @@ private:
             go_round(cap, (axis + 1) % 3, (axis + 2) % 3);
         }
     }
-    /// Sorts a convex polygon's corners as they go round their middle, seen along the other axis than x and
-    /// y. By half planes and cross products: no angle has to be computed.
+    /// Sorts a convex polygon's corners counterclockwise around their middle, in the plane of axes x and y.
+    /// Compares half planes and cross products, so no angle is computed.
     static void go_round(Face& corners, int x, int y) {
         Point center;
         for (const Point& p : corners) center = center + p / double(corners.size());

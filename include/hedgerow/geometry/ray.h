@@ -19,8 +19,8 @@ struct Ray {
     constexpr Vec<T, D> at(T t) const { return origin + direction * t; }
 };
 
-/// A ray's line in double: the points origin + s·direction, and whatever lies within `thickness` of one along
-/// every axis. The largest component of the direction is about 1; t is s times `unit`.
+/// A ray's line in double: all points within `thickness`, along every axis, of a point origin + s·direction.
+/// The largest component of the direction is about 1. The ray's t is s·unit.
 template <int D>
 struct ThickLine {
     Vec<double, D> origin, direction;

@@ -1,4 +1,4 @@
-/// The other shapes, data only: plane, triangle, segment, sphere.
+/// Shapes as data only: plane, triangle, segment, sphere.
 #pragma once
 
 #include <hedgerow/geometry/box.h>
@@ -20,16 +20,16 @@ struct AxisPlane {
     T position = T(0);
 };
 
-/// A plane across space with a thickness, in double whatever the scene's scalar: what comes within `margin`
-/// of it (as a height: times the normal's length) may count for either side.
+/// A plane that cuts space, with a thickness, in double whatever the scene's scalar. A point whose height is
+/// within `margin` may count for either side. Heights and `margin` are distances times the normal's length.
 template <int D>
 struct CutPlane {
     Vec<double, D> normal;
     double offset = 0, margin = 0;
 
-    /// How far a point lies on the high side, times the normal's length.
+    /// The distance of a point from the plane times the normal's length, positive on the high side.
     double height(const Vec<double, D>& x) const { return dot(normal, x) - offset; }
-    /// The sum of the normal's magnitudes: how far heights move at most when every coordinate moves by 1.
+    /// The most that a height changes when every coordinate changes by 1: the sum of the normal's magnitudes.
     double reach() const {
         double sum = 0;
         for (int k = 0; k < D; ++k) sum += std::abs(normal[k]);
@@ -45,7 +45,7 @@ struct Triangle {
         Box<T, D> box;
         return box.expand(a).expand(b).expand(c);
     }
-    /// (b − a) × (c − a): its length is twice the area, and it points to where a, b, c turn counterclockwise.
+    /// (b − a) × (c − a). Its length is twice the area; seen from its tip, a, b, c turn counterclockwise.
     constexpr Vec<T, D> normal() const requires(D == 3) { return cross(b - a, c - a); }
 };
 
@@ -64,7 +64,7 @@ struct Sphere {
     Vec<T, D> center;
     T radius = T(0);
 
-    /// Rounded outward: the whole ball lies in it.
+    /// Rounded outward, so that the whole ball is inside.
     Box<T, D> bounds() const {
         return {map(center, [r = radius](T c) { return -sum_rounded_up(-c, r); }),
                 map(center, [r = radius](T c) { return sum_rounded_up(c, r); })};

@@ -1,17 +1,17 @@
-/// What lies between two parallel planes, and volumes that are what several slabs share.
+/// Slabs, which are the space between two parallel planes, and volumes that are intersections of slabs.
 #pragma once
 
 #include <hedgerow/geometry/vec.h>
 
 namespace hedgerow {
 
-/// The points x with low <= normal·x <= high. low may be −infinity: then it is a half-space.
+/// The points x with low <= normal·x <= high. A slab with low = −infinity is a half-space.
 template <int D>
 struct Slab {
     Vec<double, D> normal;
     double low, high;
 
-    /// The sum of the normal's magnitudes: how far heights move at most when every coordinate moves by 1.
+    /// The most that a height changes when every coordinate changes by 1: the sum of the normal's magnitudes.
     double reach() const {
         double sum = 0;
         for (int k = 0; k < D; ++k) sum += std::abs(normal[k]);
@@ -19,7 +19,8 @@ struct Slab {
     }
 };
 
-/// What its slabs share. The first `orthonormal` of them have orthonormal normals.
+/// A volume that is the intersection of its slabs. The first `orthonormal` of the slabs have orthonormal
+/// normals.
 template <class V>
 concept SlabVolume = requires(const V& v) {
     { V::orthonormal } -> std::convertible_to<int>;

@@ -3,14 +3,14 @@
 
 #include <initializer_list>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/geometry/eigen.h>
 #include <hedgerow/geometry/shapes.h>
 
 namespace hedgerow {
 
-/// x ↦ linear·x + shift, one way.
+/// An affine map, without its inverse: x ↦ linear·x + shift.
 template <int D>
 struct Affine {
     Rows<D> linear{};
@@ -22,8 +22,8 @@ struct Affine {
         return r;
     }
     Vec<double, D> point(const Vec<double, D>& p) const { return vector(p) + shift; }
-    /// The box of a box (Arvo 1990). Its sums are those of `point` in the same order, and rounding is
-    /// monotone: the computed point of what is in the box is in the computed box.
+    /// The bounds of the image of a box (Arvo 1990). The sums are those of `point` in the same order, and
+    /// rounding is monotone. So the computed image of a point in the box is in the computed bounds.
     Box<double, D> box(const Box<double, D>& b) const {
         Box<double, D> r{Vec<double, D>(), Vec<double, D>()};
         for (int k = 0; k < D; ++k) {
@@ -36,7 +36,7 @@ struct Affine {
         }
         return r;
     }
-    /// How far the largest component of a vector may grow at most.
+    /// The largest factor by which a vector's largest component may grow.
     double reach() const {
         double most = 0;
         for (const auto& row : linear) {
@@ -46,7 +46,7 @@ struct Affine {
         }
         return most;
     }
-    /// Singular values: how vectors are stretched along the axes of an ellipsoid.
+    /// The singular values: how much vectors are stretched along the axes of an ellipsoid.
     Vec<double, D> stretches() const {
         Rows<D> squared{};
         const double unit = reach() > 0 ? 1 / reach() : 0;
@@ -61,17 +61,17 @@ struct Affine {
     bool operator==(const Affine&) const = default;
 };
 
-/// An affine map and its inverse, in double. What it takes to turn a ray back is worked out once.
+/// An affine map and its inverse, in double. The inverse is computed once, by the constructor.
 template <int D>
 class Transform {
 public:
     using Vector = Vec<double, D>;
 
-    /// Leaves everything as it is.
+    /// The identity.
     Transform() : Transform(identity(), Vector()) {}
-    /// By the rows of its linear part, and where it takes 0. Throws InputError if an entry is NaN or
-    /// infinite, or if the map is singular or so nearly that its inverse would not undo it to one part in a
-    /// million.
+    /// The map with the given rows of its linear part, which maps 0 to `shift`. Throws InputError if an entry
+    /// is NaN or infinite, or if the map is singular or so nearly singular that its inverse would not undo it
+    /// to one part in a million.
     Transform(const Rows<D>& linear, const Vector& shift) : there_{linear, shift} { invert(); }
 
     static Transform translation(const Vector& by) { return {identity(), by}; }
@@ -81,12 +81,13 @@ public:
         return {m, Vector()};
     }
     static Transform scaling(double by) { return scaling(Vector::all(by)); }
-    /// Counterclockwise, in radians.
+    /// A counterclockwise rotation, by an angle in radians.
     static Transform rotation(double angle) requires(D == 2) {
         const double c = std::cos(angle), s = std::sin(angle);
         return {{Vector(c, -s), Vector(s, c)}, Vector()};
     }
-    /// About an axis of any length but 0, counterclockwise seen against it, in radians (Rodrigues 1840).
+    /// A rotation about an axis of any length but 0, by an angle in radians, counterclockwise seen from the
+    /// tip of the axis (Rodrigues 1840).
     static Transform rotation(const Vector& axis, double angle) requires(D == 3) {
         const Vector a = normalized(axis);
         const double c = std::cos(angle), s = std::sin(angle);
@@ -103,10 +104,10 @@ public:
 
     const Affine<D>& there() const { return there_; }
     const Affine<D>& back() const { return back_; }
-    /// A bound of |there·back − 1|: how far going there and back may miss, as a part of the way.
+    /// A bound of |there·back − 1|: the error of mapping there and back, relative to the distances involved.
     double residual() const { return residual_; }
 
-    /// First b, then a.
+    /// The map that applies b first, then a.
     friend Transform operator*(const Transform& a, const Transform& b) {
         Rows<D> m{};
         for (std::size_t i = 0; i < m.size(); ++i)
@@ -122,13 +123,16 @@ private:
         for (int k = 0; k < D; ++k) m[static_cast<std::size_t>(k)][k] = 1;
         return m;
     }
-    /// Gauss and Jordan, with the largest pivot of each column.
+    /// Computes the inverse by Gauss-Jordan elimination, with the largest pivot of each column, and the
+    /// residual.
     void invert() {
         Rows<D> m = there_.linear, inverse = identity();
+        // A map with an entry that is not finite is rejected below, as a singular one is.
         bool good = finite(there_.shift);
         for (const auto& row : m) good = good && finite(row);
         for (int k = 0; k < D && good; ++k) {
             const auto at = static_cast<std::size_t>(k);
+            // Bring the row with the largest pivot up, and scale the pivot to 1.
             std::size_t pivot = at;
             for (std::size_t i = at; i < m.size(); ++i)
                 if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
@@ -138,6 +142,7 @@ private:
             std::swap(inverse[at], inverse[pivot]);
             inverse[at] = inverse[at] / m[at][k];
             m[at] = m[at] / m[at][k];
+            // Clear the column in all other rows.
             for (std::size_t i = 0; i < m.size(); ++i) {
                 if (i == at) continue;
                 const double by = m[i][k];
@@ -147,6 +152,7 @@ private:
         }
         back_ = {inverse, Vector()};
         back_.shift = -back_.vector(there_.shift);
+        // Bound |there·back − 1| by the sum of all its entries, with the rounding errors of each.
         residual_ = good ? 0 : 1;
         for (std::size_t i = 0; i < m.size() && good; ++i)
             for (std::size_t j = 0; j < m.size(); ++j) {
@@ -168,7 +174,7 @@ private:
     double residual_ = 0;
 };
 
-/// Shapes under a transform, with their corners rounded to T.
+/// Images of points and shapes under an affine map. The corners are rounded to T.
 template <class T, int D>
 Vec<T, D> transformed(const Affine<D>& f, const Vec<T, D>& p) {
     return Vec<T, D>(f.point(Vec<double, D>(p)));

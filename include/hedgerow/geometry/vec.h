@@ -1,5 +1,5 @@
-/// Fixed-size vectors. Data and elementwise arithmetic only; everything that multiplies and then adds goes
-/// through `product`, so that no compiler fuses it and every build gives the same bits.
+/// Fixed-size vectors: data and elementwise arithmetic only. A product that is then added goes through
+/// `product`, so that no compiler fuses multiplication and addition, and every build gives the same bits.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace hedgerow {
 
-/// A point or direction with D components of type T (float or double): 2 or 3, or 1 on a line, where there
-/// are points alone.
+/// A point or direction with D components of type T (float or double). D is 2 or 3, or 1 on a line, where
+/// only points exist.
 template <std::floating_point T, int D>
 struct Vec {
     using Scalar = T;
@@ -55,8 +55,8 @@ using Vec2d = Vec<double, 2>;
 using Vec3f = Vec<float, 3>;
 using Vec3d = Vec<double, 3>;
 
-/// Applies f to each component (or pair of components). (No loops: at -O2 g++ 12 keeps them, and the vectors
-/// in memory.)
+/// Applies f to each component (or pair of components). Written without loops: at -O2, g++ 12 keeps the
+/// loops, and with them the vectors in memory.
 template <class T, int D, class F>
 constexpr Vec<T, D> map(const Vec<T, D>& a, F f) {
     if constexpr (D == 1) return Vec<T, D>(f(a[0]));

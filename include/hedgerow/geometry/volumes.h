@@ -1,8 +1,10 @@
-/// What probes ask of a volume that bounds something: the part of a line in it, a distance that nothing in it
-/// falls short of, and whether it may overlap a box. All of it in double, and never a no that is wrong.
+/// Tests of probes against bounding volumes: the part of a line inside a volume, a lower bound of the
+/// distance to it, and whether it may overlap a box. All are computed in double, and are conservative: none
+/// ever rules out a volume wrongly.
 ///
-/// Volumes are built dilated (bvh/volumes/fit.h); what is added here is what computing errs by. A volume is
-/// what slabs share (oriented boxes, k-DOPs, hulls), a ball, or both (cylinders).
+/// Volumes are dilated when they are built (bvh/volumes/fit.h); the margins here cover the errors of
+/// computing. A volume is an intersection of slabs (oriented boxes, k-DOPs, hulls), a ball, or both combined
+/// (cylinders).
 #pragma once
 
 #include <algorithm>
@@ -17,14 +19,14 @@
 namespace hedgerow {
 
 namespace detail {
-/// Squares of less may underflow; it is added to radii and taken from distances.
+/// Squares of smaller numbers may underflow. Added to radii and subtracted from distances.
 inline constexpr double negligible = 0x1p-500;
 
 inline constexpr Interval<double> whole_line{-std::numeric_limits<double>::infinity(),
                                              std::numeric_limits<double>::infinity()};
 
-/// Clips a line to a slab (Kay and Kajiya 1986). The line's thickness is the error in heights; a line along
-/// the slab has slope 0, whose reciprocal's infinity says in or out.
+/// Clips a line to a slab (Kay and Kajiya 1986). The line's thickness is the error in heights. A line along
+/// the slab has slope 0, whose reciprocal is infinite: the interval then stays as it is or becomes empty.
 template <int D>
 Interval<double> clipped(const Interval<double>& in, const ThickLine<D>& line, const Slab<D>& s) {
     const double at = dot(s.normal, line.origin), thick = product(line.thickness, s.reach());
@@ -34,8 +36,8 @@ Interval<double> clipped(const Interval<double>& in, const ThickLine<D>& line, c
     return {near > in.entry ? near : in.entry, far < in.exit ? far : in.exit};
 }
 
-/// The part of origin + s·direction that lies within a radius of 0 (as meet_line of a sphere). A direction so
-/// short that it leads nowhere says in or out.
+/// The part of origin + s·direction within `radius` of 0 (computed like meet_line of a sphere). If the
+/// direction is too short to lead anywhere, the result is the whole line or nothing.
 template <int D>
 Interval<double> part_within(double radius, const Vec<double, D>& origin, const Vec<double, D>& direction) {
     constexpr Interval<double> none{1, -1};
@@ -50,28 +52,31 @@ Interval<double> part_within(double radius, const Vec<double, D>& origin, const 
 inline Interval<double> intersection(const Interval<double>& a, const Interval<double>& b) {
     return {std::max(a.entry, b.entry), std::min(a.exit, b.exit)};
 }
-/// The radius of a ball that the line's points need to be in. In a ball of R instead of r they are for
-/// (R − r)/|direction| longer at both ends, which covers what `part_within` errs by: twice the thickness is
-/// 8e, of which hits and the rounding of the vectors take up less than half.
+/// The radius to use for a ball so that no point of a thick line is missed. In a ball of R instead of r, a
+/// line is inside for at least (R − r)/|direction| longer at both ends, which covers the error of
+/// `part_within`: twice the thickness is 8e (e of RayProbe), of which hits and the rounding of the vectors
+/// use less than half.
 template <int D>
 double thick_radius(double radius, const ThickLine<D>& line) {
     return radius + 2 * line.thickness + negligible;
 }
 
-/// How far p lies outside of a slab, at least.
+/// A lower bound of how far p is outside of a slab, times the normal's length; 0 inside.
 template <int D>
 double gap(const Vec<double, D>& p, const Slab<D>& s) {
     const double at = dot(s.normal, p);
     const double error = product(4 * unit_roundoff<double>, product(s.reach(), max_component(abs(p))));
     return std::max(0.0, std::max(s.low - at, at - s.high) - error);
 }
-/// How far p lies outside of a ball around 0, at least.
+/// A lower bound of how far p is outside of a ball around 0; 0 inside. The rounding errors of p are relative
+/// to `size`.
 template <int D>
 double gap(const Vec<double, D>& p, double radius, double size) {
     return std::max(0.0, length(p) - radius - product(8 * unit_roundoff<double>, size) - negligible);
 }
 
-/// Does what lies in the box along the slab's normal miss the slab? Unbounded boxes give NaN, which is no.
+/// Whether the box misses the slab, by the box's extent along the slab's normal. An unbounded box gives NaN,
+/// which counts as no miss.
 template <int D>
 bool beside(const Box<double, D>& box, const Slab<D>& s) {
     double low = 0, high = 0, size = 0;
@@ -104,8 +109,9 @@ Interval<double> part_in(const ThickLine<3>& line, const Cylinder<T>& c) {
     return detail::clipped(round, line, c.ends());
 }
 
-/// Distances across orthonormal slabs add up in squares; beside them the farthest slab counts. Axes rounded
-/// to float stretch a distance by less than 2^-20.
+/// A lower bound of the squared distance from p to a volume. Distances to orthonormal slabs add up in
+/// squares; of the other slabs only the farthest counts. Axes rounded to float stretch a distance by less
+/// than 2^-20, which the factor 1 − 2^-18 covers.
 template <SlabVolume V>
 double least_distance2(const Vec<double, V::dimension>& p, const V& volume) {
     double sum = 0, most = 0;
@@ -133,8 +139,8 @@ double least_distance2(const Vec3d& p, const Cylinder<T>& c) {
     return (product(out, out) + product(along, along)) * (1 - 0x1p-18);
 }
 
-/// By the slabs' normals alone, without the box's own axes and the products of edges: it may say yes to what
-/// a full test of separating axes (Gottschalk 1996) would refuse.
+/// Whether a box may overlap a volume. Tests only the slabs' normals, not the box's own axes nor products of
+/// edges, so it may accept boxes that a full separating-axis test (Gottschalk 1996) would reject.
 template <SlabVolume V>
 bool may_overlap(const Box<double, V::dimension>& box, const V& volume) {
     for (int i = 0; i < volume.slab_count(); ++i)
@@ -146,17 +152,20 @@ bool may_overlap(const Box<double, D>& box, const Sphere<T, D>& s) {
     const double away = length(offset_outside(Vec<double, D>(s.center), box));
     return !(away * (1 - 0x1p-40) > static_cast<double>(s.radius) + detail::negligible);
 }
-/// Between its ends, and within its own axis-aligned box.
+/// Whether a box may overlap a cylinder. Tests the slab between the cylinder's ends, then its axis-aligned
+/// bounds.
 template <class T>
 bool may_overlap(const Box3d& box, const Cylinder<T>& c) {
     if (detail::beside(box, c.ends())) return false;
     const Vec3d a(c.axis), p(c.point);
     const double a2 = length2(a), here = dot(a, p), r = static_cast<double>(c.radius);
+    // The centers of the two ends.
     const Vec3d first = p + a * ((static_cast<double>(c.low) - here) / a2);
     const Vec3d last = p + a * ((static_cast<double>(c.high) - here) / a2);
     const double error =
         product(0x1p-48, max_component(max(abs(first), abs(last))) + max_component(abs(p)) + r);
     for (int k = 0; k < 3; ++k) {
+        // Half the width of an end's disc along axis k.
         const double wide =
             r * std::sqrt(std::max(0.0, 1 - product(a[k], a[k]) / a2)) * (1 + 0x1p-20) + error + r * 0x1p-20;
         if (box.low[k] > std::max(first[k], last[k]) + wide ||

@@ -1,4 +1,4 @@
-/// Images of numbers in layers, and OpenEXR files.
+/// Images with named channels of numbers, and OpenEXR files.
 #pragma once
 
 #include <cstdint>
@@ -7,32 +7,34 @@
 #include <variant>
 #include <vector>
 
+#include <hedgerow/base/strided.h>
 #include <hedgerow/parallel/progress.h>
-#include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
 
-/// One number a pixel, in rows from the top, left to right; borrowed from where it lies.
+/// One value per pixel, in rows from the top, each from left to right. Borrows the caller's array.
 struct Channel {
-    /// "R", or of a layer "normal.X": from 1 to 255 bytes.
+    /// A name such as "R", or "normal.X" for X of the layer "normal": 1 to 255 bytes, none of them 0.
     std::string name;
     std::variant<Strided<float>, Strided<std::uint32_t>> values;
 };
 
-/// Channels of width × height pixels. R, G and B are what viewers show: linear light, of sRGB's primaries.
+/// Channels of width × height pixels each. Viewers show R, G and B, as linear light with the primaries of
+/// sRGB.
 struct Layers {
     int width = 0, height = 0;
     std::vector<Channel> channels;
 };
 
-/// Writes an EXR file: scan lines of FLOAT and UINT channels, packed without loss (ZIP), so that every value
-/// is kept as it is, infinities and NaN too. By way of a file beside `path` that is then renamed. Throws
-/// InputError if there are no pixels or no channels, a channel has other than width × height values, a name
-/// is bad or there twice; OutputError if the path cannot be written (a pipe cannot: the format is not written
-/// in one go). The format is "OpenEXR File Layout", openexr.com/en/latest/OpenEXRFileLayout.html. O(values),
-/// in the memory of some rows.
+/// Writes an EXR file: scan lines of FLOAT and UINT channels, compressed without loss (ZIP), so that every
+/// value is kept, infinities and NaN included. The format is "OpenEXR File Layout",
+/// openexr.com/en/latest/OpenEXRFileLayout.html. The file is written under another name beside `path` and
+/// then renamed. O(values) time, memory for a few rows.
 ///
-/// `progress` is told of the pixels. Throws Cancelled if it is cancelled: the file of before then stays.
+/// Throws InputError if there are no pixels or no channels, if a channel does not have width × height values,
+/// or if a name is invalid or used twice. Throws OutputError if the path cannot be written; a pipe cannot,
+/// because the writer goes back in the file. Throws Cancelled if `progress`, which counts pixels, is
+/// cancelled; a file that was there before is kept.
 void save_exr(const std::filesystem::path& path, const Layers& layers, const Progress& progress = {});
 
 /// Whether this build has OpenEXR (HEDGEROW_EXR=ON). Without it `save_exr` throws InputError.

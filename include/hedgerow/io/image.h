@@ -34,13 +34,15 @@ private:
     }
 };
 
-/// Writes a PNG, by way of a file beside `path` that is then renamed. Throws InputError if the image has no
-/// pixels, or other than width × height, OutputError if the path cannot be written, and Cancelled, once the
-/// image is packed, if `progress` is cancelled: the file of before then stays.
+/// Writes a PNG file under another name beside `path`, and then renames it. Throws InputError if the image
+/// has no pixels or does not have width × height of them, and OutputError if the path cannot be written.
+/// Throws Cancelled if `progress` is cancelled, which is checked once the image is compressed; a file that
+/// was there before is kept.
 void save_png(const std::filesystem::path& path, const Image& image, const Progress& progress = {});
 
-/// Reads any PNG: greys and palettes become RGB, 16 bits become 8, what is transparent lies on black. Throws
-/// InputError if the file is none, is damaged, or promises more pixels than its size can hold.
+/// Reads any PNG as 8-bit RGB: greys and palettes become RGB, 16 bits become 8, and transparent pixels are
+/// laid over black. Throws InputError if the file is not a PNG, is damaged, or declares more pixels than a
+/// file of its size can hold.
 Image load_png(const std::filesystem::path& path);
 
 }  // namespace hedgerow

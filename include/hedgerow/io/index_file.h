@@ -1,4 +1,4 @@
-/// Indexes to and from files, which are mapped: loading builds nothing and copies nothing.
+/// Saves indexes to files and loads them. Files are mapped: loading builds nothing and copies nothing.
 #pragma once
 
 #include <filesystem>
@@ -9,75 +9,80 @@
 
 namespace hedgerow {
 
-/// What is saved: triangles in the engine, as `build(mesh)` makes it.
+/// The index that can be saved: triangles in the engine, as `build(mesh)` makes it.
 template <std::floating_point T>
 using MeshIndex = Index<WideBvh<T, 3>, TriangleMeshView<T>>;
 
-/// What of a file is looked at before its index is used.
+/// Which parts of a file are checked before its index is used.
 enum class Verify {
-    /// The header and the file's length, in microseconds; the rest is read as queries come to it. For files
-    /// that you trust: **damage goes unseen, and queries may answer anything or read outside of the file**.
+    /// The header and the file's length, in microseconds. The rest is read when queries touch it. For files
+    /// that you trust: **damage goes unnoticed, and queries may return anything or read outside of the
+    /// file**.
     header,
-    /// All of it, against its checksums. No accident goes unseen; a file that was made to deceive does.
+    /// The whole file, against its checksums. No accidental damage goes unnoticed; a file that was made to
+    /// deceive does.
     checksums,
-    /// And what a build promises: every link leads to a node, every box holds what is below it, every
-    /// triangle stands in one leaf. No file does harm.
+    /// The checksums, and what a build guarantees: every link leads to a node, every box contains what is
+    /// below it, every triangle is in one leaf. No file does harm.
     contents
 };
 
 struct LoadIndexOptions {
     Verify verify = Verify::contents;
-    /// Whether the file is mapped. If not (and where the system cannot map), it is read into memory of its
-    /// own, on huge pages: then what becomes of the file is of no matter.
+    /// Whether the file is mapped. If not, or if the system cannot map, the file is read into memory of its
+    /// own, on huge pages. Later changes to the file then do not matter.
     bool map = true;
 };
 
-/// Writes an index and its mesh: a file that is complete in itself, and the same bytes for the same index.
-/// The format is of this processor's byte order (docs/design/009-index-file.md).
+/// Writes an index and its mesh. The file is complete in itself, and the same index gives the same bytes. The
+/// format uses this processor's byte order (docs/design/009-index-file.md).
 ///
-/// Written under another name beside `path` and then renamed, so there never is half a file, and indexes that
-/// were loaded from an earlier one are not disturbed. T is float or double. O(n) time; beyond the index 1 MiB
-/// of memory. `progress` is told of the bytes that are written. Throws OutputError if the path cannot be
+/// The file is written under another name beside `path` and then renamed, so there is never half a file, and
+/// indexes that were loaded from an earlier one are not disturbed. T is float or double. O(n) time; 1 MiB of
+/// memory beyond the index. `progress` counts the bytes written. Throws OutputError if the path cannot be
 /// written (the disk is full, say), and Cancelled if `progress` is cancelled.
 template <std::floating_point T>
 void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, const Progress& progress = {});
 
-/// The index of a file that `save_index` wrote. It answers every query with the bits of the one that was
-/// saved, owns its mapping, and may outlive the file's name. A `refit` changes its memory, never the file.
+/// Loads an index that `save_index` wrote. It answers every query with the same bits as the saved index. It
+/// owns its mapping, so deleting or replacing the file is harmless. A `refit` changes the index's memory,
+/// never the file.
 ///
-/// While it lives the file must not be changed in place: what was mapped would change with it, and a read
-/// beyond a new end is fatal (SIGBUS). Replacing or deleting it is harmless.
+/// The file must not be changed in place while the index lives: mapped memory changes with the file, and a
+/// read beyond a new end is fatal (SIGBUS).
 ///
-/// O(1) time where only the header is verified, else O(n), over the executor but for the tree. Throws
-/// InputError, naming the file, the place, what is wrong and what to do, for a file of another version, byte
-/// order or scalar type, that is cut short or longer than it says, or in which any bit has changed (as far as
-/// it is verified).
+/// O(1) time if the file is mapped and only its header is verified, else O(n), in parallel except for the
+/// check of the tree. Throws InputError, naming the file, the place, the fault and a remedy, for a file that
+/// has another version, byte order or scalar type, is shorter or longer than its header says, or has any bit
+/// changed (as far as it is verified).
 template <std::floating_point T>
 MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOptions& options = {},
-                        Executor& executor = serial_executor());
+                        Threads threads = {});
 
-/// What a file's header says.
+/// The contents of a file's header.
 struct IndexFileInfo {
     int version;
     /// "float" or "double".
     std::string_view scalar;
-    /// With the width that it has.
+    /// The options of the build, with the width that was chosen.
     WideOptions options;
     std::size_t triangles, vertices;
-    /// Inner nodes, and leaves.
+    /// Numbers of inner nodes and of leaves.
     std::size_t nodes, leaves;
-    /// Levels, leaves counted.
+    /// Number of levels, leaves included.
     int depth;
-    /// Whether the triangles have ids that are not their positions.
+    /// Whether the file has an id for each triangle. Without them, ids are positions.
     bool faces;
     Box3d bounds;
-    /// Of nodes, items and triangles in blocks: what an Index has beyond its primitives. And of the file.
+    /// Bytes of nodes, items and triangle blocks (all that an Index has beyond its primitives), and of the
+    /// file.
     std::uint64_t index_bytes, file_bytes;
 };
-/// Reads that, and the file's length, alone. Throws InputError as load_index does of a header.
+/// Reads the header of a file and checks the file's length. Throws InputError as load_index does for a
+/// header.
 IndexFileInfo index_file_info(const std::filesystem::path& path);
 
-/// Whether a path ends in `.hedgerow`, as these files are called, in upper or lower case.
+/// Whether a path has the extension of saved indexes, `.hedgerow`, in upper or lower case (`.gz` may follow).
 bool names_index_file(const std::filesystem::path& path);
 
 }  // namespace hedgerow

@@ -1,13 +1,13 @@
-/// What all loaders share: their options.
+/// Options that all loaders share.
 #pragma once
 
 namespace hedgerow {
 
 struct LoadOptions {
-    /// Leave out what has a coordinate that is NaN, infinite or beyond `largest_coordinate<T>`, instead of an
-    /// error. Of a mesh the faces go, whole, and such vertices; the faces that stay keep their ids (the
-    /// ordinals in the file), the vertices that stay are renumbered. Of a point cloud the points go; the rest
-    /// move up.
+    /// Leaves out elements with a coordinate that is NaN, infinite or beyond `largest_coordinate<T>`, instead
+    /// of throwing. A mesh loses such vertices and, whole, the faces that use them. Faces that stay keep
+    /// their ids (ordinals in the file); vertices that stay are renumbered. A point cloud loses such points,
+    /// and the rest move up.
     bool drop_bad = false;
 };
 

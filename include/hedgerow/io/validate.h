@@ -1,4 +1,4 @@
-/// What every loaded mesh and point cloud is held against, in one place.
+/// The checks that every loaded mesh and point cloud must pass, in one place.
 #pragma once
 
 #include <string_view>
@@ -9,21 +9,25 @@
 
 namespace hedgerow {
 
-/// Throws InputError, naming `name` (a file, say) and the first offender, if the mesh has no triangles, if a
-/// triangle names a vertex that does not exist, if a coordinate is NaN, infinite or beyond
-/// `largest_coordinate<T>` (a vertex that no face uses counts too), or if `faces` is neither empty nor one
-/// never descending id a triangle. T is float or double. O(vertices + triangles) time, no memory.
+/// Throws InputError, naming `name` (a file, say) and the first bad element, if the mesh has no triangles, if
+/// a triangle names a vertex that does not exist, if a coordinate is NaN, infinite or beyond
+/// `largest_coordinate<T>` (even of a vertex that no face uses), or if `faces` is not empty and does not have
+/// one id per triangle, never descending. T is float or double. O(vertices + triangles) time, no memory.
 template <class T>
 void validate_mesh(const TriangleMesh<T>& mesh, std::string_view name);
 
-/// The same for points; D is 2 or 3. No points at all are an error.
+/// Throws InputError if the cloud has no points or a point has a coordinate that validate_mesh would refuse.
+/// D is 2 or 3. O(points) time, no memory.
 template <class T, int D>
 void validate_points(const PointCloud<T, D>& cloud, std::string_view name);
 
-/// The mesh, if it is valid; with `drop_bad` without the faces and vertices that have bad coordinates, an
-/// error only if nothing is left.
+/// Returns the mesh if validate_mesh accepts it, and throws what validate_mesh throws if not. With
+/// `drop_bad`, bad coordinates are no error unless no face is left: vertices that have them, and faces that
+/// use those vertices, are left out.
 template <class T>
 TriangleMesh<T> validated(TriangleMesh<T> mesh, std::string_view name, const LoadOptions& options);
+/// Returns the points if validate_points accepts them, and throws what validate_points throws if not. With
+/// `drop_bad`, bad points are left out, and are an error only if no point is left.
 template <class T, int D>
 PointCloud<T, D> validated(PointCloud<T, D> cloud, std::string_view name, const LoadOptions& options);
 

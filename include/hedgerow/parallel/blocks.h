@@ -1,4 +1,5 @@
-/// Work cut into blocks that are the same for every executor, where what a block finds is kept by its number.
+/// Work cut into numbered blocks that are the same for every executor, so that results can be stored by
+/// block.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +8,12 @@
 
 namespace hedgerow {
 
-/// [0, count) in blocks of `size`: an executor's own pieces may lie anywhere.
+/// Cuts [0, count) into blocks of `size`. The pieces of an executor itself may begin and end anywhere.
 struct Blocks {
     std::size_t count, size;
 
     std::size_t number() const { return (count + size - 1) / size; }
-    /// Calls body(block, begin, end) for each.
+    /// Calls body(block, begin, end) for each block, in any order.
     template <class F>
     void each(Executor& executor, F body) const {
         executor.for_each_piece(number(), 1, [&](std::size_t from, std::size_t to) {

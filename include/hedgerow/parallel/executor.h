@@ -1,4 +1,5 @@
-/// Who runs parallel work: oneTBB, nobody (serial), or the caller's own pool.
+/// Executors, which run parallel work: by oneTBB, in the calling thread (serial), or in the caller's own
+/// pool.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +8,7 @@
 
 namespace hedgerow {
 
-/// A reference to something callable; the callable must outlive it.
+/// A reference to a callable, which must outlive the reference.
 template <class Signature>
 class FunctionRef;
 template <class R, class... Args>
@@ -26,30 +27,32 @@ private:
     R (*call_)(void*, Args...);
 };
 
-/// Primitives in a piece of work that is worth a task of its own.
+/// The least number of primitives that is worth a task of its own.
 inline constexpr std::size_t worth_a_task = 4096;
 
-/// Derive from it to bring a pool of your own: two functions, both of which return when all is done and let
-/// the first exception through. Results never depend on how the work is cut or on the number of threads.
-/// WatchedExecutor adds progress and a token to stop to any executor.
+/// Runs parallel work. To use a pool of your own, derive from Executor and implement its two functions,
+/// `for_each_piece` and `both`. Each returns when all its work is done, and lets the first exception through.
+/// Results never depend on how the work is cut or on the number of threads. WatchedExecutor adds progress
+/// reports and cancellation to any executor.
 class Executor {
 public:
     virtual ~Executor() = default;
     /// Calls body(begin, end) for pieces of about `grain` that together are [0, count), in any order.
     virtual void for_each_piece(std::size_t count, std::size_t grain,
                                 FunctionRef<void(std::size_t, std::size_t)> body) = 0;
-    /// Calls both, perhaps at once.
+    /// Calls both functions, perhaps at the same time.
     virtual void both(FunctionRef<void()> first, FunctionRef<void()> second) = 0;
 
-    /// Long work announces here how much there is to do, in primitives that take one step each; and says,
-    /// about every 4096 of them, how much is done. Overrides may throw, which ends the work.
+    /// Progress of long work. `expect` announces how much there is to do, in primitives that take one step
+    /// each. `advance` reports, about every 4096 of them, how many more are done. Overrides may throw, which
+    /// ends the work.
     virtual void expect(std::size_t work) { static_cast<void>(work); }
     virtual void advance(std::size_t work) { static_cast<void>(work); }
-    /// For serial work whose share of the whole is small: a place where it may be stopped.
+    /// A place where serial work may be stopped, for work that is a small share of the whole.
     void look() { advance(0); }
 };
 
-/// Everything in the calling thread.
+/// Runs everything in the calling thread.
 class SerialExecutor final : public Executor {
 public:
     void for_each_piece(std::size_t count, std::size_t,
@@ -66,10 +69,32 @@ inline SerialExecutor& serial_executor() {
     return serial;
 }
 
-/// oneTBB on all cores (serial, if the library was built without it). In the library `core`.
+/// The executor that uses all cores by oneTBB (serial, if the library was built without oneTBB). In the
+/// library `core`.
 Executor& default_executor();
 
-/// oneTBB limited to a number of threads for as long as it lives; 0 means all cores.
+/// Whether the calling thread is running a task of `default_executor()`. In the library `core`.
+bool is_worker();
+
+/// Chooses the executor of a call: the caller's own, if one is given. Otherwise all cores for at least
+/// `worth_a_task` items; the calling thread for fewer items, and inside a worker, since other workers have
+/// the other cores.
+class Threads {
+public:
+    Threads() = default;
+    Threads(Executor& given) : given_(&given) {}  // NOLINT(google-explicit-constructor): an executor will do
+
+    Executor& over(std::size_t items) const {
+        if (given_ != nullptr) return *given_;
+        return items >= worth_a_task && !is_worker() ? default_executor() : serial_executor();
+    }
+
+private:
+    Executor* given_ = nullptr;
+};
+
+/// Limits oneTBB to a number of threads for as long as the object lives; 0 means all cores. Has no effect if
+/// the library was built without oneTBB.
 class ThreadLimit {
 public:
     explicit ThreadLimit(unsigned threads);

@@ -1,4 +1,4 @@
-/// Another executor's threads, each in IEEE mode while it works.
+/// An executor that runs another executor's threads in IEEE mode.
 #pragma once
 
 #include <hedgerow/geometry/rounding.h>
@@ -6,7 +6,8 @@
 
 namespace hedgerow {
 
-/// Whatever mode the caller or the threads of its pool are in, what is computed is the same.
+/// Runs each piece of work in IEEE mode (in_ieee_mode), so results are the same whatever mode the caller or
+/// the threads of a pool are in. Borrows `threads`.
 class IeeeExecutor final : public Executor {
 public:
     explicit IeeeExecutor(Executor& threads) : threads_(threads) {}

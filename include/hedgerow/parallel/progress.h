@@ -1,4 +1,4 @@
-/// How long work reports how far it is, and how it is asked to stop.
+/// Progress reports and cancellation of long work.
 #pragma once
 
 #include <atomic>
@@ -8,16 +8,18 @@
 
 namespace hedgerow {
 
-/// Thrown by long work once `Progress::cancelled()`: half a file, scene or structure is of no use to anyone.
+/// Thrown by long work once `Progress::cancelled()` is true, since half a file, scene or structure is of no
+/// use.
 class Cancelled : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Given to long work (loading, generating, building, rendering, saving). `report(done, total)` may be called
-/// from any thread and by several at once, with `total` 0 while it is unknown; `total` grows where a next
-/// step begins, and the last `done` may be less. Work looks at `cancelled()` now and then. It ends early with
-/// what it has, or throws Cancelled where that is of no use.
+/// What a caller gives to long work (loading, generating, building, rendering, saving) to follow and to
+/// cancel it. `report(done, total)` may be called from any thread, and by several threads at once. `total` is
+/// 0 while it is unknown, and grows when a next step begins; the last `done` may be less than `total`. Work
+/// checks `cancelled()` now and then. It then ends early with what it has, or throws Cancelled if that is of
+/// no use.
 struct Progress {
     std::function<void(std::uint64_t done, std::uint64_t total)> report;
     const std::atomic<bool>* cancel = nullptr;
@@ -26,7 +28,7 @@ struct Progress {
         if (report) report(done, total);
     }
     bool cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
-    /// Throws Cancelled if the work was asked to stop.
+    /// Throws Cancelled if the work is cancelled.
     void look() const {
         if (cancelled()) throw Cancelled("cancelled");
     }

@@ -10,8 +10,8 @@
 namespace hedgerow {
 
 /// Sorts in the calling thread and calls `executor.look()` about every 65,536 comparisons, some milliseconds
-/// apart. Where that throws, the range is of no use any more: an element may be
-/// lost, and another be there twice.
+/// apart. If `look()` throws, the range is of no use any more: an element may be lost, and another may be
+/// there twice.
 template <class Iterator, class Less = std::less<>>
 void sort_watched(Iterator begin, Iterator end, Executor& executor, Less less = {}) {
     std::uint32_t compared = 0;

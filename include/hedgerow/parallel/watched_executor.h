@@ -1,4 +1,4 @@
-/// Another executor's threads, whose work reports how far it is and can be stopped.
+/// An executor that adds progress reports and cancellation to another executor.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,15 @@
 
 namespace hedgerow {
 
-/// Makes a build report progress and stop when asked:
+/// Makes a build report progress, and stop on request:
 ///
 ///   std::atomic<bool> stop = false;  // set it from any thread or signal handler
 ///   WatchedExecutor watched(default_executor(), {show, &stop});
 ///   auto index = build(mesh, watched);
 ///
-/// The token is looked at wherever work is split, about once in 4096 primitives; what is built is the same.
-/// Once it is raised, the next look throws Cancelled, which leaves `build` when all threads have ended.
+/// The token is checked wherever work is split, about once in 4096 primitives. What is built is the same as
+/// without a token. Once the token is raised, the next check throws Cancelled, which leaves `build` when all
+/// threads have ended.
 class WatchedExecutor final : public Executor {
 public:
     /// Borrows `threads`.
@@ -52,7 +53,7 @@ public:
         progress_(std::min<std::uint64_t>(done_ += work, total), total);
     }
 
-    /// How often the token was looked at.
+    /// The number of times that the token was checked.
     std::uint64_t looks() const { return looks_; }
 
 private:

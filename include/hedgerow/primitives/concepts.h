@@ -1,5 +1,6 @@
-/// What a primitive set is: things with boxes that probes can be held against. A set of your own needs
-/// `size`, `bounds` and those of `meet`, `closest_point` and `overlaps` whose questions it is to answer.
+/// What a primitive set is: primitives with boxes, which can be tested against probes. A set of your own
+/// needs `size` and `bounds`; for ray queries also `meet`, for distance queries `closest_point`, for box
+/// queries `overlaps`.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace hedgerow {
 
 /// The position of a primitive in its set.
 using PrimitiveId = std::uint32_t;
-/// In a list of places: none stands here.
+/// Fills places of a list that hold no primitive.
 inline constexpr PrimitiveId no_primitive = 0xFFFFFFFFu;
 
 template <class P>
@@ -25,27 +26,29 @@ concept PrimitiveSet = requires(const P& p, std::size_t i) {
     { p.size() } -> std::convertible_to<std::size_t>;
     { p.bounds(i) } -> std::same_as<Box<typename P::Scalar, P::dimension>>;
 };
-/// Answers rays: the meeting of least t within the ray's interval, with any t that its arithmetic gives.
+/// A set that answers ray queries. `meet` returns the hit of least t within the ray's interval, where t may
+/// be whatever the test's arithmetic gives.
 template <class P>
 concept MeetsRays = PrimitiveSet<P> &&
     requires(const P& p, std::size_t i, const Ray<typename P::Scalar, P::dimension>& ray) {
     { p.meet(i, ray) } -> std::same_as<std::optional<Meeting<typename P::Scalar>>>;
 };
-/// Answers distances: the closest point of a primitive, within the primitive's bounds.
+/// A set that answers distance queries. `closest_point` returns the closest point of a primitive, which must
+/// lie within the primitive's bounds.
 template <class P>
 concept HasClosestPoint = PrimitiveSet<P> &&
     requires(const P& p, std::size_t i, const Vec<typename P::Scalar, P::dimension>& x) {
     { p.closest_point(i, x) } -> std::same_as<Vec<typename P::Scalar, P::dimension>>;
 };
-/// Answers regions; a yes implies that the primitive's bounds overlap the box.
+/// A set that answers box queries. `overlaps` may be true only if the primitive's bounds overlap the box.
 template <class P>
 concept OverlapsBoxes = PrimitiveSet<P> &&
     requires(const P& p, std::size_t i, const Box<typename P::Scalar, P::dimension>& box) {
     { p.overlaps(i, box) } -> std::same_as<bool>;
 };
 
-/// A set that promises more of its hits: they lie within the probe's slack of the primitive itself, not only
-/// of its box. It may be left out of cells that it does not overlap (structures/cells.h).
+/// A set whose hits lie within the probe's slack of the primitive itself, not only of its box. Structures may
+/// leave its primitives out of cells that they do not overlap (structures/cells.h).
 template <class P>
 concept HitsLieOnPrimitives = OverlapsBoxes<P> && P::hits_lie_on_primitives;
 
@@ -55,15 +58,15 @@ concept PointSet = PrimitiveSet<P> && requires(const P& set, std::size_t i) {
     { set.point(i) } -> std::convertible_to<Vec<typename P::Scalar, P::dimension>>;
 };
 
-/// What a ray query is offered. `instance` names the placed index that the element is in; 0 where there are
-/// no instances.
+/// A candidate of a ray query. `instance` is the number of the placed index that the element is in; 0 where
+/// there are no instances.
 template <std::floating_point T>
 struct RayCandidate {
     T t, u, v;
     PrimitiveId element;
     std::uint32_t instance = 0;
 };
-/// What a distance query is offered.
+/// A candidate of a distance query.
 template <std::floating_point T, int D>
 struct PointCandidate {
     T distance2;
@@ -71,13 +74,31 @@ struct PointCandidate {
     Vec<T, D> point;
     std::uint32_t instance = 0;
 };
-/// What a region query is offered.
+/// A candidate of a box query.
 struct OverlapCandidate {
     PrimitiveId element;
     std::uint32_t instance = 0;
 };
 
-/// The order that equal answers go by, and what they are told apart by: (instance, element).
+/// The type of candidate that the walks of a probe offer to its queries.
+template <class Probe>
+struct CandidateOfProbe;
+template <std::floating_point T, int D>
+struct CandidateOfProbe<RayProbe<T, D>> {
+    using Type = RayCandidate<T>;
+};
+template <std::floating_point T, int D>
+struct CandidateOfProbe<PointProbe<T, D>> {
+    using Type = PointCandidate<T, D>;
+};
+template <std::floating_point T, int D>
+struct CandidateOfProbe<BoxProbe<T, D>> {
+    using Type = OverlapCandidate;
+};
+template <class Probe>
+using CandidateOf = typename CandidateOfProbe<Probe>::Type;
+
+/// Equal answers are ordered by (instance, element), and primitives are the same if both are equal.
 template <class A, class B>
 constexpr bool comes_before(const A& a, const B& b) {
     return a.instance != b.instance ? a.instance < b.instance : a.element < b.element;
@@ -93,10 +114,11 @@ struct PlacedId {
     PrimitiveId element;
     friend auto operator<=>(const PlacedId&, const PlacedId&) = default;
 };
-/// Primitives that are whole indexes, placed (instance_set.h): what they answer is named by two numbers.
+/// A set whose primitives are whole indexes, placed (instances/instance_set.h). Its answers are named by two
+/// numbers, the instance and the element.
 template <class P>
 concept Instanced = P::instanced;
-/// What a region query names primitives of P by.
+/// The name that a box query gives to a primitive of P.
 template <class P>
 struct Identity {
     using Type = PrimitiveId;
@@ -119,7 +141,7 @@ bool offers_once(const P& set) {
         return true;
 }
 
-/// How much farther than RayProbe knows of itself a hit may lie from its primitive's box: 0 but for
+/// How much farther than RayProbe's own error bound a hit may lie from its primitive's box: 0 except for
 /// instances.
 template <class P, class Ray>
 auto hit_error(const P& set, const Ray& ray) {
@@ -128,24 +150,25 @@ auto hit_error(const P& set, const Ray& ray) {
     else
         return typename Ray::Scalar(0);
 }
-/// Where a packed copy of the primitives stands: in the order of the leaves, for structures that hold each
-/// about once; the same, each leaf a block of its own; or by id.
-enum class PackedOrder { of_leaves, of_blocks, of_ids };
+/// The order of a packed copy of the primitives: by leaves, for structures that hold each primitive about
+/// once, or by id.
+enum class PackedOrder { of_leaves, of_ids };
 
-/// Some primitives, by id: `ids[first]` to `ids[first + count − 1]`.
+/// The primitives of a leaf, by id: `ids[first]` to `ids[first + count − 1]`.
 struct Leaf {
     const PrimitiveId* ids;
     std::uint32_t first, count;
 };
 
-/// Holds one primitive against the query's probe and offers what comes of it.
+/// Tests one primitive against the query's probe, and offers the candidate that results, if any.
 template <class P, class Query>
 Flow test_one(const P& set, const RayProbe<typename P::Scalar, P::dimension>& probe, PrimitiveId id,
               Query& query) {
     if constexpr (MeetsRays<P>) {
         const auto m = set.meet(id, probe.ray());
         if (!m) return Flow::go_on;
-        // A structure only knows the box: a meeting outside of it would depend on the structure.
+        // Drop hits outside the primitive's box. A structure only knows the box, so finding such a hit would
+        // depend on the structure.
         if (!probe.meets_within_error(set.bounds(id), m->t)) return Flow::go_on;
         return query.offer({m->t, m->u, m->v, id});
     } else {
@@ -164,7 +187,8 @@ Flow test_one(const P& set, const BoxProbe<typename P::Scalar, P::dimension>& pr
     return set.overlaps(id, probe.box()) ? query.offer({id}) : Flow::go_on;
 }
 
-/// A whole leaf, one by one. A set with something faster has a member `test_leaf(probe, leaf, query)`.
+/// Tests the primitives of a leaf one by one. A set with a faster way has a member `test_leaf(probe, leaf,
+/// query)`, which is called instead.
 template <PrimitiveSet P, class Probe, class Query>
 Flow test_leaf(const P& set, const Probe& probe, const Leaf& leaf, Query& query) {
     if constexpr (requires { set.test_leaf(probe, leaf, query); }) {
@@ -176,7 +200,8 @@ Flow test_leaf(const P& set, const Probe& probe, const Leaf& leaf, Query& query)
     }
 }
 
-/// The id that a hit reports for a primitive: its own, or what the set says (a triangle's face in its file).
+/// The id that a hit reports for a primitive: its position, unless the set gives ids (for a triangle, its
+/// face in the file).
 template <class P>
 std::uint32_t reported_id(const P& set, PrimitiveId i, std::uint32_t instance) {
     if constexpr (Instanced<P>)
@@ -187,7 +212,7 @@ std::uint32_t reported_id(const P& set, PrimitiveId i, std::uint32_t instance) {
         return i;
 }
 
-/// The geometry that a hit reports: of instances what their owner gave them, else 0.
+/// The geometry that a hit reports: the number that its instance was given; 0 where there are no instances.
 template <class P>
 std::uint32_t reported_geometry(const P& set, std::uint32_t instance) {
     if constexpr (requires { set.geometry(instance); })
@@ -196,7 +221,8 @@ std::uint32_t reported_geometry(const P& set, std::uint32_t instance) {
         return 0;
 }
 
-/// A set that only looks at arrays: `view()` of an owner, or the set itself. Indexes hold views.
+/// A set that only looks at arrays: the `view()` of a set that owns its arrays, or the set itself. Indexes
+/// store views.
 template <class P>
 auto view_of(const P& set) {
     if constexpr (requires { set.view(); })

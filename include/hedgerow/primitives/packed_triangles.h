@@ -1,18 +1,18 @@
-/// Triangles copied so that a test reads one place, three corners to a register.
+/// A copy of triangles in which a test reads one place in memory, with three corners in a register.
 #pragma once
 
 #include <algorithm>
 #include <span>
 #include <type_traits>
 
-#include <hedgerow/bare_vector.h>
+#include <hedgerow/base/bare_vector.h>
 #include <hedgerow/geometry/lanes.h>
 #include <hedgerow/primitives/concepts.h>
 
 namespace hedgerow {
 
-/// Of each axis the three corners' coordinates, then the id: 40 bytes a triangle (float), 80 (double). A row
-/// is loaded as four lanes; what lies in the fourth is ignored.
+/// Triangles as three rows, one for each axis, of the three corners' coordinates, then the id: 40 bytes a
+/// triangle (float), 80 (double). A row is loaded as four lanes, and the fourth is ignored.
 template <std::floating_point T, PackedOrder order>
 class PackedTriangles {
 public:
@@ -35,7 +35,8 @@ public:
         p.row[9] = number_as_lane<T>(id);
     }
 
-    /// The filter of the watertight test on all three edges at once; what passes goes to `meet_exactly`.
+    /// Runs the watertight test's first pass, a filter, on all three edges at once. Triangles that pass go to
+    /// `meet_exactly`.
     template <class Query>
     Flow test_leaf(const RayProbe<T, 3>& probe, const Leaf& leaf, Query& query) const {
         using L = Lanes<T>;
@@ -53,8 +54,8 @@ public:
         return Flow::go_on;
     }
 
-    /// Asks the memory for what the tests of a leaf will read, no more than it has on its way at once: where
-    /// ids lie apart, a test waits longer than it computes.
+    /// Prefetches what the tests of a leaf will read: where ids lie far apart in memory, a test waits longer
+    /// than it computes. At most 16 triangles, since memory loads no more at once.
     void prefetch(const Leaf& leaf) const {
         for (std::uint32_t i = leaf.first; i < leaf.first + std::min(leaf.count, 16u); ++i)
             __builtin_prefetch(&triangles_[order == PackedOrder::of_leaves ? i : leaf.ids[i]]);
@@ -62,7 +63,7 @@ public:
 
 private:
     struct Packed {
-        T row[10];  // three of each axis, and the id
+        T row[10];  // three corners for each axis, then the id
 
         PrimitiveId id() const { return number_of_lane(row[9]); }
 

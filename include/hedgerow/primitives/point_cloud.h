@@ -1,15 +1,15 @@
-/// Points.
+/// Points in an array.
 #pragma once
 
 #include <vector>
 
+#include <hedgerow/base/strided.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/primitives/concepts.h>
-#include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
 
-/// The same over the caller's array, copied nowhere.
+/// A view of points in the caller's array. Nothing is copied.
 template <std::floating_point T, int D>
 class PointCloudView {
 public:
@@ -29,7 +29,7 @@ private:
     Strided<Vec<T, D>> points_;
 };
 
-/// Points in an array of its own. A point's id is its position.
+/// Points in an array that the set owns. The id of a point is its position.
 template <std::floating_point T, int D>
 struct PointCloud {
     using Scalar = T;

@@ -4,14 +4,14 @@
 #include <array>
 #include <vector>
 
+#include <hedgerow/base/strided.h>
 #include <hedgerow/geometry/clip.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/primitives/concepts.h>
-#include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
 
-/// The same over the caller's array, copied nowhere.
+/// A view of segments in the caller's array. Nothing is copied.
 template <std::floating_point T>
 class SegmentSetView {
 public:
@@ -46,7 +46,7 @@ private:
     Strided<Segment<T, 2>> segments_;
 };
 
-/// Segments in an array of its own. A segment's id is its position.
+/// Segments in an array that the set owns. The id of a segment is its position.
 template <std::floating_point T>
 struct SegmentSet {
     using Scalar = T;

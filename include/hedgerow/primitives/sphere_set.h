@@ -3,13 +3,13 @@
 
 #include <vector>
 
+#include <hedgerow/base/strided.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/primitives/concepts.h>
-#include <hedgerow/primitives/strided.h>
 
 namespace hedgerow {
 
-/// The same over the caller's array, copied nowhere.
+/// A view of spheres in the caller's array. Nothing is copied.
 template <std::floating_point T, int D>
 class SphereSetView {
 public:
@@ -26,7 +26,8 @@ public:
         return hedgerow::closest_point(p, spheres_[i]);
     }
     bool overlaps(std::size_t i, const Box<T, D>& box) const { return overlap(spheres_[i], box); }
-    /// The first crossing of the surface in the interval: the way in, or from inside the way out.
+    /// The ray's first crossing of the surface within its interval: the entry, or the exit if the entry lies
+    /// before the interval.
     std::optional<Meeting<T>> meet(std::size_t i, const Ray<T, D>& ray) const {
         const auto both = meet_line(ray.origin, ray.direction, spheres_[i]);
         if (!both) return std::nullopt;
@@ -39,7 +40,7 @@ private:
     Strided<Sphere<T, D>> spheres_;
 };
 
-/// Spheres in an array of its own. A sphere's id is its position. Radii are >= 0.
+/// Spheres in an array that the set owns. The id of a sphere is its position. Radii are >= 0.
 template <std::floating_point T, int D>
 struct SphereSet {
     using Scalar = T;

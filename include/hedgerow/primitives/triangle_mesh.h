@@ -6,22 +6,22 @@
 #include <string>
 #include <vector>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/base/strided.h>
 #include <hedgerow/geometry/clip.h>
 #include <hedgerow/geometry/shapes.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/primitives/packed_triangles.h>
-#include <hedgerow/primitives/strided.h>
-#include <hedgerow/primitives/triangle_blocks.h>
 
 namespace hedgerow {
 
 /// Three positions in the list of vertices, counterclockwise seen from the front.
 using TriangleIndices = std::array<std::uint32_t, 3>;
 
-/// Triangles over the caller's arrays, copied nowhere: vertices of three T, triangles of three indices, each
-/// with its stride, and the id of each triangle (empty: its position).
+/// A view of triangles in the caller's arrays. Nothing is copied. Vertices are three T and triangles are
+/// three indices, each array with its own stride. `faces` are the ids of the triangles; if it is empty, a
+/// triangle's id is its position.
 template <std::floating_point T>
 class TriangleMeshView {
 public:
@@ -44,10 +44,10 @@ public:
     std::uint32_t id(std::size_t i) const {
         return faces_.empty() ? static_cast<std::uint32_t>(i) : faces_[i];
     }
-    /// Those ids; empty where they are the positions.
+    /// The ids of the triangles; empty if the ids are the positions.
     const Strided<std::uint32_t>& faces() const { return faces_; }
     Box<T, 3> bounds(std::size_t i) const { return triangle(i).bounds(); }
-    /// A box forgets a NaN; this does not.
+    /// Whether all corners are finite. The bounds do not show this, since a box drops a NaN.
     bool finite(std::size_t i) const {
         const auto t = triangle(i);
         return hedgerow::finite(t.a) && hedgerow::finite(t.b) && hedgerow::finite(t.c);
@@ -58,7 +58,7 @@ public:
         return hedgerow::closest_point(p, triangle(i));
     }
     bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }
-    /// The same for many boxes.
+    /// The overlap test of one triangle, prepared for many boxes.
     TriangleOverlap<T> overlap_test(std::size_t i) const { return TriangleOverlap<T>(triangle(i)); }
 
     static constexpr bool hits_lie_on_primitives = true;
@@ -70,18 +70,19 @@ public:
         return hedgerow::clipped_bounds(triangle(i), box);
     }
 
-    /// Throws InputError for the first triangle that names a vertex that is not there. O(n).
+    /// Throws InputError for the first triangle with a vertex index out of range, and for a list of face ids
+    /// whose length is not that of the triangles. O(n).
     void validate() const {
         for (std::size_t i = 0; i < size(); ++i) validate_corners(i);
         validate_faces();
     }
-    /// The same for one triangle. O(1).
+    /// Checks only triangle i, and the number of face ids. Throws InputError. O(1).
     void validate(std::size_t i) const {
         validate_corners(i);
         validate_faces();
     }
 
-    /// Rays have the watertight test, whose error the probe knows.
+    /// Tests rays by the watertight test, whose error is within the probe's slack.
     template <class Query>
     Flow test_leaf(const RayProbe<T, 3>& probe, const Leaf& leaf, Query& query) const {
         for (std::uint32_t i = 0; i < leaf.count; ++i) {
@@ -92,28 +93,21 @@ public:
         return Flow::go_on;
     }
 
-    /// The triangles in the order of a structure's items, or by id: what makes a test one read.
+    /// Copies the triangles in the order of a structure's items, or by id, so that a test reads one place in
+    /// memory.
     template <PackedOrder order>
     auto pack(std::span<const PrimitiveId> items, Executor& executor) const {
-        using Packed =
-            std::conditional_t<order == PackedOrder::of_blocks, TriangleBlocks<T>, PackedTriangles<T, order>>;
         const std::size_t count = order == PackedOrder::of_ids ? size() : items.size();
-        Packed packed(count);
+        PackedTriangles<T, order> packed(count);
         executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const auto id = order == PackedOrder::of_ids ? static_cast<PrimitiveId>(i) : items[i];
-                if constexpr (order == PackedOrder::of_blocks) {
-                    if (id == no_primitive) {
-                        packed.clear(i);
-                        continue;
-                    }
-                }
                 packed.set(i, triangle(id), id);
             }
         });
         return packed;
     }
-    /// One triangle into a place of its own, which may be beyond what was packed. O(1), amortized.
+    /// Copies one triangle to a place of a packed copy; the place may be beyond its end. O(1), amortized.
     template <PackedOrder order>
     void pack(PrimitiveId id, std::size_t place, PackedTriangles<T, order>& packed) const {
         packed.reach(place);
@@ -140,7 +134,7 @@ private:
     Strided<std::uint32_t> faces_;
 };
 
-/// Triangles in arrays of its own.
+/// Triangles in arrays that the mesh owns.
 template <std::floating_point T>
 struct TriangleMesh {
     using Scalar = T;
@@ -148,8 +142,8 @@ struct TriangleMesh {
 
     std::vector<Vec<T, 3>> vertices;
     std::vector<TriangleIndices> triangles;
-    /// The id of each triangle: the ordinal of the face that it came from, never descending. Empty: its
-    /// position.
+    /// The id of each triangle: the ordinal of the face that it came from, never descending. If empty, a
+    /// triangle's id is its position.
     std::vector<std::uint32_t> faces;
 
     std::size_t size() const { return triangles.size(); }

@@ -1,4 +1,4 @@
-/// A box as a probe: it enters what it overlaps, in no order.
+/// A box as a probe. It enters every volume that it overlaps, in no particular order.
 #pragma once
 
 #include <hedgerow/geometry/box_rows.h>
@@ -35,7 +35,7 @@ public:
             return overlapping;
         });
     }
-    /// Any other volume (geometry/volumes.h).
+    /// Tests any other volume (geometry/volumes.h).
     template <class Volume>
     requires requires(const Box<double, D>& b, const Volume& v) { may_overlap(b, v); }
     bool enter(const Volume& volume, T, T& at) const {
@@ -52,7 +52,8 @@ public:
         return {false, s, s, box_.low[plane.axis] <= plane.position, box_.high[plane.axis] >= plane.position};
     }
 
-    /// By the box's extreme corners along the normal. An unbounded box is on both sides.
+    /// Cuts by any plane: compares the heights of the box's extreme corners along the normal. An unbounded
+    /// box is on both sides.
     Cut<State> cut(const State& s, const CutPlane<D>& plane, T) const {
         double low = -plane.offset, high = -plane.offset, error = std::abs(plane.offset);
         for (int k = 0; k < D; ++k) {

@@ -1,5 +1,5 @@
-/// What a probe is: the geometry of a question. It enters volumes, is cut by planes, sweeps a lattice; it
-/// knows no structure and no answer.
+/// The concept of a probe, which is the geometry of a query. A probe enters volumes, is cut by planes, and
+/// sweeps a lattice; it knows no structure and no result.
 #pragma once
 
 #include <concepts>
@@ -9,11 +9,12 @@
 
 namespace hedgerow {
 
-/// Whether a walk goes on after it was offered something.
+/// Whether a walk goes on after it visited a cell or a primitive.
 enum class Flow : bool { stop, go_on };
 
-/// What a look into a cell of a lattice tells a sweep: whether to go on, and that nothing stands in the whole
-/// block of 2^empty_bits cells along each axis (aligned to multiples of it) in which the cell lies.
+/// The result of a visit to a cell of a lattice: whether the sweep goes on, and the block of cells around it
+/// that is known to be empty. The block has 2^empty_bits cells along each axis and is aligned to multiples of
+/// 2^empty_bits. With empty_bits = 0 nothing is known to be empty.
 struct Looked {
     Flow flow;
     int empty_bits;
@@ -22,8 +23,8 @@ struct Looked {
     constexpr Looked(Flow f, int empty = 0) : flow(f), empty_bits(empty) {}
 };
 
-/// What a walk by planes carries into the two sides of a cut, and whether anything of the probe within the
-/// limit is there.
+/// The result of cutting a probe by a plane: the states in which a walk continues on the near and on the far
+/// side, and whether each side has a part of the probe within the limit.
 template <class State>
 struct Cut {
     bool near_is_high;
@@ -31,9 +32,10 @@ struct Cut {
     bool to_near, to_far;
 };
 
-/// `at` is where the probe enters a volume in the units of the query's limit: t of a ray, distance² of a
-/// point. A volume is entered when it may hold an answer within the limit. `within` asks the same of a cell:
-/// whether something of the probe is left there, and begins within the limit. What is cut was within it.
+/// `enter` returns whether a volume may hold a result within the limit. It sets `at` to where the probe
+/// enters the volume, in the units of the query's limit: t of a ray, distance² of a point. `within` returns
+/// whether a cell still has a part of the probe that begins within the limit. `cut` requires a state that was
+/// within the limit.
 template <class P>
 concept Probe = requires(const P& p, const Box<typename P::Scalar, P::dimension>& box,
                          typename P::Scalar limit, typename P::Scalar& at, const typename P::State& state,
@@ -44,8 +46,9 @@ concept Probe = requires(const P& p, const Box<typename P::Scalar, P::dimension>
     { p.cut(state, plane, limit) } -> std::same_as<Cut<typename P::State>>;
 };
 
-/// Enters each volume of a pack one by one: for probes with no faster way. Bit i of the result: at[i] counts.
-/// A pack that may hold fewer than its width says how many.
+/// Tests the volumes of a pack one by one, for probes with no faster way. Bit i of the result is set if
+/// volume i is entered, and at[i] counts only then. A pack that may hold fewer volumes than its width has a
+/// `size()`.
 template <class P, class Pack>
 unsigned enter_each(const P& probe, const Pack& pack, typename P::Scalar limit, typename P::Scalar* at) {
     int volumes = Pack::width;

@@ -10,13 +10,14 @@
 
 namespace hedgerow {
 
-/// Bounds are exact: squares are summed in one order, and rounding is monotone (see geometry/distance.h).
+/// A point as a probe. Distances to boxes are exact bounds: squares are summed in one order, and rounding is
+/// monotone (see geometry/distance.h).
 template <std::floating_point T, int D>
 class PointProbe {
 public:
     using Scalar = T;
     static constexpr int dimension = D;
-    /// How far the cell lies away along each axis, and the squared distance that makes.
+    /// The distance to the cell along each axis, and the squared distance to the cell.
     struct State {
         Vec<T, D> offset;
         T distance2;
@@ -29,7 +30,7 @@ public:
         at = distance2(point_, box);
         return at <= limit;
     }
-    /// As distance2 of each, in lanes.
+    /// Computes the squared distances to the boxes, four at a time; each equals distance2.
     unsigned enter(const BoxRows<T, D>& boxes, T limit, T* at) const {
         using L = Lanes<T>;
         return boxes.by_fours([&](int k) {
@@ -44,8 +45,9 @@ public:
             return less_equal(sum, L::all(limit));
         });
     }
-    /// Any other volume (geometry/volumes.h), by a bound in double. It is lowered by more than the distance
-    /// to an answer may err by, and in T, where squares of tiny scenes underflow.
+    /// Tests any other volume (geometry/volumes.h) by a bound in double. The bound is lowered by more than
+    /// the error of the distance to a result, and by a few subnormal steps of T, in which squares in tiny
+    /// scenes underflow.
     template <class Volume>
     requires requires(const Vec<double, D>& p, const Volume& v) { least_distance2(p, v); }
     bool enter(const Volume& volume, T limit, T& at) const {
@@ -71,8 +73,8 @@ public:
         return {x >= plane.position, s, far, true, far.distance2 <= limit};
     }
 
-    /// The same for any plane, in double: what lies beyond it is at least as far away as the plane, less its
-    /// margin and what the height may err by. Rounded down to T.
+    /// Cuts by any plane, in double. The far side is at least as far away as the plane, less the plane's
+    /// margin and the error of the height. Rounded down to T.
     Cut<State> cut(const State& s, const CutPlane<D>& plane, T limit) const {
         const Vec<double, D> p(point_);
         const double height = plane.height(p);
@@ -86,10 +88,11 @@ public:
         return {height >= 0, s, far, true, far.distance2 <= limit};
     }
 
-    /// Visits shells of cells around the point's own, until a shell's every cell is beyond the limit. The
-    /// cells of a shell that are themselves beyond it are passed over.
+    /// Visits shells of cells around the point's own cell, until every cell of a shell is beyond the limit.
+    /// Skips those cells of a shell that are beyond the limit.
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
+        // Find the point's own cell, and the outermost shell that has cells.
         typename Lattice<D>::Cell center{};
         std::int32_t last = 0;
         const Vec<double, D> p(point_);
@@ -99,12 +102,13 @@ public:
             last = std::max({last, center[i], lattice.resolution[i] - 1 - center[i]});
         }
         for (std::int32_t r = 0; r <= last; ++r) {
+            // Visit the cells of a shell that are within the limit.
             bool any = false;
             const bool go_on = for_each_in_shell(lattice, center, r, [&](const auto& cell) {
                 auto box = lattice.bounds(cell);
                 box.low = box.low - lattice.pad, box.high = box.high + lattice.pad;
-                // In T, since distances of tiny scenes underflow there; rounded down by more than they round
-                // up.
+                // In T, in which distances in tiny scenes underflow. Rounded down by more than distances in T
+                // are rounded up.
                 const T at = static_cast<T>(distance2(p, box) * (1 - 0x1p-20));
                 if (at - 4 * std::numeric_limits<T>::denorm_min() > limit()) return true;
                 any = true;
@@ -115,21 +119,24 @@ public:
     }
 
 private:
-    /// The cells with |cell − center| = r in the largest component, as slabs of the block.
+    /// Calls f for the cells with |cell − center| = r in the largest component, one side of the shell after
+    /// the other. Returns false if f did, else true.
     template <class Cell, class F>
     static bool for_each_in_shell(const Lattice<D>& lattice, const Cell& center, std::int32_t r, F f) {
         Cell first = center, last = center;
+        // Clip the block of the cells within r to the lattice.
         for (std::size_t a = 0; a < first.size(); ++a) {
             first[a] = std::max(0, center[a] - r);
             last[a] = std::min(lattice.resolution[a] - 1, center[a] + r);
         }
         if (r == 0) return f(center);
+        // Visit the two sides of the block across each axis, if they are in the lattice.
         for (std::size_t a = 0; a < first.size(); ++a) {
             for (const std::int32_t side : {center[a] - r, center[a] + r}) {
                 if (side < 0 || side >= lattice.resolution[a]) continue;
                 Cell low = first, high = last;
                 low[a] = high[a] = side;
-                // Axes before this one leave out their own sides: each cell once.
+                // Leave out the sides across earlier axes, so that each cell is visited once.
                 bool some = true;
                 for (std::size_t b = 0; b < a; ++b) {
                     low[b] = std::max(low[b], center[b] - r + 1);

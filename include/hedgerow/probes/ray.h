@@ -15,15 +15,15 @@
 
 namespace hedgerow {
 
-/// A ray, prepared for a scene.
+/// A ray as a probe, prepared for a scene.
 ///
-/// Every hit that a primitive test reports lies within e of the primitive's own box, where, with M the
-/// largest component of |corner − o| over the scene's box and u the unit roundoff: corners relative to o
-/// carry u·M, the shear 4u·M more and t rounded u·M, together under 8u·M; computing a plane's t from o ± e,
-/// the difference, the reciprocal and the product costs 4u·M + 2u·|o| at most. e = 16u·M + 4u·|o| covers both
-/// with room to spare, and where t or a position may underflow a few subnormal steps of each are added.
-/// Hence a box that holds the hit primitive is always entered at or before the hit's t, in each structure
-/// alike.
+/// Every hit that a primitive test reports is within e = 16u·M + 4u·|o| of the primitive's own box. Here o is
+/// the ray's origin, u the unit roundoff, and M the largest component of |corner − o| over the scene's box.
+/// Two errors add up. The test's own error is under 8u·M: corners relative to o carry u·M, the shear 4u·M
+/// more, and t is rounded by u·M. Computing a plane's t from o ± e (the difference, the reciprocal and the
+/// product) costs at most 4u·M + 2u·|o|. e covers both with room to spare. Where t or a position may
+/// underflow, a few subnormal steps of each are added to e. Hence a box that holds the hit primitive is
+/// always entered at or before the hit's t, in every structure alike.
 template <std::floating_point T, int D>
 class RayProbe {
 public:
@@ -32,24 +32,28 @@ public:
     using State = Interval<T>;
     using Cell = typename Lattice<D>::Cell;
 
-    /// `more` is added to e, for primitives that err by more than their own test does.
+    /// `more` is added to e, for primitives whose hits err by more than their own test does.
     RayProbe(const Ray<T, D>& ray, const Box<T, D>& scene, T more = T(0)) : ray_(ray) {
         using L = Lanes<T>;
         using limits = std::numeric_limits<T>;
+        // Treat subnormal components of the direction as 0.
         const L o = L::of(ray.origin), d = L::of(ray.direction).normal_or_zero();
         ray_.direction = first<D>(d);
         if (ray_.t_min < 0) ray_.t_min = T(0);
+        // Reject a ray that cannot hit anything.
         const T longest = greatest(abs(d));
         const unsigned sound =
             less_equal(abs(d), L::all(limits::max())) & less_equal(abs(o), L::all(largest_coordinate<T>));
         usable_ = sound == 15u && longest > 0 && ray_.t_min <= ray_.t_max && !scene.empty();
         if (!usable_) return;
 
+        // Move the origin by e: forward for near planes and back for far ones, so that boxes are entered
+        // early and left late.
         slack_ = error_over(scene, 16 * unit_roundoff<T>) + more;
         const L outward = copysign(L::all(slack_), d);
         (o + outward).store(near_origin_);
         (o - outward).store(far_origin_);
-        (L::all(T(1)) / d).store(inverse_);  // infinite for 0: then only whether o ± e lies inside matters
+        (L::all(T(1)) / d).store(inverse_);  // infinite for 0: only whether o ± e is inside matters then
         const unsigned down = d.negative();
         for (int i = 0; i < D; ++i) {
             near_row_[i] = static_cast<int>(down >> i & 1u) * 2;
@@ -61,12 +65,14 @@ public:
 
     const Ray<T, D>& ray() const { return ray_; }
     const WatertightRay<T>& watertight() const requires(D == 3) { return watertight_; }
-    /// False when nothing can be hit: no usable direction, NaN, an empty interval or an empty scene.
+    /// False if nothing can be hit: no usable direction, a coordinate that is NaN or too large, an empty
+    /// interval or an empty scene.
     bool usable() const { return usable_; }
+    /// The error bound e of hits in the scene.
     T slack() const { return slack_; }
-    /// Whether a meeting at t lies within e of a primitive's own box, e being taken over that box alone: so
-    /// it depends on no other primitive. It is never more than the slack: 1u of M makes up for the steps,
-    /// which the slack may leave out and this not.
+    /// Whether a hit at t is within e of a primitive's own box, where e is computed over that box alone, so
+    /// that the result depends on no other primitive. Uses 15u·M instead of 16u·M, so that this e never
+    /// exceeds the slack, although it may add subnormal steps that the slack leaves out.
     bool meets_within_error(const Box<T, D>& own, T t) const {
         const T error = error_over(own, 15 * unit_roundoff<T>);
         const auto outward = [&](int i) { return std::copysign(error, ray_.direction[i]); };
@@ -76,8 +82,8 @@ public:
         return in.entry <= t && t <= in.exit;
     }
 
-    /// A NaN (0·∞) can only come of a plane at exactly o ± e, where nothing within e of it is at stake; the
-    /// comparisons below then leave the interval as it was.
+    /// Tests a box. A NaN (0·∞) arises only where a plane is at exactly o ± e and the direction along its
+    /// axis is 0. The comparisons then leave the interval as it is, so no hit within e is lost.
     bool enter(const Box<T, D>& box, T limit, T& at) const {
         const Interval<T> in = inside(box, limit);
         at = in.entry;
@@ -88,8 +94,8 @@ public:
         return slabs(
             box, limit, [&](int i) { return near_origin_[i]; }, [&](int i) { return far_origin_[i]; });
     }
-    /// Two boxes at once: entries in the low lanes, negated exits in the high ones, so that one maximum
-    /// serves both. `at` has room for four.
+    /// Tests two boxes at once. The low lanes hold entries and the high lanes negated exits, so that one
+    /// maximum serves both. `at` has room for four.
     unsigned enter(const BoxPair<T, D>& pair, T limit, T* at) const {
         using L = Lanes<T>;
         L t = L::halves(ray_.t_min, -limit);
@@ -117,8 +123,8 @@ public:
             return less_equal(entry, exit);
         });
     }
-    /// Any other volume (geometry/volumes.h), by the part of the line in it: computed in double, and rounded
-    /// to T only where it is kept, which is monotone.
+    /// Tests any other volume (geometry/volumes.h) by the part of the line inside it. Computed in double;
+    /// only `at` is rounded to T, which is monotone.
     template <class Volume>
     requires requires(const ThickLine<D>& l, const Volume& v) { part_in(l, v); }
     bool enter(const Volume& volume, T limit, T& at) const {
@@ -132,8 +138,9 @@ public:
     requires(Pack::width > 0) unsigned enter(const Pack& pack, T limit, T* at) const {
         return enter_each(*this, pack, limit, at);
     }
-    /// The ray's line, 4e thick: a hit is within e of its primitive, and computing where the line enters a
-    /// volume costs less than 8u·M + 8u·|o| (a plane: height, slope and quotient), which 3e exceed.
+    /// The ray's line, 4e thick. A hit is within e of its primitive. Computing where the line enters a volume
+    /// errs by less than 8u·M + 8u·|o| (for a plane: height, slope and quotient), which is less than the
+    /// other 3e.
     ThickLine<D> thick_line() const {
         const double unit = this->unit();
         return {Vec<double, D>(ray_.origin), Vec<double, D>(ray_.direction) * unit,
@@ -145,7 +152,8 @@ public:
         const T exit = s.exit < limit ? s.exit : limit;
         return s.entry <= exit;
     }
-    /// The plane is as thick as the error: both sides of it are met a little earlier and left a little later.
+    /// Cuts by a plane across an axis. The plane is as thick as the error: the ray enters each side a little
+    /// earlier and leaves it a little later.
     Cut<State> cut(const State& s, const AxisPlane<T>& plane, T limit) const {
         const int a = plane.axis;
         const T leave = (plane.position - far_origin_[a]) * inverse_[a];
@@ -153,9 +161,9 @@ public:
         return sides(s, near_row_[a] != 0, leave, arrive, limit);
     }
 
-    /// The same for any plane, in double. Where the ray runs within the error of parallel it stays on both
-    /// sides, or on one. Heights and speeds err by some roundings of double, which twice the slack covers;
-    /// where the direction is of doubles, its products could leave their range, and it is scaled to 1 first.
+    /// Cuts by any plane, in double. A ray that is parallel to the plane within the error stays on both
+    /// sides, or on one. Heights and speeds err by some roundings of double, which twice the slack covers. A
+    /// direction of doubles is scaled to 1 first, since its products could leave the range of double.
     Cut<State> cut(const State& s, const CutPlane<D>& plane, T limit) const {
         const double thickness = product(plane.reach(), 2 * static_cast<double>(slack_)) + plane.margin;
         const double unit = std::is_same_v<T, double> ? this->unit() : 1;
@@ -167,35 +175,37 @@ public:
         return sides(s, approach < 0, leave, arrive, limit);
     }
 
-    /// Visits the cells along the ray in order (Amanatides and Woo 1987), each crossing computed afresh from
-    /// the cell's integer coordinates, not summed up. `limit()` is asked before each step, and `visit(cell)`
-    /// may stop the walk, or say that a block of cells is empty: the ray is then followed to where it leaves
-    /// that block, and the cell there is computed from its place (which errs by less than the inflation of
-    /// the primitives). When the error exceeds half of that inflation, the neighbours as far as it reaches
-    /// are visited too, each of them once.
+    /// Visits the cells along the ray in order (Amanatides and Woo 1987). Each crossing is computed afresh
+    /// from the cell's integer coordinates, not accumulated. `limit()` is called before each step.
+    /// `visit(cell)` may stop the walk, or report that a block of cells is empty. The walk then skips to
+    /// where the ray leaves that block, and computes the next cell from that position, which errs by less
+    /// than the lattice's pad. If the error exceeds half of the pad, neighbours within reach of the error are
+    /// visited too, each of them once.
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
         if (!usable_) return;
         const Vec<double, D> o(ray_.origin), d(ray_.direction),
             inverse = map(d, [](double x) { return 1 / x; });
+        // Find the part of the ray in the lattice, and its first cell.
         const Interval<double> in = inside(lattice, o, d, inverse);
         if (!(in.entry <= in.exit)) return;
         Cell cell{};
         for (int a = 0; a < D; ++a)
             cell[static_cast<std::size_t>(a)] = lattice.coordinate(o[a] + product(d[a], in.entry), a);
+        // How far the neighbours reach that must be visited too; 0 if the cell is visited alone.
         const auto reach = neighbours_within_slack(lattice);
         const bool alone = reach == Cell{};
-        // How much earlier, in t, a hit of a cell may lie than the cell's computed entry.
+        // How much earlier, in t, a hit in a cell may be than the computed entry of the cell.
         const double back =
             4 * static_cast<double>(slack_) / max_component(abs(d)) + 0x1p-40 * std::abs(in.entry);
-        Cell ahead{}, end = cell;  // a step along each axis, and the last cell that way
+        Cell ahead{}, end = cell;  // the step along each axis, and the last cell in that direction
         for (int a = 0; a < D; ++a) {
             const auto i = static_cast<std::size_t>(a);
             if (d[a] > 0) ahead[i] = 1, end[i] = lattice.resolution[i] - 1;
             if (d[a] < 0) ahead[i] = -1, end[i] = 0;
         }
-        // Where the ray leaves a cell along an axis. Only in.exit leads out of the lattice: between its last
-        // plane and that, it is still grazed.
+        // The t at which the ray leaves cell c along axis a. Infinite in the lattice's last cell: the walk
+        // ends at in.exit only, since beyond its last plane the ray may still graze the lattice.
         const auto leaves = [&](const Cell& c, int a) {
             const auto i = static_cast<std::size_t>(a);
             const double t = product(lattice.plane(c[i] + (ahead[i] > 0), a) - o[a], inverse[a]);
@@ -204,7 +214,8 @@ public:
         double entry = in.entry;
         int stepped = -1;  // the axis of the last step
         while (entry - back <= static_cast<double>(limit()) && entry <= in.exit) {
-            std::int32_t empty = 0;  // the bits of a cell's coordinates in which those of its block differ
+            std::int32_t empty = 0;  // the bits of a coordinate that vary within the empty block
+            // Visit the cell, or the neighbours that the last step added.
             if (alone) [[likely]] {
                 const Looked looked = visit(cell);
                 if (looked.flow == Flow::stop) return;
@@ -215,17 +226,19 @@ public:
                                             [&](const Cell& c) { return visit(c).flow != Flow::stop; }))
                     return;
             }
-            Cell last;  // of the block, that way
+            Cell last;  // of the empty block, in the direction of the ray
             Vec<double, D> exit;
             for (int a = 0; a < D; ++a) {
                 const auto i = static_cast<std::size_t>(a);
                 last[i] = ahead[i] < 0 ? cell[i] & ~empty : std::min(cell[i] | empty, end[i]);
                 exit[a] = leaves(last, a);
             }
+            // Find the axis along which the ray leaves the block first.
             int axis = exit[1] < exit[0];
             if constexpr (D == 3) axis = exit[2] < exit[axis] ? 2 : axis;
             if (!(exit[axis] < std::numeric_limits<double>::infinity())) return;
             entry = std::max(entry, exit[axis]);
+            // Skip to the cell of the block that the ray leaves from, then step along that axis.
             for (int a = 0; a < D && empty != 0; ++a) {
                 const auto i = static_cast<std::size_t>(a);
                 const auto [low, high] = std::minmax(cell[i], last[i]);
@@ -244,7 +257,7 @@ private:
         for (int i = 0; i < D; ++i) least = std::min(least, std::abs(static_cast<double>(inverse_[i])));
         return least;
     }
-    /// e over a box: a share of M, 4u of |o|, and where t may underflow some subnormal steps.
+    /// The error e over a box: share·M + 4u·|o|, and some subnormal steps where t may underflow.
     T error_over(const Box<T, D>& box, T share) const {
         using L = Lanes<T>;
         const L o = L::of(ray_.origin);
@@ -269,7 +282,8 @@ private:
         }
         return in;
     }
-    /// A NaN leaves the interval as it was, and both sides are visited.
+    /// The cut at a plane: the ray leaves the near side at `leave` and enters the far side at `arrive`. A NaN
+    /// leaves the interval as it is, and both sides are visited.
     static Cut<State> sides(const State& s, bool near_is_high, T leave, T arrive, T limit) {
         const T last = s.exit < limit ? s.exit : limit;
         return {near_is_high,
@@ -278,7 +292,7 @@ private:
                 !(leave < s.entry),
                 !(arrive > last)};
     }
-    /// The ray's part in a lattice, whose primitives may reach a little beyond it.
+    /// The part of the ray in a lattice, widened by what primitives may reach beyond the lattice.
     Interval<double> inside(const Lattice<D>& lattice, const Vec<double, D>& o, const Vec<double, D>& d,
                             const Vec<double, D>& inverse) const {
         Interval<double> in{static_cast<double>(ray_.t_min), static_cast<double>(ray_.t_max)};
@@ -295,7 +309,7 @@ private:
         }
         return in;
     }
-    /// How many cells beside its own the error may hide hits in, along each axis: none, as a rule.
+    /// How many cells beside the ray's own the error may hide hits in, along each axis. Usually 0.
     Cell neighbours_within_slack(const Lattice<D>& lattice) const {
         Cell reach{};
         const double wide = static_cast<double>(slack_);
@@ -307,8 +321,8 @@ private:
         }
         return reach;
     }
-    /// The cells around a cell that no step before has visited: at first all, then a layer, if it is in the
-    /// lattice.
+    /// The cells around `cell` that earlier steps have not visited, as the first and last cell of a block: at
+    /// first all, after a step the new layer only. None if that layer is outside the lattice.
     static std::optional<std::pair<Cell, Cell>> neighbours_added(const Lattice<D>& lattice, const Cell& cell,
                                                                  const Cell& reach, int stepped,
                                                                  const Cell& ahead) {
@@ -327,7 +341,7 @@ private:
 
     Ray<T, D> ray_;
     T inverse_[4] = {}, near_origin_[4], far_origin_[4];
-    Lanes<T> pair_origin_[D], pair_inverse_[D];  // the same, near planes in the low half
+    Lanes<T> pair_origin_[D], pair_inverse_[D];  // near planes in the low half, far ones in the high half
     int near_row_[D] = {};
     T slack_ = T(0);
     bool usable_ = false;

@@ -1,4 +1,5 @@
-/// Every hit along a ray, each primitive once, in the order of (t, id); and how many there are.
+/// Every hit along a ray, each primitive once, in the order of (t, instance, element), and how many there
+/// are.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +9,9 @@
 
 namespace hedgerow {
 
-/// Collects into the caller's vector (it is cleared; its capacity is reused, so a warm call allocates
-/// nothing). O(k log k) in the hits found. A structure that holds a primitive in several cells offers it
-/// several times with the same bits; the sort brings these together.
+/// Collects hits in the caller's vector, which is cleared. Its capacity is reused, so a warm call allocates
+/// nothing. O(k log k) in the hits found. A structure that holds a primitive in several cells offers it
+/// several times with the same bits; the sort makes these hits neighbours, and all but one are removed.
 template <class Set, class Filter = KeepAll>
 class AllHits : public RayQuery<Set, Filter> {
 public:

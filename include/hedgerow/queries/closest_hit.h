@@ -1,4 +1,4 @@
-/// The hit of least t; equal t goes to the lowest (instance, primitive).
+/// The hit of least t; equal t goes to the lowest (instance, element).
 #pragma once
 
 #include <optional>
@@ -7,14 +7,13 @@
 
 namespace hedgerow {
 
-/// Every offer that counts shrinks the limit, so the walk soon passes over what lies behind.
+/// Every closer hit that counts lowers the limit, so the walk soon prunes what lies behind.
 template <class Set, class Filter = KeepAll>
 class ClosestHit : public RayQuery<Set, Filter> {
 public:
     using Base = RayQuery<Set, Filter>;
     using Scalar = typename Base::Scalar;
     static constexpr Order order = Order::nearest;
-    static constexpr Sought sought = Sought::closest;
 
     template <class Index, class Ray>
     ClosestHit(const Index& index, const Ray& ray, const Filter& filter = {})

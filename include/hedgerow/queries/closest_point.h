@@ -1,13 +1,14 @@
-/// The point of the primitives closest to a given one.
+/// The point of the primitives closest to a given point.
 #pragma once
 
 #include <optional>
 
-#include <hedgerow/queries/concepts.h>
+#include <hedgerow/walks/query.h>
 
 namespace hedgerow {
 
-/// distance2 is squared. Of equal distances the lowest (instance, primitive).
+/// A primitive's closest point and its squared distance. `element` is the primitive's position in its set,
+/// `primitive` its id. Equal distances go to the lowest (instance, element).
 template <std::floating_point T, int D>
 struct Near {
     T distance2 = std::numeric_limits<T>::infinity();
@@ -18,7 +19,13 @@ struct Near {
     friend bool operator==(const Near&, const Near&) = default;
 };
 
-/// Within max_distance2 (included).
+/// The order of answers: by (distance², instance, element).
+template <class N>
+bool nearer(const N& a, const N& b) {
+    return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : comes_before(a, b);
+}
+
+/// The closest point within max_distance2 (squared, included).
 template <class Set>
 class ClosestPoint {
 public:
@@ -31,7 +38,7 @@ public:
     ClosestPoint(const Index& index, const Vec<Scalar, dimension>& p, Scalar max_distance2)
         : probe_(p), set_(index.primitives()) {
         best_.distance2 = max_distance2;
-        best_.instance = best_.element;  // none: whatever comes is before it
+        best_.instance = best_.element;  // none, so any candidate comes before it
     }
 
     const Probe& probe() const { return probe_; }

@@ -5,7 +5,7 @@
 
 namespace hedgerow {
 
-/// Counts what it is offered: for structures that hold each primitive once.
+/// Counts the hits that it is offered. Right only for structures that offer each primitive once.
 template <class Set, class Filter = KeepAll>
 class HitCount : public RayQuery<Set, Filter> {
 public:

@@ -1,4 +1,4 @@
-/// The k nearest primitives, in the order of (distance², id), each once.
+/// The k nearest primitives, in the order of (distance², instance, element), each once.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,9 @@
 
 namespace hedgerow {
 
-/// Keeps a heap of k in the caller's vector (cleared; its capacity is reused). O(log k) a candidate that
-/// counts, and a look through the k for one that structures may offer twice.
+/// Stores the k nearest so far as a heap in the caller's vector, which is cleared and whose capacity is
+/// reused. A candidate that counts costs O(log k) for the heap, and a search through the k, since structures
+/// may offer a primitive twice.
 template <class Set>
 class Nearest {
 public:
@@ -37,23 +38,19 @@ public:
         for (const Found& g : found_)
             if (same_primitive(g, c)) return Flow::go_on;
         if (found_.size() == k_) {
-            std::pop_heap(found_.begin(), found_.end(), nearer);
+            std::pop_heap(found_.begin(), found_.end(), nearer<Found>);
             found_.pop_back();
         }
         found_.push_back(f);
-        std::push_heap(found_.begin(), found_.end(), nearer);
+        std::push_heap(found_.begin(), found_.end(), nearer<Found>);
         return Flow::go_on;
     }
     std::size_t answer() {
-        std::sort_heap(found_.begin(), found_.end(), nearer);
+        std::sort_heap(found_.begin(), found_.end(), nearer<Found>);
         return found_.size();
     }
 
 private:
-    static bool nearer(const Found& a, const Found& b) {
-        return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : comes_before(a, b);
-    }
-
     Probe probe_;
     const Set& set_;
     std::size_t k_;

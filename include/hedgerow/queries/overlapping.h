@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <vector>
 
-#include <hedgerow/queries/concepts.h>
+#include <hedgerow/walks/query.h>
 
 namespace hedgerow {
 
-/// Collects elements into the caller's vector (cleared; its capacity is reused).
+/// Collects elements in the caller's vector, which is cleared and whose capacity is reused. O(k log k) for k
+/// offered, beyond the walk.
 template <class Set>
 class Overlapping {
 public:

@@ -1,12 +1,12 @@
-/// What the ray queries share: the probe, the interval, and the filter.
+/// The base of the ray queries: the probe, the interval and the filter.
 #pragma once
 
 #include <hedgerow/queries/filter.h>
 
 namespace hedgerow {
 
-/// `Set` says which id a hit reports; `Filter` which candidates count. An unusable ray has limit −1: nothing
-/// is ever entered.
+/// `Set` gives the ids that hits report, and `Filter` decides which candidates count. An unusable ray has
+/// limit −1, so no cell is opened.
 template <class Set, class Filter>
 class RayQuery {
 public:
@@ -20,15 +20,15 @@ public:
           filter_(filter) {}
 
     const Probe& probe() const { return probe_; }
-    /// Whether an instance of this mask is to be looked into.
+    /// Whether the filter lets an instance with this mask be queried.
     bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
-    /// What the filter says.
+    /// Whether the filter keeps every hit, and whether it keeps this one.
     static constexpr bool keeps_all = std::is_same_v<Filter, KeepAll>;
     bool keeps(const Hit<Scalar>& hit) const { return hedgerow::keeps(filter_, 0, hit); }
 
 protected:
     Scalar first_limit() const { return probe_.usable() ? probe_.ray().t_max : Scalar(-1); }
-    /// In the ray's interval, representable, and not refused.
+    /// Whether a candidate is in the ray's interval, has a finite t and is not refused.
     bool counts(const RayCandidate<Scalar>& c) const {
         if (!(c.t >= probe_.ray().t_min && c.t <= probe_.ray().t_max) ||
             c.t > std::numeric_limits<Scalar>::max())

@@ -12,7 +12,7 @@
 
 namespace hedgerow {
 
-/// Linear light to sRGB bytes.
+/// Converts linear light to sRGB bytes. Components are clamped to 0..1.
 inline Image::Pixel srgb(const Vec3f& linear) {
     Image::Pixel p;
     for (int k = 0; k < 3; ++k) {
@@ -23,7 +23,8 @@ inline Image::Pixel srgb(const Vec3f& linear) {
     return p;
 }
 
-/// 0 to 1 from dark violet by blue, green and yellow to red: brightness rises most of the way.
+/// The colour of x in a heat map: from dark violet at 0 by blue, green and yellow to red at 1. Brightness
+/// rises most of the way. x is clamped.
 inline Image::Pixel heat(float x) {
     static constexpr float stops[6][3] = {{20, 8, 45},    {52, 62, 160},  {26, 155, 150},
                                           {120, 205, 70}, {250, 205, 50}, {235, 60, 40}};
@@ -37,7 +38,8 @@ inline Image::Pixel heat(float x) {
     return p;
 }
 
-/// Digits of 3×5 dots, `scale` pixels a dot; draws what fits.
+/// Draws a number in white digits of 3×5 dots, `scale` pixels a dot, with its upper left corner at (x, y).
+/// Draws only what fits.
 inline void draw_number(Image& image, int x, int y, std::uint64_t number, int scale) {
     static constexpr std::uint16_t digits[10] = {0x7B6F, 0x2C97, 0x73E7, 0x73CF, 0x5BC9,
                                                  0x79CF, 0x79EF, 0x7292, 0x7BEF, 0x7BCF};
@@ -55,18 +57,20 @@ inline void draw_number(Image& image, int x, int y, std::uint64_t number, int sc
     }
 }
 
-/// From 0 to `most`, by the number or by the logarithm of 1 + the number.
+/// A scale of colours for numbers from 0 to `most`, linear in the number or in the logarithm of 1 + the
+/// number.
 struct ColourScale {
     std::uint64_t most;
     bool logarithmic = false;
 
-    /// 0 to 1, and more beyond the scale.
+    /// The position of a number on the scale: 0 to 1, and more beyond its end.
     float at(float number) const {
         const float end = static_cast<float>(most);
         if (!(end > 0)) return 0;
         return logarithmic ? std::log1p(number) / std::log1p(end) : number / end;
     }
-    /// The numbers that label it: its quarters, or the powers of ten with both ends.
+    /// The numbers to label the scale with: its quarters, or both ends and the powers of ten between. Powers
+    /// close to the end are left out.
     std::vector<std::uint64_t> labels() const {
         if (!logarithmic) return {0, most / 4, most / 2, most * 3 / 4, most};
         std::vector<std::uint64_t> all = {0};
@@ -85,23 +89,28 @@ inline int bar_unit(const Image& image) {
 }
 }  // namespace detail
 
-/// Where the ground of the bar begins in a picture; its width, if that has no room for a bar.
+/// The column where the background of the bar begins; the image's width if there is no room for a bar. `most`
+/// sets the width of the labels.
 inline int colour_bar_left(const Image& image, std::uint64_t most) {
     const int unit = detail::bar_unit(image);
     const int label = (static_cast<int>(std::to_string(most).size()) * 4 + 1) * unit, wide = 6 * unit;
     if (image.width < 3 * (wide + label) || image.height < 40) return image.width;
     return image.width - label - wide - 4 * unit;
 }
-/// A bar along the right edge, from 0 at its foot to the most at its head, with its labels.
+/// Draws a labelled bar along the right edge, from 0 at the bottom to the scale's most at the top. Draws
+/// nothing without room.
 inline void draw_colour_bar(Image& image, const ColourScale& scale) {
     const int unit = detail::bar_unit(image), ground = colour_bar_left(image, scale.most);
     if (ground == image.width) return;
     const int left = ground + 2 * unit, wide = 6 * unit, top = image.height / 8, bottom = image.height - top;
+    // Fill the background.
     for (int y = top - 6 * unit; y < bottom + 6 * unit; ++y)
         for (int x = ground; x < image.width; ++x) image.at(x, y) = {12, 12, 16};
+    // Draw the colours.
     for (int y = top; y < bottom; ++y)
         for (int x = left; x < left + wide; ++x)
             image.at(x, y) = heat(static_cast<float>(bottom - 1 - y) / static_cast<float>(bottom - top - 1));
+    // Draw the labels beside the bar.
     for (const std::uint64_t number : scale.labels()) {
         const float high = scale.at(static_cast<float>(number)) * static_cast<float>(bottom - top);
         draw_number(image, left + wide + unit, bottom - static_cast<int>(high) - 2 * unit, number, unit);

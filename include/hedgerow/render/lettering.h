@@ -1,4 +1,4 @@
-/// Letters on images.
+/// Draws text on images.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace hedgerow {
 
-/// ASCII from the blank to the tilde, 12 rows of 5 dots from the top left, lowest bits first. The 6x13 of the
-/// X Window System's misc-fixed fonts, which are in the public domain.
+/// Glyphs of the ASCII characters from the blank to the tilde: 12 rows of 5 dots from the top left, lowest
+/// bits first. The font is 6x13 of the X Window System's misc-fixed fonts, which are in the public domain.
 inline constexpr std::uint64_t letters[95] = {
     0x000000000000000, 0x000802108421080, 0x000000000052940, 0x0000a57d5f52800, 0x0008fa51c52f880,
     0x001355088855640, 0x002c9c944528800, 0x000000000021080, 0x020841084211088, 0x008844210841082,
@@ -34,11 +34,11 @@ inline constexpr std::uint64_t letters[95] = {
     0x002d98c63100000, 0x0008a5463100000, 0x00155ad63100000, 0x0022a2115100000, 0x74616cc63100000,
     0x003e11111f00000, 0x060842106421098, 0x000842108421080, 0x00c842130421083, 0x00000000004d640};
 
-/// A letter takes 6 × 13 dots with the space around it.
+/// Dots that a letter takes, with the space around it.
 inline constexpr int letter_width = 6, letter_height = 13;
 
-/// A line of text with its upper left corner at (x, y), `scale` pixels a dot; draws what fits. What is not
-/// ASCII is shown as a question mark.
+/// Draws a line of text with its upper left corner at (x, y), `scale` pixels a dot. Draws only what fits.
+/// Bytes that are not printable ASCII appear as question marks.
 inline void draw_text(Image& image, int x, int y, std::string_view text, const Image::Pixel& colour,
                       int scale = 1) {
     for (const char c : text) {
@@ -54,7 +54,7 @@ inline void draw_text(Image& image, int x, int y, std::string_view text, const I
     }
 }
 
-/// Lines of text in a corner, light on a dark ground: the upper left one of (x, y).
+/// Draws light lines of text on a dark background whose upper left corner is (x, y).
 inline void draw_note(Image& image, int x, int y, const std::vector<std::string>& lines, int scale = 1) {
     std::size_t longest = 0;
     for (const auto& line : lines) longest = std::max(longest, line.size());

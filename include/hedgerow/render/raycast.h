@@ -1,4 +1,4 @@
-/// Ray casting: a picture from any index, in tiles over an executor.
+/// Ray casting: pictures of any index, in blocks of pixels over an executor.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@
 
 namespace hedgerow {
 
-/// The last three are counted, not seen: cells and primitives looked at, primitives tested, nanoseconds.
-/// Where time is measured a ray is cast three times, and the least counts.
+/// How a picture is coloured. The last three show measurements in a heat map: nodes, leaves and primitives
+/// visited (steps), primitives tested (tests), nanoseconds (time). For times each ray is timed three times,
+/// and the least counts.
 enum class Shading { normals, depth, diffuse, steps, tests, time };
 constexpr bool counted(Shading s) {
     return s >= Shading::steps;
@@ -36,14 +37,14 @@ struct RenderOptions {
     int width = 1024, height = 768, samples = 1;
     Shading shading = Shading::diffuse;
     std::uint64_t seed = 0;
-    /// Top of the scale of what is counted; 0: the most that was seen.
+    /// Top of the scale of a heat map; 0: the greatest value in the picture.
     std::uint64_t steps_max = 0;
-    /// Whether that scale is logarithmic: of 1 + the count.
+    /// Whether the scale of a heat map is linear in the logarithm of 1 + the value.
     bool log_scale = false;
-    /// Whether the picture keeps what its rays met, for `Picture::layers`.
+    /// Whether the picture stores the hits of its rays, for `Picture::layers`.
     bool layers = false;
-    /// Whether what rays visit is counted, which no kernel does. Layers and what shows counts ask for it by
-    /// themselves.
+    /// Whether the visits of rays are counted, which rules out the kernels. Layers and the shadings `steps`
+    /// and `tests` imply it.
     bool counts = false;
 
     bool counted() const {
@@ -54,25 +55,26 @@ struct RenderOptions {
 struct Picture {
     Image image;
     std::uint64_t rays = 0;
-    Visits visits;  // unless counted, 0
-    KernelUse use;  // what answered; where counted, no kernel
-    /// Of what is counted, over the finished rows: how many pixels they have, the mean and the most of these,
-    /// and how many lie beyond the scale.
+    Visits visits;  // 0 unless counted
+    KernelUse use;  // kernels that answered; none if visits are counted
+    /// Statistics of a heat map's values over the finished rows: the number of pixels, their mean and
+    /// greatest value, and how many values are beyond the scale.
     std::uint64_t pixels = 0;
     double mean = 0, most = 0;
     std::uint64_t beyond = 0;
-    /// Empty unless layers were asked for. The colours as light, linear and unclamped; of what is counted,
-    /// the count three times.
+    /// Empty unless RenderOptions::layers. The colours as linear light, not clamped; for heat maps the value
+    /// in all three components.
     std::vector<Vec3f> light;
     std::vector<Seen> seen;
 
-    /// For `save_exr`; borrowed from this.
+    /// The layers for `save_exr`. They borrow from this picture.
     Layers layers() const& { return layers_of(image.width, image.height, light, seen); }
     Layers layers() const&& = delete;
 };
 
-/// Casts one or more rays a pixel; diffuse adds a shadow ray where the light is faced. A block of pixels is
-/// asked for at once. Rows that are not done when the progress is cancelled stay black, and saw nothing.
+/// Casts one or more rays a pixel; diffuse shading adds a shadow ray where the surface faces the light. The
+/// rays of a block of pixels are one batch. If the progress is cancelled, rows that are not finished stay
+/// black, and their layers empty.
 template <class T, class P>
 class Raycast {
 public:
@@ -103,7 +105,7 @@ public:
     }
 
 private:
-    /// Blocks are of so many pixels: enough for the kernels, few enough to be cancelled soon.
+    /// Size of a block: large enough for the kernels, small enough to be cancelled soon.
     static constexpr int band_rows = 8, block_columns = 64;
     struct Block {
         int left, top, width, height;
@@ -116,7 +118,8 @@ private:
     };
     template <class V>
     using OfBlock = std::array<V, static_cast<std::size_t>(band_rows) * block_columns>;
-    /// Rays from the eye, a pixel of a block each, what they met, and the normals there on their side.
+    /// Rays from the eye, one for each pixel of a block, with their hits and the normals there, which point
+    /// to the side of the ray.
     struct Looks {
         OfBlock<Ray<T, 3>> rays;
         OfBlock<Hit<T>> hits;
@@ -137,7 +140,8 @@ private:
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) + static_cast<std::size_t>(x);
     }
 
-    /// Rows are kept whole or not at all.
+    /// Casts a band of rows, block by block. Keeps the rows if all are finished; else clears them and returns
+    /// false.
     bool band(int top, int height, const Progress& progress) {
         Total total;
         Block block{0, top, 0, height};
@@ -145,6 +149,7 @@ private:
             block.width = std::min(block_columns, o_.width - block.left);
             if (!see(block, total, progress)) break;
         }
+        // Clear the rows if the last block was cancelled.
         const bool whole = block.left == o_.width;
         if (!whole) {
             const auto begin = static_cast<std::ptrdiff_t>(pixel(0, top));
@@ -153,6 +158,7 @@ private:
             if (o_.layers) std::fill(seen_.begin() + begin, seen_.begin() + end, Seen());
             return false;
         }
+        // Mark the rows as finished, and add up the totals.
         const std::lock_guard lock(mutex_);
         std::fill_n(done_.begin() + top, height, std::uint8_t{1});
         total_.visits += total.visits;
@@ -161,13 +167,14 @@ private:
         return true;
     }
 
-    /// Every sample of a block's pixels; false where it was cancelled.
+    /// Casts every sample of a block's pixels. Returns false if it was cancelled.
     bool see(const Block& block, Total& total, const Progress& progress) {
         OfBlock<Visits> visits{};
         for (int sample = 0; sample < o_.samples; ++sample) {
             if (progress.cancelled()) return false;
             look(block, sample, visits, total);
         }
+        // Turn the sums over the samples into means.
         for (std::size_t i = 0; i < block.size(); ++i) {
             const std::size_t p = pixel(block.x(i), block.y(i));
             const Visits& counts = visits[i];
@@ -187,14 +194,16 @@ private:
         }
         return true;
     }
-    /// Adds a sample of each of a block's pixels.
+    /// Casts one sample of each of a block's pixels, and adds it to their sums.
     void look(const Block& block, int sample, OfBlock<Visits>& visits, Total& total) {
+        // Find the closest hits of the block in one batch.
         const std::size_t n = block.size();
         Looks looks;
         for (std::size_t i = 0; i < n; ++i) looks.rays[i] = ray_through(block.x(i), block.y(i), sample);
         total.rays += n;
         total.use += index_.closest_hits(std::span(looks.rays).first(n), std::span(looks.hits).first(n),
                                          std::span(visits).first(o_.counted() ? n : 0));
+        // Add the colours, and store the layers of the first sample.
         for (std::size_t i = 0; i < n; ++i) {
             const Hit<T>& hit = looks.hits[i];
             if (hit) looks.normals[i] = facing_normal(hit, looks.rays[i]);
@@ -208,7 +217,8 @@ private:
         }
         if (o_.shading == Shading::diffuse) add_light(block, looks, total);
     }
-    /// Through the pixel's middle, or where there are several samples anywhere in it.
+    /// The ray through the pixel's middle, or through a random point of the pixel if there are several
+    /// samples.
     Ray<T, 3> ray_through(int x, int y, int sample) const {
         const auto left = static_cast<float>(x), top = static_cast<float>(y);
         if (o_.samples == 1) return make_.template ray<T>(left + 0.5f, top + 0.5f);
@@ -218,14 +228,14 @@ private:
         return make_.template ray<T>(left + dx, top + dy);
     }
 
-    /// What is seen there, but for counts and what the light adds.
+    /// The value of a sample without its counts and without the direct light.
     Vec3f colour(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& normal) const {
         if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(ray));
         if (!hit) return {0.28f, 0.36f, 0.48f};
         if (o_.shading == Shading::depth)
             return Vec3f::all(std::exp(-1.5f * static_cast<float>(hit.t) / (diagonal_ + 1e-30f)));
         if (o_.shading == Shading::normals) return (normal + Vec3f(1, 1, 1)) * 0.5f;
-        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(normal, o_.camera.up)) * 0.62f;  // the sky's
+        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(normal, o_.camera.up)) * 0.62f;  // sky light
     }
     float nanoseconds(const Ray<T, 3>& ray) const {
         using Clock = std::chrono::steady_clock;
@@ -238,13 +248,14 @@ private:
         }
         return std::chrono::duration<float, std::nano>(least).count();
     }
-    /// Where it is faced and nothing stands between.
+    /// Adds direct light to the hits that face the light and are not in shadow.
     void add_light(const Block& block, const Looks& looks, Total& total) {
         OfBlock<Ray<T, 3>> shadows;
         OfBlock<std::size_t> pixels;
         OfBlock<float> facing;
         OfBlock<bool> blocked;
         OfBlock<Visits> visits{};
+        // Make a shadow ray for each hit that faces the light.
         std::size_t n = 0;
         for (std::size_t i = 0; i < block.size(); ++i) {
             const Hit<T>& hit = looks.hits[i];
@@ -257,6 +268,7 @@ private:
                 Vec<T, 3>(light_)};
             pixels[n++] = pixel(block.x(i), block.y(i));
         }
+        // Cast the shadow rays in one batch.
         total.rays += n;
         total.use += index_.any_hits(std::span(shadows).first(n), std::span(blocked).first(n),
                                      std::span(visits).first(o_.counted() ? n : 0));
@@ -272,10 +284,12 @@ private:
         return dot(n, Vec3f(ray.direction)) > 0 ? -n : n;
     }
 
+    /// Makes the picture from the values of the finished rows.
     Picture develop() {
         Picture picture;
         picture.image = Image(o_.width, o_.height);
         picture.rays = total_.rays, picture.visits = total_.visits, picture.use = total_.use;
+        // Sum up the statistics.
         for (int y = 0; y < o_.height; ++y) {
             if (!done_[static_cast<std::size_t>(y)]) continue;
             for (int x = 0; x < o_.width; ++x) {
@@ -287,6 +301,7 @@ private:
             }
         }
         picture.mean /= double(std::max<std::uint64_t>(picture.pixels, 1));
+        // Map the values to colours.
         const ColourScale scale{
             o_.steps_max > 0 ? o_.steps_max : static_cast<std::uint64_t>(std::ceil(picture.most)),
             o_.log_scale};
@@ -315,6 +330,8 @@ private:
     float diagonal_;
 };
 
+/// Makes a picture of an index over `primitives`. Returns when all rows are finished or the progress is
+/// cancelled.
 template <class T, class P>
 Picture raycast(const AnyIndex<T, 3>& index, const P& primitives, const RenderOptions& options,
                 Executor& executor, const Progress& progress = {}) {

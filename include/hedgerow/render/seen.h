@@ -1,4 +1,4 @@
-/// What the rays of a picture met, as layers of numbers beside its colours.
+/// The hits of a picture's rays, as layers of numbers beside its colours.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,19 @@
 
 namespace hedgerow {
 
-/// What a pixel's rays from the eye met; by default nothing.
+/// The hits of a pixel's rays from the eye; by default no hit.
 struct Seen {
-    /// Of the first ray: the distance, the surface's unit normal on the ray's side, the primitive's number.
+    /// The hit of the first ray: its distance, the surface's unit normal on the ray's side, the id of the
+    /// primitive.
     float depth = std::numeric_limits<float>::infinity();
     Vec3f normal;
     std::uint32_t id = Hit<float>::none;
-    /// The mean of all: what was looked at to find the hit.
+    /// Visits to find the hit, the mean over all rays of the pixel.
     float nodes = 0, leaves = 0, primitives = 0;
 };
 
-/// R, G, B; depth.Z; normal.X, .Y, .Z; id; nodes, leaves, primitives: of width × height pixels, borrowed.
+/// The layers of width × height pixels: R, G, B; depth.Z; normal.X, .Y, .Z; id; nodes, leaves, primitives.
+/// They borrow from `light` and `seen`. No channels if `seen` is empty.
 inline Layers layers_of(int width, int height, const std::vector<Vec3f>& light,
                         const std::vector<Seen>& seen) {
     Layers layers{width, height, {}};

@@ -1,4 +1,4 @@
-/// Lines in space over a picture, faint where a surface hides them.
+/// Draws lines in space over a picture, faint where a surface hides them.
 #pragma once
 
 #include <limits>
@@ -17,7 +17,7 @@ struct SpaceLine {
     float width = 1;
 };
 
-/// How far forward each pixel's surface lies; infinite where there is none.
+/// The distance forward of the eye of the surface at each pixel, row by row; infinite where there is none.
 template <class T>
 std::vector<float> depths(const AnyIndex<T, 3>& index, const RayMaker& maker, int width, int height,
                           Executor& executor) {
@@ -38,16 +38,17 @@ std::vector<float> depths(const AnyIndex<T, 3>& index, const RayMaker& maker, in
     return all;
 }
 
-/// Draws lines one over the other.
+/// Draws lines in the order of the calls, each over those before.
 class Wireframe {
 public:
-    /// `depths` are the picture's, pixel by pixel; both are to outlive this.
+    /// `depths` are those of the picture, pixel by pixel. Image, depths and maker must outlive this.
     Wireframe(Image& image, const std::vector<float>& depths, const RayMaker& maker)
         : image_(image), depths_(depths), maker_(maker) {}
 
     void draw(const SpaceLine& line) {
         Vec3f a = line.a, b = line.b;
         if (!before_the_eye(a, b)) return;
+        // Project the ends, and step along the axis on which the line is longer.
         Vec3f p = maker_.seen(a), q = maker_.seen(b);
         const int along = std::abs(q[0] - p[0]) >= std::abs(q[1] - p[1]) ? 0 : 1, across = 1 - along;
         if (p[along] > q[along]) std::swap(p, q);
@@ -57,10 +58,11 @@ public:
         const int first = std::max(0, static_cast<int>(std::max(-1.f, std::round(p[along])))),
                   last = std::min(size[along] - 1,
                                   static_cast<int>(std::min(65536.f, std::round(q[along]))) - 1);
+        // Draw the pixels across the line at each step, weighted by the share that it covers.
         for (int i = first; i <= last; ++i) {
             const float s = std::min(1.f, std::max(0.f, (static_cast<float>(i) + 0.5f - p[along]) / run));
             const float middle = p[across] + (q[across] - p[across]) * s;
-            // 1/forward is linear in the picture.
+            // 1/forward is linear in picture coordinates.
             const float forward = 1 / (1 / p[2] + (1 / q[2] - 1 / p[2]) * s);
             if (!(middle + half >= 0 && middle - half <= static_cast<float>(size[across]))) continue;
             const int low = std::max(0, static_cast<int>(middle - half)),
@@ -74,7 +76,7 @@ public:
     }
 
 private:
-    /// Cuts off what lies behind the eye; false if that is all.
+    /// Clips the line to the space before the eye. Returns false if nothing is left.
     bool before_the_eye(Vec3f& a, Vec3f& b) const {
         const float fa = maker_.seen(a)[2], fb = maker_.seen(b)[2];
         const float least = 1e-3f * std::max(std::abs(fa), std::abs(fb));
@@ -84,7 +86,8 @@ private:
         return true;
     }
     void mix(int x, int y, const Image::Pixel& colour, float cover, float forward) {
-        // What lies on a surface is seen: a box's side often touches what it bounds.
+        // A line up to 0.2 % behind a surface counts as visible, since a box's side often touches what it
+        // bounds.
         const float surface = depths_[static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
                                       static_cast<std::size_t>(x)];
         const float share = std::min(1.f, cover) * (forward <= surface * 1.002f ? 0.95f : hidden);

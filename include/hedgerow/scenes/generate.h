@@ -13,20 +13,20 @@
 
 namespace hedgerow {
 
-/// Whatever a generator yields.
+/// A generated scene: whichever kind of set its generator makes.
 template <class T>
 using Scene =
     std::variant<TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 3>, PointCloud<T, 2>, SegmentSet<T>>;
 
-/// Which scene, how large (none: its default size), and which of its random variants. Scenes without chance
-/// ignore the seed.
+/// A scene's name, its size (none: the default size), and the seed of its random variant. Scenes without
+/// randomness ignore the seed.
 struct SceneSpec {
     std::string name;
     std::optional<std::uint64_t> size;
     std::uint64_t seed = 0;
 };
 
-/// One generator. Sizes count what it yields.
+/// One generator. Sizes count the elements that `yields` names.
 struct SceneInfo {
     template <class T>
     using Generator = Scene<T> (*)(std::uint64_t size, std::uint64_t seed, const Progress& progress);
@@ -36,25 +36,25 @@ struct SceneInfo {
     std::string_view yields;  ///< "triangles", "spheres", "points" or "segments"
     int dimension;
     std::string_view description;  ///< one line
-    double bytes;                  ///< of memory an element takes while it is made, at least
+    double bytes;                  ///< least memory that an element takes while it is made
     Generator<float> in_float;
     Generator<double> in_double;
 };
 
-/// No scene is larger.
+/// The largest size of any scene, in elements.
 inline constexpr std::uint64_t largest_scene_size = std::uint64_t{1} << 31;
 
-/// All scenes: what `parse_scene_spec` knows and `generate` makes.
+/// All scenes that `parse_scene_spec` accepts and `generate` makes.
 std::span<const SceneInfo> scene_list();
 
-/// Reads "gen:NAME" or "gen:NAME:SIZE"; SIZE is a whole number, with k, M or G behind it for thousands,
-/// millions or thousands of millions. Throws UsageError for an unknown name (suggesting a near one, and
-/// listing all), a size that is no number, or one beyond `largest_scene_size`.
+/// Reads "gen:NAME" or "gen:NAME:SIZE". SIZE is a whole number, with k, M or G after it for thousands,
+/// millions or thousands of millions. Throws UsageError for other text, for an unknown name (suggesting a
+/// near one, and listing all), for a size that is not a number, and for one beyond `largest_scene_size`.
 SceneSpec parse_scene_spec(std::string_view text);
 
-/// The scene, in single or double precision (T = float or double). `progress` is told of the elements that
-/// are made and looked at about once in 4096 of them. Throws UsageError as `parse_scene_spec` does, and
-/// Cancelled if `progress` is cancelled.
+/// Makes the scene, in single or double precision (T = float or double). `progress` counts the elements made,
+/// and is checked for cancellation about once in 4096 of them. Throws UsageError as `parse_scene_spec` does,
+/// and Cancelled if `progress` is cancelled.
 template <class T>
 Scene<T> generate(const SceneSpec& spec, const Progress& progress = {});
 

@@ -1,8 +1,8 @@
 /// Generated sets of spheres, points and segments.
 ///
-/// Exactly `size` elements, the same bits on every machine; the float set is the double set rounded. Element
-/// i depends only on (size, seed, i). Each costs O(size) time and memory. T is float or double. Throws
-/// Cancelled if `progress` is cancelled.
+/// A set has exactly `size` elements and the same bits on every machine; the float set is the double set
+/// rounded. Element i depends only on (size, seed, i). Each generator takes O(size) time and memory, and
+/// throws Cancelled if `progress` is cancelled. T is float or double.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,25 @@
 
 namespace hedgerow {
 
-/// Spheres wholly in the unit cube, radii evenly in [1/8, 1/2]·size^(-1/3). Some overlap.
+/// Spheres inside the unit cube, with radii uniform in [1/8, 1/2]·size^(-1/3). Some overlap.
 template <class T>
 SphereSet<T, 3> spheres(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
-/// Points evenly in the unit cube.
+/// Points uniform in the unit cube.
 template <class T>
 PointCloud<T, 3> points(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
-/// Points evenly in the unit square.
+/// Points uniform in the unit square.
 template <class T>
 PointCloud<T, 2> points2d(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
-/// Points of the unit square in 16 heaps with standard deviations between 0.006 and 0.035 (sums of four
-/// uniform numbers, so they end), equally many in each but for chance.
+/// Points of the unit square in 16 clusters, all equally likely. Their standard deviations are between 0.006
+/// and 0.035. Coordinates are sums of four uniform numbers, so clusters are bounded.
 template <class T>
 PointCloud<T, 2> clusters2d(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
-/// Short segments in the unit square, evenly spread and turned, lengths evenly in [1/4, 1]·size^(-1/2).
+/// Short segments in the unit square, with uniform places and directions. Lengths are uniform in [1/4,
+/// 1]·size^(-1/2).
 template <class T>
 SegmentSet<T> segments2d(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 

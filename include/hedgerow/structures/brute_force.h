@@ -1,22 +1,23 @@
-/// No structure: every primitive is tested. The oracle of all others.
+/// Brute force: every query tests every primitive. The other structures are tested against it.
 #pragma once
 
 #include <functional>
 
-#include <hedgerow/queries/concepts.h>
 #include <hedgerow/structures/references.h>
+#include <hedgerow/walks/query.h>
+#include <hedgerow/walks/visits.h>
 
 namespace hedgerow {
 
-/// With `box`, one bounding box around everything is asked first, as a first idea of acceleration: a miss of
-/// it then costs O(1), a hit still O(n).
+/// With `box`, a query first tests one box around all primitives. A query that misses the box then costs
+/// O(1), and any other still O(n).
 template <std::floating_point T, int D>
 class BruteForce {
 public:
     struct Options {
         bool box = false;
     };
-    /// Each primitive stands in `items` once.
+    /// Each primitive is in `items` once.
     static constexpr auto packed_order = PackedOrder::of_ids;
     static constexpr bool exclusive() { return true; }
 
@@ -52,7 +53,9 @@ public:
     }
 
     bool holds(PrimitiveId id) const { return std::binary_search(items_.begin(), items_.end(), id); }
-    /// Takes up primitive `id`: false if it is held. As Orthtree, whose oracle this is; but O(n).
+    /// Inserts primitive `id`. Returns false, and changes nothing, if it is already in the structure. Throws
+    /// InputError if the set has no such primitive or it is bad. Does what Orthtree::insert does, as its
+    /// oracle, but in O(n).
     template <PrimitiveSet P>
     bool insert(const P& set, PrimitiveId id) {
         const auto box = reference_of(set, id).box();
@@ -62,7 +65,8 @@ public:
         bounds_.expand(box);
         return true;
     }
-    /// Lets go of primitive `id`: false if it is not held.
+    /// Erases primitive `id`, in O(n). Returns false, and changes nothing, if it is not in the structure. The
+    /// bounds do not shrink.
     template <PrimitiveSet P>
     bool erase(const P&, PrimitiveId id) {
         const auto place = std::lower_bound(items_.begin(), items_.end(), id);

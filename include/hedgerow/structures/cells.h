@@ -1,4 +1,4 @@
-/// Which cells a primitive stands in: what grids, kd-trees, octrees and BSP trees share.
+/// Which cells a primitive is in: shared by grids, kd-trees, octrees and BSP trees.
 #pragma once
 
 #include <array>
@@ -8,13 +8,13 @@
 
 namespace hedgerow {
 
-/// How far a cell is enlarged on every side before it is asked whether a primitive meets it.
+/// How far a cell is enlarged on every side before a primitive is tested against it.
 ///
-/// A probe visits each cell that an answer may lie in: a hit within the ray's slack, a closest point, a
-/// place in the region asked about. An answer lies on its primitive but for the roundings of the test that
-/// gave it: of overlaps none, of distances fewer than 8 of the largest coordinate (a hit's are in the probe's
-/// slack). Clipping adds fewer than 48 (geometry/clip.h). So a primitive that comes within the margin of a
-/// cell is inserted there, and one that does not has no answer in it.
+/// A probe visits every cell that may contain an answer: a hit within the ray's slack, a closest point, or a
+/// place in the queried region. An answer lies on its primitive, but for the roundings of the test that found
+/// it. An overlap has no roundings, and a distance has fewer than 8 of the largest coordinate; the roundings
+/// of a hit are in the ray's slack. Clipping adds fewer than 48 (geometry/clip.h). So a primitive that comes
+/// within the margin of a cell is inserted there, and a primitive that does not has no answer in that cell.
 template <std::floating_point T, int D>
 T cell_margin(const Box<T, D>& scene) {
     if (scene.empty()) return T(0);
@@ -28,8 +28,9 @@ Box<T, D> enlarged(const Box<T, D>& box, T margin) {
     return {box.low - by, box.high + by};
 }
 
-/// What tells of cells (enlarged already) that a primitive's box meets whether it is to stand in them. Only a
-/// set whose hits lie on the primitives themselves can be told apart more finely than by boxes.
+/// Returns a test of cells: whether the primitive is to be inserted in a cell. The cell must already be
+/// enlarged and meet the primitive's box. The test is finer than boxes only for sets whose hits lie on the
+/// primitives themselves.
 template <PrimitiveSet P>
 auto stands_in(const P& set, PrimitiveId id) {
     using Cell = Box<typename P::Scalar, P::dimension>;
@@ -41,8 +42,8 @@ auto stands_in(const P& set, PrimitiveId id) {
         return [&set, id](const Cell& cell) { return set.overlaps(id, cell); };
 }
 
-/// Bounds of the part of a primitive that is to stand in a cell (enlarged already), empty if there is none:
-/// clipped exactly where the set can do that, otherwise what the boxes share.
+/// Bounds of a primitive's part in a cell that is already enlarged; empty if there is none. The part is
+/// clipped exactly if the set can do that; otherwise it is the intersection of the boxes.
 template <PrimitiveSet P>
 Box<typename P::Scalar, P::dimension> part_in(const P& set, PrimitiveId id,
                                               const Box<typename P::Scalar, P::dimension>& cell) {
@@ -52,13 +53,13 @@ Box<typename P::Scalar, P::dimension> part_in(const P& set, PrimitiveId id,
         return intersection(set.bounds(id), cell);
 }
 
-// The same for builders that are compiled once, in core, and know no sets.
+// The types of part_in and corners_in for builders that are compiled once, in core, and know no sets.
 
 template <std::floating_point T, int D>
 using PartIn = FunctionRef<Box<T, D>(PrimitiveId, const Box<T, D>&)>;
 
-/// The corners of a primitive that is no more than what they span, a triangle or (in the plane) a segment;
-/// nothing for others.
+/// The corners of a primitive that is their convex hull: a triangle, or in the plane a segment. Nothing for
+/// other primitives.
 template <std::floating_point T, int D>
 using Corners = std::optional<std::array<Vec<T, D>, static_cast<std::size_t>(D)>>;
 template <std::floating_point T, int D>

@@ -1,17 +1,17 @@
-/// What kd-trees and BSP trees share: how their nodes lie, and the recursion that grows them.
+/// Shared by kd-trees and BSP trees: the layout of their nodes, and the recursion that grows them.
 #pragma once
 
 #include <atomic>
 #include <optional>
 
-#include <hedgerow/queries/concepts.h>
 #include <hedgerow/structures/references.h>
+#include <hedgerow/walks/query.h>
 
 namespace hedgerow {
 
-/// A tree as it is walked: node 0 is the root, nothing stands at 1, and an inner node's `link` is where its
-/// low child stands, with the high child behind it. A leaf's `link` is its count, and it begins at `first` in
-/// the items.
+/// A tree as it is walked. Node 0 is the root, and node 1 is unused. An inner node's `link` is the index of
+/// its low child, and the high child follows the low one. A leaf's `link` is its number of items, and `first`
+/// is the index of its first item.
 template <class Node>
 struct CutTree {
     std::vector<Node> nodes;
@@ -24,15 +24,15 @@ struct CutTree {
     std::size_t leaf_count() const { return nodes.size() / 2; }
 };
 
-/// The same while it grows, or a subtree: an inner node's low child follows it, and its `link` is where its
-/// high child stands.
+/// A tree or subtree while it grows. An inner node's low child follows it, and its `link` is the index of its
+/// high child.
 template <class Node>
 struct GrowingCutTree {
     std::vector<Node> nodes;
     std::vector<PrimitiveId> items;
     int depth = 0;
 
-    /// Puts another subtree behind this one.
+    /// Appends another subtree. Throws InputError for more than Node::most nodes or 2^32 − 1 items.
     void append(const GrowingCutTree& other) {
         const auto node_shift = static_cast<std::uint32_t>(nodes.size());
         const auto item_shift = static_cast<std::uint32_t>(items.size());
@@ -49,13 +49,16 @@ struct GrowingCutTree {
         items.insert(items.end(), other.items.begin(), other.items.end());
         depth = std::max(depth, other.depth);
     }
-    /// Brings siblings together, and small subtrees of as many pairs as fill a line of the cache: a walk down
-    /// enters fewer lines than in depth-first order (as the treelets of Yoon and Manocha, 2006). O(n).
+    /// Copies the tree so that siblings lie side by side, and so that small subtrees of as many pairs as fill
+    /// a cache line lie together. A walk down touches fewer lines than in depth-first order (as with the
+    /// treelets of Yoon and Manocha, 2006). O(n).
     CutTree<Node> packed(Executor& executor) && {
+        // Pairs of siblings in a cache line of 64 bytes.
         constexpr std::size_t pairs_together = 64 / (2 * sizeof(Node)) > 1 ? 64 / (2 * sizeof(Node)) : 1;
         struct Copied {
             std::uint32_t grown, packed;
         };
+        // Copy the root, and put an unused node behind it.
         CutTree<Node> tree;
         tree.nodes.reserve(nodes.size() + 1);
         tree.nodes.push_back(nodes[0]);
@@ -65,6 +68,7 @@ struct GrowingCutTree {
             if (tree.nodes.size() % (2 * worth_a_task) == 0) executor.look();
             near.assign(1, waiting.back());
             waiting.pop_back();
+            // Copy the pairs below one node breadth first, as many as fill a line.
             std::size_t next = 0;
             for (; next < near.size() && next < pairs_together; ++next) {
                 const Copied at = near[next];
@@ -77,6 +81,7 @@ struct GrowingCutTree {
                     if (!nodes[children[i]].is_leaf()) near.push_back({children[i], pair + i});
                 }
             }
+            // Push the nodes whose children are not copied yet: each starts another small subtree.
             waiting.insert(waiting.end(), near.rbegin(), near.rend() - static_cast<std::ptrdiff_t>(next));
         }
         items.shrink_to_fit();
@@ -86,25 +91,26 @@ struct GrowingCutTree {
     }
 };
 
-/// Grows a tree top down. `Cutter` has a `Cell` with `size()` and `for_each_id(f)`, `choose(cell, depth) ->
-/// std::optional<plane>` (none: a leaf) and `cut(cell, plane) -> std::pair<Cell, Cell>`. The tree is the same
-/// however many threads build it.
+/// Grows a tree top down. `Cutter` has a type `Cell` with `size()` and `for_each_id(f)`, and functions
+/// `choose(cell, depth) -> std::optional<plane>` (none: the cell becomes a leaf) and `cut(cell, plane) ->
+/// std::pair<Cell, Cell>`. The tree is the same for any number of threads.
 ///
-/// A tree that would have more items than the limit is abandoned and grown again by rations: the cells that a
-/// plane makes share the items that their parent may have, in proportion to their primitives, and a cell
-/// whose two sides would together have more becomes a leaf. So a tree within the limit is what it would be
-/// without one, and any other takes at most about twice the time that its items explain.
+/// A tree that would have more items than the limit is abandoned and grown again with rations. A cell's
+/// ration is the number of items that its subtree may have. The two sides of a cell share its ration in
+/// proportion to their primitives, and a cell whose sides together have more primitives than its ration
+/// becomes a leaf. So a tree within the limit is the tree that would grow without one, and any other tree
+/// takes at most about twice the time that its items explain.
 template <class Node, class Cutter>
 class CutTreeGrowth {
 public:
     using Cell = typename Cutter::Cell;
     using Tree = GrowingCutTree<Node>;
 
-    /// The limit must be at least the primitives.
+    /// `most_items` must be at least the number of primitives.
     CutTreeGrowth(const Cutter& cutter, int deepest, std::uint64_t most_items, Executor& executor)
         : cutter_(cutter), deepest_(deepest), most_items_(most_items), executor_(executor) {}
 
-    /// `root()` gives the first cell. It is called again where the limit is passed.
+    /// `root()` returns the first cell. It is called again if the tree exceeds the limit.
     template <class Root>
     CutTree<Node> grow(Root root) {
         Tree tree;
@@ -123,26 +129,32 @@ private:
         const auto work = static_cast<double>(cell.size());
         grow(std::move(cell), most_items_, 1, work, tree);
     }
-    /// `work` is the cell's share of the primitives, which are more the deeper they are cut.
+    /// `work` is the cell's share of the tree's primitives, for progress. The cell's size is no measure of
+    /// it, since deeper levels have more copies.
     void grow(Cell cell, std::uint64_t ration, int depth, double work, Tree& tree) {
         if (!rationed_ && items_ > most_items_) return;
         tree.depth = std::max(tree.depth, depth);
+        // Choose a plane. Without one the cell becomes a leaf.
         const auto plane = depth < deepest_ ? cutter_.choose(cell, depth) : std::nullopt;
         const bool large = cell.size() > worth_a_task;
         if (!plane && large) executor_.advance(static_cast<std::size_t>(work));
         if (!plane) return add_leaf(cell, tree);
         if (large) executor_.look();
+        // Cut the cell. If its sides exceed the ration, it becomes a leaf after all.
         auto [low, high] = cutter_.cut(cell, *plane);
         const std::uint64_t items = std::uint64_t(low.size()) + high.size();
         if (rationed_ && items > ration) {
             if (large) executor_.advance(static_cast<std::size_t>(work));
             return add_leaf(cell, tree);
         }
+        // Share the ration between the sides by their sizes.
         const double each =
             static_cast<double>(ration) / static_cast<double>(std::max<std::uint64_t>(items, 1));
         const auto low_ration = static_cast<std::uint64_t>(each * low.size());
         const std::uint64_t high_ration = ration - low_ration;
 
+        // Grow the low side right behind the node, then the high side. The sides of a large cell grow in
+        // parallel.
         const auto at = tree.nodes.size();
         tree.nodes.push_back(Node::inner(*plane));
         cell = {};
@@ -176,11 +188,11 @@ private:
     int deepest_;
     std::uint64_t most_items_;
     Executor& executor_;
-    std::atomic<std::uint64_t> items_{0};  // of all leaves so far
+    std::atomic<std::uint64_t> items_{0};  // in all leaves so far
     bool rationed_ = false;
 };
 
-/// What is asked of kd-trees and BSP trees alike, as structures over a set.
+/// The functions of a structure (walks/structure.h) that kd-trees and BSP trees share.
 template <std::floating_point T, int D, class Node>
 class PlantedCutTree {
 public:
@@ -194,7 +206,7 @@ public:
     std::size_t leaf_count() const { return tree_.leaf_count(); }
     int depth() const { return tree_.depth; }
 
-    // What the walk and `fold` ask.
+    // For the walk and `fold`.
     bool empty() const { return tree_.nodes.empty(); }
     bool is_leaf(NodeId n) const { return tree_.nodes[n].is_leaf(); }
     bool is_empty(NodeId n) const { return tree_.nodes[n].is_empty(); }
@@ -203,14 +215,15 @@ public:
     NodeId high_child(NodeId n) const { return tree_.nodes[n].link() + 1; }
 
 protected:
-    /// What is wrong with the tree; empty if nothing is. `cut(node, cell, fault)` gives the two sides of a
-    /// node's cell, and `meets(id, cell)` says whether a primitive may stand there.
+    /// What is wrong with the tree; empty if nothing is. `cut(node, cell, fault)` returns the two sides of a
+    /// node's cell and may set the fault. `meets(id, cell)` returns whether a primitive may be in a cell.
     template <PrimitiveSet P, class Cell, class Cut, class Meets>
     std::string fault(const P& set, const Cell& root, int deepest, Cut cut, Meets meets) const {
         if (set.size() != count_) return "not built over these primitives";
         std::vector<std::uint8_t> seen(set.size());
         std::string fault;
         std::size_t visited = 0;
+        // Check that a leaf's items are primitives that meet its cell.
         const auto visit_leaf = [&](const Leaf& leaf, const Cell& cell) {
             for (std::size_t i = leaf.first; i < std::size_t(leaf.first) + leaf.count; ++i) {
                 if (i >= tree_.items.size() || tree_.items[i] >= set.size())
@@ -219,6 +232,7 @@ protected:
                 if (!meets(tree_.items[i], cell)) fault = "a primitive in a leaf that it does not meet";
             }
         };
+        // Visit the nodes, and stop at a wrong link or beyond the deepest level.
         const auto visit = [&](auto& self, NodeId n, const Cell& cell, int depth) -> void {
             if (!fault.empty()) return;
             if (n >= tree_.nodes.size() || ++visited > tree_.nodes.size())
@@ -241,8 +255,8 @@ protected:
     bool mailbox_ = true;
 };
 
-/// A depth that trees seldom need: 8 + 1.3·log2(n) (Pharr, Jakob, Humphreys, Physically Based
-/// Rendering, 4.4).
+/// A depth limit that trees seldom reach: 8 + 1.3·⌈log2(n + 1)⌉, rounded down (after Pharr, Jakob, Humphreys,
+/// Physically Based Rendering, 4.4).
 inline int usual_depth(std::size_t count) {
     return 8 + static_cast<int>(1.3 * static_cast<double>(std::bit_width(count)));
 }

@@ -1,15 +1,16 @@
-/// How many items a structure that holds primitives in several cells may have.
+/// The limit on the items of a structure in which a primitive may be in several cells.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 
 namespace hedgerow {
 
-/// The limit over `count` primitives. Throws UsageError for less than one item a primitive.
+/// The most items for `count` primitives. From 2^31 items a primitive on there is no limit, and the result is
+/// 2^63. Throws UsageError for less than one item a primitive.
 inline std::uint64_t most_items(double items_per_primitive, std::size_t count) {
     if (!(items_per_primitive >= 1))
         throw UsageError("items_per_primitive=" + std::to_string(items_per_primitive) +

@@ -1,4 +1,4 @@
-/// What every builder starts from: the box of each primitive, checked.
+/// The input of every builder: the box of each primitive, checked.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <hedgerow/bare_vector.h>
-#include <hedgerow/error.h>
+#include <hedgerow/base/bare_vector.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/geometry/lanes.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/concepts.h>
@@ -31,12 +31,12 @@ struct LaneBox {
 
     void expand(const LaneBox& b) { low = min(low, b.low), high = max(high, b.high); }
     void expand(Lanes<T> p) { low = min(low, p), high = max(high, p); }
-    /// The same if `apart` is 0; if it is infinity, p is passed over.
+    /// Expands the box to p if `apart` is 0, and leaves it as it is if `apart` is infinite.
     void expand(Lanes<T> p, T apart) {
         const auto away = Lanes<T>::all(apart);
         low = min(low, p + away), high = max(high, p - away);
     }
-    /// As Box::half_area, of a box that is not empty.
+    /// Box::half_area for a box that is not empty.
     template <int D>
     T half_area() const {
         alignas(32) T e[4];
@@ -57,7 +57,7 @@ struct LaneBox {
     }
 };
 
-/// A primitive as builders move it about: its box, and its id in the fourth lane (of `low`).
+/// A primitive in a builder: its box, and its id in the fourth lane of `low`.
 template <std::floating_point T, int D>
 struct Reference {
     alignas(16) T low[4];
@@ -71,7 +71,7 @@ struct Reference {
     PrimitiveId id() const { return number_of_lane(low[3]); }
     LaneBox<T> lanes() const { return {Lanes<T>::load(low), Lanes<T>::load(high)}; }
     Box<T, D> box() const { return lanes().template box<D>(); }
-    /// Twice the center: halving would only cost.
+    /// Twice the center, which spares the halving.
     Lanes<T> center2() const { return Lanes<T>::load(low) + Lanes<T>::load(high); }
     T center2(int axis) const { return low[axis] + high[axis]; }
 };
@@ -97,14 +97,14 @@ template <std::floating_point T>
 }
 }  // namespace detail
 
-/// Where they are large, each lies in one line of the cache.
+/// A large list is aligned so that each reference lies in one cache line.
 template <std::floating_point T, int D>
 using ReferenceList = BareVector<Reference<T, D>>;
 
 namespace detail {
-inline constexpr std::size_t run = 4096;
+inline constexpr std::size_t run = 4096;  // primitives that are visited in order by one thread
 
-/// How many primitives there are; throws InputError if they are too many, before memory is spent on them.
+/// The number of primitives. Throws InputError for more than 2^31, before memory is spent on them.
 template <PrimitiveSet P>
 std::size_t count_of(const P& set) {
     const std::size_t n = set.size();
@@ -112,7 +112,8 @@ std::size_t count_of(const P& set) {
         throw InputError("an index holds at most 2^31 primitives, and was given " + std::to_string(n));
     return n;
 }
-/// Calls f(i, box) for every primitive, those of a run one after the other.
+/// Calls f(i, box) for every primitive. The primitives of a run are visited in order by one thread, and runs
+/// perhaps at once. Throws InputError for the first bad primitive, after all calls.
 template <PrimitiveSet P, class F>
 void for_each_sound_box(const P& set, Executor& executor, F f) {
     using T = typename P::Scalar;
@@ -144,7 +145,7 @@ auto references_of(const P& set, Executor& executor) {
     });
     return references;
 }
-/// Their bounds; throws as `references_of`.
+/// The bounds of all primitives. Throws what `references_of` throws.
 template <PrimitiveSet P>
 auto bounds_of(const P& set, Executor& executor) {
     std::vector<Box<typename P::Scalar, P::dimension>> of_runs(detail::count_of(set) / detail::run + 1);
@@ -154,7 +155,8 @@ auto bounds_of(const P& set, Executor& executor) {
     return of_runs[0];
 }
 
-/// The reference of one primitive of a set that has changed. Throws InputError if there is none or it is bad.
+/// The reference of one primitive, of a set that has changed since the build. Throws InputError if the set
+/// has no such primitive or it is bad.
 template <PrimitiveSet P>
 auto reference_of(const P& set, PrimitiveId id) {
     using T = typename P::Scalar;

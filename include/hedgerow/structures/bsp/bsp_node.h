@@ -5,7 +5,8 @@
 
 namespace hedgerow {
 
-/// A plane in the scene's own scalar: what is stored is what cuts. `axis` −1: across no axis.
+/// A plane in the scene's own scalar, so that the plane that cuts is exactly the plane that is stored. `axis`
+/// is −1 unless the plane lies across an axis.
 template <std::floating_point T, int D>
 struct BspPlane {
     Vec<T, D> normal;
@@ -28,7 +29,7 @@ struct BspPlane {
 template <std::floating_point T, int D>
 class BspNode {
 public:
-    static constexpr std::uint32_t most = (1u << 29) - 1;  // of a link
+    static constexpr std::uint32_t most = (1u << 29) - 1;  // the largest link
 
     static BspNode inner(const BspPlane<T, D>& plane) {
         BspNode n;

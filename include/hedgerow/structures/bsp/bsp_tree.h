@@ -2,16 +2,16 @@
 #pragma once
 
 #include <hedgerow/structures/bsp/build.h>
-#include <hedgerow/structures/mailbox.h>
-#include <hedgerow/structures/walk_planes.h>
+#include <hedgerow/walks/mailbox.h>
+#include <hedgerow/walks/planes.h>
 
 namespace hedgerow {
 
-/// A primitive stands in every leaf that its part reaches; nothing is cut but the parts by which that is
-/// decided (Fuchs, Kedem, Naylor 1980; for rays Ize, Wald, Parker, RT 2008). Planes can follow the geometry
-/// where it lies askew; each is dearer to find and to walk than a kd-tree's. Memory: 24 bytes a node (40 for
-/// double), 4 an item, and a packed triangle an item. Built in O(n log n) with a large constant: some dozens
-/// of candidates a primitive and level.
+/// A primitive is in every leaf that its part reaches. Primitives are stored whole: planes cut only the parts
+/// that decide the leaves (Fuchs, Kedem, Naylor 1980; for rays Ize, Wald, Parker, RT 2008). Planes can follow
+/// geometry that lies askew to the axes, but each of them costs more to find and to walk than a kd-tree's.
+/// Memory: 24 bytes a node (40 for double), 4 an item, and a packed triangle an item. Built in O(n log n),
+/// with a large constant: each level weighs some dozens to some hundreds of planes against each primitive.
 template <std::floating_point T, int D>
 class BspTree : public PlantedCutTree<T, D, BspNode<T, D>> {
 public:
@@ -26,7 +26,8 @@ public:
         tree.count_ = references.size();
         if (references.empty()) return tree;
         for (const auto& r : references) tree.bounds_.expand(r.box());
-        // Parts of parts err by a few roundings a level in double, which for float is nothing.
+        // A part is clipped again on each level, and errs by a few roundings of double each time. The margin
+        // of float far exceeds them; for double the margin is 16 times as large.
         tree.margin_ = static_cast<double>(cell_margin(tree.bounds_)) * (std::is_same_v<T, float> ? 1 : 16);
         const auto corners = [&](PrimitiveId id) { return corners_in(set, id); };
         tree.tree_ = build_bsp_tree<T, D>(references, corners, options, tree.margin_, executor);
@@ -34,7 +35,7 @@ public:
     }
 
     CutPlane<D> plane(NodeId n) const { return this->tree_.nodes[n].plane().in_double(margin_); }
-    /// Most planes lie across an axis, and are as cheap as a kd-tree's.
+    /// Most planes lie across an axis, and a cut by one is as cheap as a kd-tree's.
     template <class Probe>
     auto cut(const Probe& probe, const typename Probe::State& state, NodeId n, T limit) const {
         const BspNode<T, D>& node = this->tree_.nodes[n];

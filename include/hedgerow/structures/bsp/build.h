@@ -1,4 +1,4 @@
-/// What a BSP tree is built from and by.
+/// The options of BSP trees, and their builder.
 #pragma once
 
 #include <hedgerow/structures/bsp/bsp_node.h>
@@ -7,35 +7,38 @@
 
 namespace hedgerow {
 
-/// How the SAH decides. A node across an axis costs `traversal_cost`, one with any other plane `plane_cost`.
+/// Costs for the SAH. A node across an axis costs `traversal_cost`, a node with any other plane `plane_cost`,
+/// and a test of a primitive `intersection_cost`.
 struct BspCosts {
     double traversal_cost = 4;
     double plane_cost = 6;
     double intersection_cost = 1;
-    /// A plane that cuts off empty space costs that part less.
+    /// The fraction by which the tests below a plane cost less if the plane cuts off empty space.
     double empty_bonus = 0.2;
 };
 
 struct BspOptions {
     BspCosts costs = {};
-    /// Cells of no more primitives are leaves.
+    /// Cells of at most this many primitives are leaves.
     std::uint32_t leaf_size = 1;
-    /// 0: by the number of primitives (usual_depth).
+    /// The most levels, leaves included. 0: chosen from the number of primitives (usual_depth).
     int max_depth = 0;
-    /// The tree has at most so many items for each primitive. Where planes only repeat primitives, as in a
-    /// fan of slivers, cells are then left whole: the build and its memory have a bound, and such leaves are
-    /// long. Meshes need 2.6.
+    /// The most items of a tree for each primitive, at least 1. Where planes only repeat primitives, as in a
+    /// fan of slivers, cells then become leaves earlier. So the build and its memory are bounded, and such
+    /// leaves are long. Meshes need 2.6.
     double items_per_primitive = 16;
-    /// In cells of more primitives than this, so many suggest planes.
+    /// In cells of more primitives than this, only some suggest planes: at least this many, and fewer than
+    /// twice as many.
     std::uint32_t samples = 32;
-    /// Off only to show what it brings.
+    /// Skips most repeated tests of a primitive within a query. Off only to measure its effect.
     bool mailbox = true;
 };
-/// No tree is deeper.
+/// The most levels of any tree.
 inline constexpr int bsp_max_depth = 64;
 
-/// The tree over the references; the margin is cell_margin in double. Compiled in core
-/// (src/core/build_bsp_tree.cpp), for float and double, in 2D and 3D.
+/// Builds the tree over the references. `margin` is the scene's cell_margin as a double, which BspTree::build
+/// enlarges for T = double. Throws UsageError for fewer than one item a primitive, and InputError for too
+/// many nodes. Compiled in core (src/core/build_bsp_tree.cpp), for float and double, in 2D and 3D.
 template <std::floating_point T, int D>
 CutTree<BspNode<T, D>> build_bsp_tree(const ReferenceList<T, D>& references, CornersOf<T, D> corners,
                                       const BspOptions& options, double margin, Executor& executor);

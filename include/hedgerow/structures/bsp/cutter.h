@@ -9,7 +9,8 @@
 
 namespace hedgerow {
 
-/// What a primitive has in a cell: the corners of a convex part of it, or of its box.
+/// A primitive's part in a cell: the corners of a convex part of the primitive (`exact`), or those of its
+/// whole box.
 template <int D>
 struct BspPart {
     PrimitiveId id;
@@ -25,13 +26,14 @@ struct BspPart {
         }
         return {low, high};
     }
-    /// From where to where it reaches along an axis.
+    /// Least and greatest coordinate along an axis.
     std::pair<double, double> reach(int axis) const {
         double low = corners[0][axis], high = low;
         for (const auto& c : corners) low = std::min(low, c[axis]), high = std::max(high, c[axis]);
         return {low, high};
     }
-    /// What lies on one side (sign 1: low, −1: high) or within the plane's margin of it. A box stays whole.
+    /// The part on one side of a plane (sign 1: low, −1: high) or within the plane's margin of that side. A
+    /// box stays whole.
     BspPart side(const CutPlane<D>& plane, double sign) const {
         if (!exact) return *this;
         BspPart kept{id, true, {}};
@@ -45,15 +47,16 @@ struct BspPart {
     }
 };
 
-/// Candidates are planes across the axes at the bounds of every part, and planes that the geometry itself
-/// suggests: of a triangle, and through its edges upright on it (Ize, Wald, Parker, RT 2008). Their cost is
-/// the SAH with the surfaces of the two convex parts of the cell. In cells of more than `samples` primitives
-/// only so many suggest planes; there the sweep of the kd-tree finds the best plane across each axis over all
-/// bounds, as if the cell were a box.
+/// Chooses planes and cuts cells. Candidates are planes across the axes at the bounds of every part, and
+/// planes that the geometry suggests: the plane of a triangle, and the planes through its edges at right
+/// angles to it (Ize, Wald, Parker, RT 2008). The cost of a candidate is the SAH with the surfaces of the two
+/// convex parts of the cell. In cells of more than `samples` primitives only some of them suggest planes
+/// (BspOptions). There the sweep of the kd-tree also finds the best plane across each axis over all bounds,
+/// as if the cell were a box.
 ///
-/// What comes within a fourth of a plane's margin counts as on it; a primitive wholly on it stands on the low
-/// side only, since a probe takes a plane to be as thick as its margin. A plane across an axis has no
-/// thickness for a probe: there what comes within the margin stands on both sides.
+/// Heights within a fourth of a plane's margin count as on the plane. A primitive that is wholly on a plane
+/// is in the low cell only, since a probe treats a plane as thick as its margin. A probe adds no margin to a
+/// plane across an axis: there a primitive that comes within the margin is in both cells.
 template <std::floating_point T, int D>
 class BspCutter {
 public:
@@ -127,7 +130,7 @@ private:
         double cost;
     };
 
-    /// The whole primitive: its corners where the set names them, else its box's.
+    /// The whole primitive: its corners if the set has them, otherwise the corners of its box.
     BspPart<D> whole(PrimitiveId id, const Box<T, D>& box) const {
         BspPart<D> part{id, false, {}};
         if (const auto corners = corners_(id)) {
@@ -143,6 +146,7 @@ private:
         return part;
     }
 
+    /// Whether a part is in the low cell of a plane, and whether it is in the high one.
     static std::pair<bool, bool> sides_of(const BspPart<D>& part, const CutPlane<D>& plane,
                                           bool across_axis) {
         const auto [low, high] = part.heights(plane);
@@ -154,33 +158,35 @@ private:
     void weigh(const Cell& cell, double whole, const Plane& candidate, Best& best) const {
         if (cell.size() > worth_a_task) executor_.look();
         const CutPlane<D> plane = candidate.in_double(margin_);
+        // Count the parts on each side, and skip a plane that separates none.
         std::uint32_t on_low = 0, on_high = 0;
         for (const auto& part : cell.inside) {
             const auto [to_low, to_high] = sides_of(part, plane, candidate.axis >= 0);
             on_low += to_low, on_high += to_high;
         }
         if (on_low == cell.size() && on_high == cell.size()) return;
-        // The areas of the parts are dear, and not needed where even the counts alone cost too much.
+        // Cutting the cell is dear. Skip it where the node alone costs as much as the best plane so far.
         const double node = candidate.axis >= 0 ? costs_.traversal_cost : costs_.plane_cost;
         const double bonus = on_low == 0 || on_high == 0 ? 1 - costs_.empty_bonus : 1;
         if (node >= best.cost) return;
         const auto [low, high] = cell.shape.cut(plane);
         const double low_share = low.surface() / whole, high_share = high.surface() / whole;
-        if (!(low_share > 0 && high_share > 0)) return;  // it passes by the cell
+        if (!(low_share > 0 && high_share > 0)) return;  // the plane misses the cell
         // A plane along a face that parts no primitives changes nothing. The next cell would choose it again.
         constexpr double all = 1 - 1e-9;
         if ((on_low == 0 && high_share >= all) || (on_high == 0 && low_share >= all)) return;
+        // The SAH, with areas relative to the cell's.
         const double cost =
             node + product(costs_.intersection_cost * bonus, low_share * on_low + high_share * on_high);
         if (cost < best.cost) best = {candidate, cost};
     }
 
-    /// Places across an axis just outside of a part, so that it is on one side of a plane there.
+    /// Positions along an axis 1.5 margins outside of a part: a plane there has the part on one side only.
     std::pair<T, T> beside(const BspPart<D>& part, int axis) const {
         const auto [low, high] = part.reach(axis);
         return {rounded_to<T>(low - 1.5 * margin_), rounded_to<T>(high + 1.5 * margin_)};
     }
-    /// Of each axis the plane that the kd-tree would choose. O(n log n).
+    /// Offers for each axis the plane that the kd-tree would choose. O(n log n).
     template <class Offer>
     void offer_sweep(const Cell& cell, Offer offer) const {
         const KdCosts costs{costs_.traversal_cost, costs_.intersection_cost, costs_.empty_bonus};
@@ -202,7 +208,7 @@ private:
                 offer(Plane::across(axis, best.plane.position));
         }
     }
-    /// The planes that a part suggests.
+    /// Offers the planes that a part suggests.
     template <class Offer>
     void offer_around(const Cell& cell, const BspPart<D>& part, Offer offer) const {
         for (int axis = 0; axis < D; ++axis) {
@@ -213,7 +219,7 @@ private:
         if (const auto corners = corners_(part.id)) for_each_plane_through(*corners, offer);
     }
 
-    /// A triangle's plane, and those through its edges upright on it.
+    /// Offers the plane of a triangle, and the planes through its edges at right angles to it.
     template <class Offer>
     static void for_each_plane_through(const std::array<Vec<T, 3>, 3>& corners, Offer offer) {
         const std::array<Vec3d, 3> p = {Vec3d(corners[0]), Vec3d(corners[1]), Vec3d(corners[2])};
@@ -223,7 +229,7 @@ private:
         for (std::size_t i = 0; i < 3; ++i)
             offer_plane(normalized(cross(normal, p[(i + 1) % 3] - p[i])), p[i], offer);
     }
-    /// A segment's line, and those through its ends upright on it.
+    /// Offers the line of a segment, and the lines through its ends at right angles to it.
     template <class Offer>
     static void for_each_plane_through(const std::array<Vec<T, 2>, 2>& corners, Offer offer) {
         const Vec2d a(corners[0]), b(corners[1]), along = normalized(b - a);

@@ -1,4 +1,4 @@
-/// Single primitives in and out of a BVH.
+/// Inserts single primitives into a BVH, and erases them.
 #pragma once
 
 #include <algorithm>
@@ -7,17 +7,17 @@
 
 #include <hedgerow/geometry/box_pair.h>
 #include <hedgerow/structures/bvh/build_tree.h>
-#include <hedgerow/structures/walk_volumes.h>
+#include <hedgerow/walks/volumes.h>
 
 namespace hedgerow {
 
 template <std::floating_point T, int D>
-struct alignas(D == 3 && sizeof(T) == 4 ? 64 : 16) BvhNode {  // a cache line, where it fits
+struct alignas(D == 3 && sizeof(T) == 4 ? 64 : 16) BvhNode {  // a cache line, if a node fits
     BoxPair<T, D> boxes;
     NodeRef child[2];
 };
 
-/// What a BVH is walked by.
+/// The part of a BVH that walks read.
 template <std::floating_point T, int D>
 struct BvhTree {
     NodeRef root;
@@ -26,14 +26,14 @@ struct BvhTree {
     std::vector<PrimitiveId> items;
 };
 
-/// What changes need to know of a BVH beside that: made by the first one, O(n).
+/// What insert and erase need beside the tree. The first change makes it, in O(n).
 struct BvhEdits {
-    std::vector<bool> held;                 // by primitive
-    std::size_t count = 0;                  // of those held
-    std::vector<std::uint8_t> height;       // by node: 1 over two leaves
-    std::vector<std::uint32_t> free_nodes;  // places in the lists that wait for their next use
+    std::vector<bool> held;                 // by primitive: whether it is in the tree
+    std::size_t count = 0;                  // primitives in the tree
+    std::vector<std::uint8_t> height;       // by node: 1 above two leaves
+    std::vector<std::uint32_t> free_nodes;  // unused places in the lists, to be used next
     std::vector<std::uint32_t> free_items;
-    std::vector<std::uint32_t> placed;  // where in `items` the last change put something else
+    std::vector<std::uint32_t> placed;  // the places in `items` that the last change overwrote
 
     std::size_t bytes() const {
         return held.capacity() / 8 + height.capacity() +
@@ -41,14 +41,14 @@ struct BvhEdits {
     }
 };
 
-/// An insertion goes down to where a new leaf costs the least by the SAH: at each node, over all of it or in
-/// the child whose boxes grow the least (Goldsmith and Salmon 1987, greedily as Catto, Dynamic bounding
+/// An insertion descends to where a new leaf costs the least by the SAH: at each node, above the whole node
+/// or in the child whose box grows the least (Goldsmith and Salmon 1987, greedily as Catto, Dynamic bounding
 /// volume hierarchies, GDC 2019). On the way back each node exchanges a child with a grandchild where that
-/// makes the other child's box smaller (tree rotations: Kensler 2008), so that primitives that are inserted
-/// in the order of their places make no chain. An erasure looks into each child whose box meets the
-/// primitive's, and joins what is left. Where a tree would grow too deep, the lowest subtree is built anew
-/// that is more than twice as high as a balanced one (as in scapegoat trees, Galperin and Rivest 1993): O(log
-/// n) amortized.
+/// makes the other child's box smaller (tree rotations: Kensler 2008), so that primitives inserted in spatial
+/// order form no chain. An erasure descends into each child whose box may contain the primitive. A node with
+/// one child left is replaced by that child. Where a tree would grow too deep, the lowest subtree that is
+/// more than twice as high as a balanced one is built anew (as in scapegoat trees, Galperin and Rivest 1993):
+/// O(log n) amortized.
 template <std::floating_point T, int D>
 class BvhEditor {
 public:
@@ -56,7 +56,7 @@ public:
 
     BvhEditor(BvhTree<T, D>& tree, BvhEdits& edits) : tree_(tree), edits_(edits) {}
 
-    /// Before the first change, of a tree over `count` primitives that are all held.
+    /// To be called before the first change, on a tree that contains primitives 0 to count − 1.
     void begin(std::size_t count) {
         edits_.held.assign(count, true);
         edits_.count = count;
@@ -70,18 +70,22 @@ public:
         if (id >= edits_.held.size()) edits_.held.resize(std::size_t(id) + 1);
         edits_.held[id] = true;
         ++edits_.count;
+        // Put a new leaf at the cheapest place.
         const std::vector<Place> path = path_to_cheapest(box, count);
         put(path.back(), new_leaf(id), box);
         tree_.bounds.expand(box);
+        // Grow the boxes on the path and rotate, from the leaf upward.
         for (std::size_t i = path.size(); i-- > 1;) {
             Node& n = tree_.nodes[path[i].node];
             n.boxes.set(path[i].child, merged(n.boxes[path[i].child], box));
             set_height(path[i].node);
             rotate(path[i].node);
         }
+        // Rebuild subtrees until the tree is within the bound on depth.
         while (height_of(tree_.root) >= bvh_max_depth) balance(highest_path());
     }
-    /// From a tree that holds each primitive once, or from one that may hold its parts.
+    /// Erases a primitive with this box. `exclusive`: each primitive is in one leaf. Otherwise parts of it
+    /// may be in several leaves.
     template <PrimitiveSet P, class Count>
     void erase(const P& set, PrimitiveId id, const Box<T, D>& box, bool exclusive, Count& count) {
         edits_.placed.clear();
@@ -94,11 +98,13 @@ public:
             }
             count.node();
             Node& n = tree_.nodes[ref.first];
+            // Erase the primitive from each child that may contain it.
             for (int i = 0; i < 2; ++i) {
                 const Box<T, D> child = n.boxes[i];
                 if (exclusive ? child.contains(box) : overlap(child, box))
                     n.boxes.set(i, self(self, n.child[i], child));
             }
+            // Replace a node that has an empty child by its other child.
             for (const int i : {0, 1})
                 if (n.child[i].empty()) {
                     const NodeRef left = n.child[1 - i];
@@ -113,7 +119,7 @@ public:
     }
 
 private:
-    /// A child by its parent; the root's parent is nobody.
+    /// A child, named by its parent and its index. The root's parent is `nobody`.
     struct Place {
         std::uint32_t node;
         int child;
@@ -169,7 +175,7 @@ private:
         edits_.free_nodes.push_back(node);
     }
 
-    /// Places from the root down to the one where a new leaf is put beside what stands there.
+    /// The places from the root down to the one beside whose subtree a new leaf costs the least.
     template <class Count>
     std::vector<Place> path_to_cheapest(const Box<T, D>& box, Count& count) {
         std::vector<Place> path = {{nobody, 0}};
@@ -179,15 +185,16 @@ private:
             count.node();
             const Node& n = tree_.nodes[ref.first];
             const Box<T, D> whole = box_at(path.back());
-            double least = area(merged(whole, box));  // of a new node over all of this
+            double least = area(merged(whole, box));  // of a new node above this one
             const double growth = least - area(whole);
             int cheapest = -1;
             for (int i = 0; i < 2; ++i) {
-                // This node's box grows; the child's too, or over a leaf there is a new node.
+                // This node's box grows. So does the child's; but a leaf child gets a new node above it.
                 const double with = area(merged(n.boxes[i], box));
                 const double cost = growth + with - (n.child[i].leaf() ? 0 : area(n.boxes[i]));
                 if (cost < least) least = cost, cheapest = i;
             }
+            // Stop where a new node above this one costs the least.
             if (cheapest < 0) return path;
             path.push_back({ref.first, cheapest});
         }
@@ -195,7 +202,7 @@ private:
     void put(Place at, NodeRef leaf, const Box<T, D>& box) {
         const NodeRef beside = ref_at(at);
         const NodeRef joined = beside.empty() ? leaf : join({beside, box_at(at)}, {leaf, box}).ref;
-        ref_at(at) = joined;  // once the list of nodes has grown
+        ref_at(at) = joined;  // last, since `join` may move the list of nodes
     }
     Part join(const Part& a, const Part& b) {
         const std::uint32_t node = new_node();
@@ -206,11 +213,13 @@ private:
         return {{node, 0}, merged(a.box, b.box)};
     }
 
-    /// Exchanges one child with a child of the other where that lessens the other's area the most.
+    /// Exchanges one child with a child of the other where that shrinks the other's box, by the exchange that
+    /// saves the most area.
     void rotate(std::uint32_t node) {
         Node& n = tree_.nodes[node];
+        // Find the exchange that gains the most area.
         double best = 0;
-        int from = -1, with = 0;  // the child whose own child is exchanged, and which of them
+        int from = -1, with = 0;  // the child whose own child is exchanged, and that one's index
         for (int i = 0; i < 2; ++i) {
             if (n.child[i].leaf()) continue;
             const Node& below = tree_.nodes[n.child[i].first];
@@ -220,6 +229,7 @@ private:
             }
         }
         if (from < 0) return;
+        // Exchange the two, and fit the box and height of the child that has a new child.
         Node& below = tree_.nodes[n.child[from].first];
         const Box<T, D> down = n.boxes[1 - from], up = below.boxes[with];
         std::swap(n.child[1 - from], below.child[with]);
@@ -230,10 +240,12 @@ private:
         set_height(node);
     }
 
-    /// The box of what is left.
+    /// Erases `id` from a leaf, if it is there, and returns the box of what is left. A leaf that may have
+    /// parts of primitives keeps its box, `whole`.
     template <PrimitiveSet P>
     Box<T, D> erase_from_leaf(const P& set, NodeRef& ref, const Box<T, D>& whole, PrimitiveId id,
                               bool exclusive) {
+        // Replace the primitive by the last one of the leaf, whose place becomes free.
         const auto begin = tree_.items.begin() + ref.first, end = begin + ref.count;
         const auto found = std::find(begin, end, id);
         if (found == end) return whole;
@@ -246,13 +258,14 @@ private:
             ref = NodeRef();
             return {};
         }
+        // The boxes of parts are not stored, so a leaf can be fitted only to whole primitives.
         if (!exclusive) return whole;
         Box<T, D> left;
         for (std::uint32_t i = 0; i < ref.count; ++i) left.expand(set.bounds(tree_.items[ref.first + i]));
         return left;
     }
 
-    /// Places from the root down to the lowest leaf.
+    /// The places from the root down to a deepest leaf.
     std::vector<Place> highest_path() const {
         std::vector<Place> path = {{nobody, 0}};
         for (NodeRef ref = tree_.root; !ref.leaf();) {
@@ -262,7 +275,7 @@ private:
         }
         return path;
     }
-    /// Builds the lowest subtree on the path anew that is too high for its leaves.
+    /// Rebuilds the lowest subtree on the path that is too high for its number of leaves.
     void balance(const std::vector<Place>& path) {
         std::vector<Part> leaves;
         NodeRef gathered;
@@ -279,7 +292,7 @@ private:
             return;
         }
     }
-    /// The leaves below, but for a subtree whose leaves are there already.
+    /// Appends the leaves below `ref`, except those below `but`, which are in the list already.
     void gather(NodeRef ref, NodeRef but, std::vector<Part>& leaves) const {
         const Node& n = tree_.nodes[ref.first];
         for (int i = 0; i < 2; ++i) {
@@ -294,7 +307,8 @@ private:
             if (!child.leaf()) free_nodes_of(child);
         free_node(ref.first);
     }
-    /// Halved by the middles of their boxes on the widest axis.
+    /// A balanced subtree over the leaves, halved at each level by the middles of their boxes on the widest
+    /// axis.
     Part balanced(std::span<Part> leaves) {
         if (leaves.size() == 1) return leaves[0];
         Box<T, D> centers;

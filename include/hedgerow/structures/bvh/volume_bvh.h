@@ -1,7 +1,8 @@
-/// The BVH with its bounding volume as a parameter: a study structure beside the default of boxes (bvh.h).
+/// A BVH whose bounding volume is a parameter: a study structure beside the default of boxes (bvh.h).
 #pragma once
 
 #include <hedgerow/structures/bvh/bvh.h>
+#include <hedgerow/structures/bvh/volumes/region.h>
 #include <hedgerow/structures/bvh/volumes/volume.h>
 #include <hedgerow/structures/cells.h>
 
@@ -11,16 +12,16 @@ struct VolumeBvhOptions : BvhOptions {
     Volume volume = Volume::obb;
 };
 
-/// The tree is the one of boxes, by any of its builders; around each child another volume is fitted
-/// (Weghorst, Hooper and Greenberg 1984 weigh how tight one is against what its test costs). What a volume
-/// holds: of primitives whose answers lie on them (triangles, segments, points) the corners, of others the
-/// corners of their boxes, and around these the margin that answers may err by (cells.h).
+/// The tree is built with boxes, by any builder of the Bvh. Around each child another volume is then fitted
+/// (Weghorst, Hooper and Greenberg 1984 weigh how tight a volume is against what its test costs). A volume
+/// contains the corners of primitives whose answers lie on them (triangles, segments, points), the corners of
+/// the boxes of other primitives, and around these the margin that answers may err by (cells.h).
 ///
-/// Always ordered and culled: what these bring, the Bvh shows. Which volume it is, is chosen at run time, and
-/// asked at every test: that costs some nanoseconds, and saves compiling every query for every volume. Tests
-/// are in double. Memory: a node is 16 bytes for where its children are and two volumes (bytes in space,
-/// float): sphere 16, cylinder 36, obb 60, kdop 4k, hull 16 a face and 8. Build: that of the tree, then
-/// serially O(n · depth), times some 50 µs a node for hulls.
+/// Walks are always ordered and culled; the Bvh shows what these bring. The kind of volume is chosen at run
+/// time, and every test branches on it: that costs some nanoseconds, and saves compiling every query for
+/// every volume. Tests are in double. Memory: a node is 16 bytes for its two child references, and two
+/// volumes (bytes in space, float): sphere 16, cylinder 36, obb 60, kdop 4k, hull 16 a face and 8. Build:
+/// that of the tree, then serially O(n · depth), times some 50 µs a node for hulls.
 template <std::floating_point T, int D>
 class VolumeBvh {
 public:
@@ -29,8 +30,10 @@ public:
     static constexpr int width = 2;
     static constexpr int max_depth = bvh_max_depth;
 
-    /// Over nothing.
+    /// A tree without primitives.
     VolumeBvh() = default;
+    /// Builds the tree over all primitives of a set. Throws InputError as `references_of` does, and
+    /// UsageError if volumes of that kind do not exist in this dimension (`list_of`).
     template <PrimitiveSet P>
     static VolumeBvh build(const P& set, const Options& options, Executor& executor) {
         VolumeBvh tree(options, Bvh<T, D>::build(set, options, executor));
@@ -41,7 +44,7 @@ public:
         return tree;
     }
 
-    /// Whether each primitive stands in one leaf: always but after spatial splits.
+    /// Whether each primitive is in one leaf only: always, except after spatial splits.
     bool exclusive() const { return exclusive_; }
     const Box<T, D>& bounds() const { return bounds_; }
     std::span<const PrimitiveId> items() const { return items_; }
@@ -63,7 +66,7 @@ public:
         AnyVolume<T, D> operator[](int i) const { return {list, 2 * node + static_cast<std::size_t>(i)}; }
     };
 
-    // What the walk and `fold` ask.
+    // The functions that the walk and `fold` need.
     NodeRef root() const { return root_; }
     Pair volumes(NodeRef r) const { return {volumes_, r.first}; }
     NodeRef child(NodeRef r, int i) const { return children_[r.first].child[i]; }
@@ -79,11 +82,13 @@ public:
         walk_volumes(*this, primitives, query, count);
     }
 
-    /// What is wrong with the structure; empty if nothing is. O(n · depth).
+    /// Describes a fault of the structure; empty if there is none. O(n · depth).
     template <PrimitiveSet P>
     std::string validate(const P& set) const {
         std::vector<std::uint8_t> seen(set.size());
         std::string fault;
+        // Check the subtree of r and append its corners to `below`: each volume must contain the corners
+        // below it.
         const auto visit = [&](auto& self, NodeRef r, int depth, std::vector<Vec<double, D>>& below) -> void {
             if (!fault.empty()) return;
             if (depth > max_depth) return void(fault = "deeper than its bound");
@@ -107,6 +112,7 @@ public:
         };
         std::vector<Vec<double, D>> points;
         if (!root_.empty()) visit(visit, root_, 1, points);
+        // Check that every primitive is in a leaf.
         for (const auto s : seen)
             if (s == 0 && fault.empty()) fault = "a primitive is in no leaf";
         return fault;
@@ -131,7 +137,7 @@ private:
         std::visit([&](auto& list) { list.resize(2 * inner); }, volumes_);
     }
 
-    /// Fits the volumes below a node, and adds the points below it to those given.
+    /// Fits the volumes below a node, and appends the points below it to `points`.
     template <class P>
     void fit(const P& set, NodeRef r, double margin, std::vector<Vec<double, D>>& points,
              Executor& executor) {
@@ -149,7 +155,7 @@ private:
         }
     }
 
-    /// What a volume has to hold of a primitive.
+    /// Appends the points of a primitive that its volumes must contain.
     template <class P>
     static void add_corners(const P& set, PrimitiveId id, std::vector<Vec<double, D>>& points) {
         if constexpr (HitsLieOnPrimitives<P> && requires { set.corners(id); }) {

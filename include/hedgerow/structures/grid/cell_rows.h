@@ -1,4 +1,4 @@
-/// The occupied cells of a lattice and what stands in each.
+/// The occupied cells of a lattice, and the primitives in each.
 #pragma once
 
 #include <bit>
@@ -9,26 +9,27 @@
 
 namespace hedgerow {
 
-/// A primitive in a cell, by the cell's number.
+/// A primitive in a cell. `cell` is the cell's number in its lattice.
 struct CellEntry {
     std::uint32_t cell;
     PrimitiveId id;
 };
 
-/// Which of 64 things are there; those that are stand side by side in a list from `first` on.
+/// A subset of 64 numbered things, as bits. Its members lie side by side in a list, from index `first` on.
 struct Present {
     static constexpr std::uint32_t none = 0xFFFFFFFFu;
 
     std::uint64_t bits = 0;
     std::uint32_t first = 0;
 
-    /// Where it stands: after as many as there are bits before its own (its rank; Jacobson 1989).
+    /// The index of member i in the list, or `none`. It is `first` plus the number of members before i (the
+    /// rank of its bit; Jacobson 1989).
     std::uint32_t find(std::uint32_t i) const {
         const std::uint64_t bit = std::uint64_t(1) << i;
         if ((bits & bit) == 0) return none;
         return first + static_cast<std::uint32_t>(std::popcount(bits & (bit - 1)));
     }
-    /// Calls f(i, place) for each.
+    /// Calls f(i, place) for each member i; `place` is its index in the list.
     template <class F>
     void for_each(F f) const {
         std::uint32_t place = first;
@@ -37,35 +38,39 @@ struct Present {
     }
 };
 
-/// Empty cells take next to no room: a brick of 64 cells is there if one of them is occupied, and which of 64
-/// bricks are there is said in 16 bytes. Memory: 4 bytes an item, 4 an occupied cell, 16 an occupied brick,
-/// and a byte for every 256 cells, occupied or not: so little that what probes ask of empty space stays in
-/// the cache.
+/// Empty cells take almost no memory. A brick of 64 cells is stored only if one of them is occupied, and 16
+/// bytes say which of 64 bricks are stored. Memory: 4 bytes an item, 4 an occupied cell, 16 an occupied
+/// brick, and a byte for every 256 cells, occupied or not. That is so little that lookups in empty space stay
+/// in the cache.
 template <int D>
 class CellRows {
 public:
     CellRows() = default;
 
-    /// Sorts entries into rows: by bricks, then by the cells of each. In a row they keep their order. O(n +
-    /// bricks), and `pieces` of entries are read twice in their order.
+    /// Sorts entries into rows: by bricks, then by the cells of each brick. The entries of a row keep their
+    /// order. O(n + bricks), empty bricks included. The pieces are read twice, in their order.
     CellRows(const Lattice<D>& lattice, const std::vector<std::vector<CellEntry>>& pieces, Executor& executor)
         : lattice_(lattice) {
+        // Count the entries of each brick.
         std::vector<std::uint32_t> ends(std::size_t(64) * lattice.block_count() + 1, 0);
         for (const auto& piece : pieces) {
             executor.look();
             for (const CellEntry& e : piece) ++ends[e.cell >> 6];
         }
+        // Turn the counts into the index of each brick's first entry.
         std::uint32_t sum = 0, bricks = 0;
         for (auto& end : ends) {
             bricks += end != 0;
             sum += end;
-            end = sum - end;  // where its entries begin, until all are there
+            end = sum - end;  // where its entries begin; after the sort, where they end
         }
+        // Sort the entries by brick.
         BareVector<CellEntry> sorted(sum);
         for (const auto& piece : pieces) {
             executor.look();
             for (const CellEntry& e : piece) sorted[ends[e.cell >> 6]++] = e;
         }
+        // Sort the entries of each brick by cell, and store them as rows.
         items_.resize(sum);
         bricks_.reserve(bricks);
         blocks_.resize(lattice.block_count());
@@ -103,13 +108,15 @@ public:
         });
     }
     std::size_t block_count() const { return blocks_.size(); }
-    /// Keeps only which cells are occupied: the rows are somewhere else.
+    /// Keeps only which cells are occupied, and the numbers of their rows. The caller has the items
+    /// elsewhere.
     void forget_items() {
         items_ = {};
         starts_ = {};
     }
 
-    /// Finds cells, and remembers the brick that it was in: on its way a probe seldom leaves it.
+    /// Looks up cells, and remembers the brick of the last one: a probe's next cell is seldom in another
+    /// brick.
     class Cursor {
     public:
         explicit Cursor(const CellRows& rows) : rows_(rows) {}
@@ -125,7 +132,8 @@ public:
             }
             return brick_.find(number & 63);
         }
-        /// After an empty cell: how much around it is empty, its brick or its block of bricks.
+        /// After the lookup of an empty cell, tells the sweep whether its brick is empty, or its whole block
+        /// of bricks.
         Looked emptiness() const { return {Flow::go_on, empty_bits_}; }
 
     private:
@@ -155,9 +163,9 @@ private:
     }
 
     Lattice<D> lattice_;
-    std::vector<Present> blocks_;        // of 64 bricks each, whether there or not
-    std::vector<Present> bricks_;        // that are there
-    std::vector<std::uint32_t> starts_;  // of each row, and the end of the last
+    std::vector<Present> blocks_;        // of 64 bricks each, empty blocks too
+    std::vector<Present> bricks_;        // only those with occupied cells
+    std::vector<std::uint32_t> starts_;  // first item of each row, and the end of the last
     BareVector<PrimitiveId> items_;
 };
 

@@ -1,4 +1,4 @@
-/// Which cells of a lattice primitives are entered in.
+/// Finds the cells of a lattice that a primitive is inserted in.
 #pragma once
 
 #include <limits>
@@ -12,11 +12,11 @@
 
 namespace hedgerow {
 
-/// By its box alone, or only where the primitive itself meets the cell. What that saves is seen on large
-/// triangles that stand askew.
+/// `box`: a primitive is inserted in every cell that its box reaches. `exact`: only in cells that the
+/// primitive itself meets. The saving of `exact` shows on large triangles that lie askew to the axes.
 enum class GridInsert { exact, box };
 
-/// Which cells of a lattice a primitive is entered in: those that it comes within the lattice's pad of.
+/// Finds the cells that a primitive is inserted in: those within the lattice's pad of it.
 template <PrimitiveSet P>
 class CellEntering {
 public:
@@ -27,12 +27,13 @@ public:
     CellEntering(const P& set, const Lattice<D>& lattice, GridInsert insert, T margin)
         : set_(set), lattice_(lattice), insert_(insert), margin_(margin) {}
 
-    /// The same for another lattice.
+    /// A copy for another lattice, which must outlive the copy.
     CellEntering within(const Lattice<D>& inner) const { return {set_, inner, insert_, margin_}; }
 
-    /// Calls f(cell) for each cell of the lattice, whose outermost stand for what lies beyond, until f
-    /// returns false. A row of cells that a box reaches is reached by what spans the box: only where it spans
-    /// several along two axes does the primitive itself have to be asked.
+    /// Calls f(cell) for each cell that the primitive is inserted in, until f returns false. The outermost
+    /// cells also contain what lies beyond the lattice. A primitive spans its box. So if the box reaches
+    /// several cells along one axis only, the primitive reaches all of them, and the primitive itself is
+    /// tested only if the box reaches several cells along two axes or more.
     template <class F>
     void for_each(PrimitiveId id, const Box<T, D>& box, F f) const {
         const auto [first, last] = reached(box);
@@ -47,7 +48,7 @@ public:
                           [&](const Cell& cell) { return !stands(enlarged_cell(cell)) || f(cell); });
         }
     }
-    /// The bounds of what stands in a cell of a primitive that is entered there.
+    /// Bounds of a primitive's part in a cell that it is inserted in.
     Box<T, D> part(PrimitiveId id, const Cell& cell) const {
         const auto enlarged = enlarged_cell(cell);
         return insert_ == GridInsert::exact ? part_in(set_, id, enlarged)
@@ -83,11 +84,11 @@ private:
     T margin_;
 };
 
-/// How many entries may be made from, listed, sorted and kept, in so many bytes.
+/// The most entries that a build can list, sort and keep in `budget` bytes, at 24 bytes an entry.
 inline std::uint64_t entries_within(double budget) {
     return static_cast<std::uint64_t>(std::min(4294967295.0, std::max(0.0, budget / 24)));
 }
-/// Throws InputError when so many entries would take more than `budget` bytes to build from.
+/// Throws InputError if a build from so many entries would take more than `budget` bytes.
 inline void refuse_beyond(double budget, std::uint64_t entries) {
     if (entries > entries_within(budget))
         throw InputError("the grid would take more than " +
@@ -96,11 +97,11 @@ inline void refuse_beyond(double budget, std::uint64_t entries) {
                          ": lower its density or resolution, or raise the budget");
 }
 
-/// Where primitives are entered, in pieces that follow each other by id.
+/// Entries in pieces that follow each other by id.
 using EntryPieces = std::vector<std::vector<CellEntry>>;
 
-/// Where all primitives are entered; nothing if that would be more than `most` entries. Throws InputError
-/// when building from them would take more than `budget` bytes.
+/// The entries of all primitives; nothing if they would be more than `most`. Throws InputError if a build
+/// from them would take more than `budget` bytes.
 template <PrimitiveSet P>
 std::optional<EntryPieces> entries_of(const P& set, const CellEntering<P>& entering,
                                       const Lattice<P::dimension>& lattice, std::uint64_t most, double budget,
@@ -115,10 +116,12 @@ std::optional<EntryPieces> entries_of(const P& set, const CellEntering<P>& enter
             auto& piece = pieces[p];
             piece.reserve(2 * grain);
             std::size_t counted = 0;
+            // Add the piece's new entries to the count of all. False beyond the limit.
             const auto few_enough = [&] {
                 entered += piece.size() - std::exchange(counted, piece.size());
                 return entered <= stop;
             };
+            // Insert the piece's primitives. Look at the count every 4096 entries.
             const std::size_t last = std::min(set.size(), (p + 1) * grain);
             for (std::size_t i = p * grain; i < last && entered <= stop; ++i) {
                 const auto id = static_cast<PrimitiveId>(i);
@@ -131,6 +134,7 @@ std::optional<EntryPieces> entries_of(const P& set, const CellEntering<P>& enter
             executor.advance(last - p * grain);
         }
     });
+    // Beyond the budget the build is refused. Beyond `most` alone the caller can try fewer cells.
     if (entered <= stop) return pieces;
     if (stop < most) refuse_beyond(budget, entered);
     return std::nullopt;
@@ -148,10 +152,11 @@ std::uint64_t cells_reached_by_all(const P& set, const CellEntering<P>& entering
     return all;
 }
 
-/// What stands in the cells of a lattice over a scene. A resolution by hand is kept. One by a heuristic is
-/// halved until there are no more than `most` entries, which must be at least the primitives, and until the
-/// boxes reach no more than twice as many cells, each of which asks a primitive whether it stands there. (The
-/// few that small scenes reach are always asked.)
+/// Inserts all primitives of a set in the cells of a lattice over the scene. A resolution set by hand is
+/// kept. A resolution by a heuristic is halved until there are at most `most` entries, which must be at least
+/// the number of primitives. It is also halved until the boxes reach at most twice as many cells, since each
+/// of these costs a test of the primitive (2^20 of them are always allowed, which small scenes do not
+/// exceed). Throws InputError beyond `budget` bytes.
 template <PrimitiveSet P>
 CellRows<P::dimension> enter_all(const P& set, const Box<typename P::Scalar, P::dimension>& bounds,
                                  const GridResolution& wanted, GridInsert insert, std::uint64_t most,

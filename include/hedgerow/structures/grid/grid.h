@@ -3,31 +3,31 @@
 
 #include <hedgerow/structures/grid/entering.h>
 #include <hedgerow/structures/grid/resolution.h>
-#include <hedgerow/structures/mailbox.h>
-#include <hedgerow/structures/walk_lattice.h>
+#include <hedgerow/walks/lattice.h>
+#include <hedgerow/walks/mailbox.h>
 
 namespace hedgerow {
 
-/// Only occupied cells take room (cell_rows.h). Built in O(n + cells/64) by counting; memory is 4 bytes an
-/// item and some 8 an occupied cell. A ray goes from cell to cell in integer coordinates (Amanatides and Woo
-/// 1987; RayProbe::sweep), and where a brick of 4³ cells or a block of 16³ holds nothing (in the plane 8²,
-/// 64²) it steps over all of it, as in the macro-cells of later grids (Jevans and Wyvill 1989 have a
-/// hierarchy of them).
+/// Only occupied cells take memory (cell_rows.h). Built in O(n + cells/64) by counting. Memory: 4 bytes an
+/// item and about 8 an occupied cell. A ray steps from cell to cell in integer coordinates (Amanatides and
+/// Woo 1987; RayProbe::sweep). It crosses an empty brick of 4³ cells, or an empty block of 16³ (in the plane
+/// 8² and 64²), in one step, as with the macro-cells of later grids (Jevans and Wyvill 1989 have a hierarchy
+/// of them).
 template <std::floating_point T, int D>
 class Grid {
 public:
     struct Options {
         GridResolution cells = {};
         GridInsert insert = GridInsert::exact;
-        /// Off only to show what it brings.
+        /// Skips most repeated tests of a primitive within a query. Off only to measure its effect.
         bool mailbox = true;
-        /// Rays pass over an empty brick, or block of bricks, in one step. Off only to show what it brings.
+        /// Rays pass over an empty brick, or block of bricks, in one step. Off only to measure its effect.
         bool skip_empty = true;
-        /// The grid has at most so many items for each primitive. Where primitives are as large as the scene,
-        /// or many are in one place, it gets fewer cells than its heuristic asks for, each with more items:
-        /// the build and its memory have a bound. A resolution by hand is kept. Meshes need 25.
+        /// The most items of a grid for each primitive, at least 1. Where primitives are as large as the
+        /// scene, or many are in one place, the grid has fewer cells than its heuristic gives, each with more
+        /// items. So the build and its memory are bounded. A resolution set by hand is kept. Meshes need 25.
         double items_per_primitive = 32;
-        /// Bytes that a build may take; beyond them it is refused.
+        /// Bytes that a build may take. A build that would take more throws InputError.
         double budget = 8e9;
     };
     static constexpr auto packed_order = PackedOrder::of_ids;
@@ -54,7 +54,7 @@ public:
     int depth() const { return empty() ? 0 : 1; }
     bool empty() const { return count_ == 0; }
     const Lattice<D>& lattice() const { return rows_.lattice(); }
-    /// What stands in a cell.
+    /// The items of a cell.
     Leaf leaf(const typename Lattice<D>::Cell& cell) const {
         const std::uint32_t row = rows_.cursor().row(cell);
         return row == CellRows<D>::none ? Leaf{nullptr, 0, 0} : rows_.leaf(row);

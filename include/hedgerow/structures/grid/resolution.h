@@ -5,17 +5,19 @@
 
 namespace hedgerow {
 
-/// `density`: so many cells a primitive, as cubic as the scene allows (Cleary and Wyvill 1988); 1 is about as
-/// many cells as primitives. `roots`: 3·∛n along each axis (in the plane 3·√n), whatever the scene's shape.
+/// `density`: so many cells for each primitive, as cubic as the scene allows (Cleary and Wyvill 1988); a
+/// density of 1 gives about as many cells as primitives. `roots`: 3·∛n along each axis (in the plane 3·√n),
+/// whatever the scene's shape.
 enum class GridHeuristic { density, roots };
 
 struct GridResolution {
     GridHeuristic heuristic = GridHeuristic::density;
     double density = 4;
-    /// Cells on the longest axis, by hand; 0: by the heuristic.
+    /// Cells on the longest axis, set by hand. 0: by the heuristic.
     int resolution = 0;
 
-    /// The lattice over a box. Along an axis in which the box is flat there is one cell.
+    /// The lattice over the box of `count` primitives. Along an axis in which the box is flat there is one
+    /// cell.
     template <std::floating_point T, int D>
     Lattice<D> lattice_over(const Box<T, D>& box, std::size_t count) const {
         const Vec<double, D> extent = Vec<double, D>(box.high) - Vec<double, D>(box.low);

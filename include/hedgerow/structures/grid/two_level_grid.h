@@ -1,4 +1,4 @@
-/// Two-level grid: a coarse grid, in each of whose cells stand grids for what is in it.
+/// Two-level grid: a coarse grid whose cells contain grids of their own.
 #pragma once
 
 #include <hedgerow/structures/grid/grid.h>
@@ -6,31 +6,31 @@
 namespace hedgerow {
 
 /// For scenes with detail in few places (Jevans and Wyvill 1989; built from sorted pairs as in Kalojanov,
-/// Billeter, Slusallek, EG 2011). The second level's grids lie over the bounds of what they hold, not over
-/// the cell, and where a cell holds large and small things each get one (by size, as Cazals, Drettakis and
-/// Puech 1995 part a scene): a teapot on the grass of a stadium, all in one cell, has cells of a teapot's
-/// size, and the grass its own.
+/// Billeter, Slusallek, EG 2011). A grid of the second level covers the bounds of the parts in it, not the
+/// whole cell. A cell with large and small parts has a grid for each (by size, as Cazals, Drettakis and Puech
+/// 1995 divide a scene). So if one cell contains a teapot and the grass of the stadium around it, the teapot
+/// has cells of a teapot's size, and the grass has its own.
 ///
-/// Memory: of the first level as Grid, but for its items; of the second 4 bytes an item, 4 a cell, empty or
-/// not, 32 a grid (in space, float), one or two in each occupied cell. The grids in a cell are built by one
-/// thread.
+/// Memory: the first level takes as much as a Grid without its items. The second level takes 4 bytes an item,
+/// 4 a cell, empty or not, and 32 a grid (in space, float); each occupied cell has one or two grids. One
+/// thread builds the grids of a cell.
 template <std::floating_point T, int D>
 class TwoLevelGrid {
 public:
     struct Options {
-        /// Of the first level. Kalojanov et al. have 0.12.
+        /// Cells of the first level. Kalojanov et al. use a density of 0.12.
         GridResolution cells = {.density = 0.12};
-        /// Of the second: so many cells for each primitive in a cell. Kalojanov et al. have 2.4.
+        /// Cells of the second level for each primitive in a cell. Kalojanov et al. use 2.4.
         double inner_density = 2.4;
         GridInsert insert = GridInsert::exact;
-        /// Off only to show what it brings.
+        /// Skips most repeated tests of a primitive within a query. Off only to measure its effect.
         bool mailbox = true;
-        /// The grid has at most so many items for each primitive: the first level an eighth of that, and each
-        /// grid in its cells 8 times what it is over. Where primitives are as large as the scene, or many are
-        /// in one place, there are fewer cells than asked for, each with more items: the build and its memory
-        /// have a bound. A resolution of the first level by hand is kept. Meshes need 13.
+        /// The most items for each primitive, at least 1. The first level may have an eighth of that, and a
+        /// grid of the second level 8 items for each part in it. Where primitives are as large as the scene,
+        /// or many are in one place, there are fewer cells than requested, each with more items. So the build
+        /// and its memory are bounded. A resolution of the first level set by hand is kept. Meshes need 13.
         double items_per_primitive = 64;
-        /// Bytes that a build may take; beyond them it is refused.
+        /// Bytes that a build may take. A build that would take more throws InputError.
         double budget = 8e9;
     };
     static constexpr auto packed_order = PackedOrder::of_ids;
@@ -69,10 +69,10 @@ public:
     int depth() const { return empty() ? 0 : 2; }
     bool empty() const { return count_ == 0; }
     const Lattice<D>& lattice() const { return rows_.lattice(); }
-    /// What stands in a cell of the first level: all of it in its grids.
+    /// Empty: the items of a cell of the first level are all in its grids.
     Leaf leaf(const typename Lattice<D>::Cell&) const { return {nullptr, 0, 0}; }
-    /// Calls f(lattice, leaf_of, place_of) for each grid in a cell of the first level: with what stands in
-    /// its cells, and how walks name them.
+    /// Calls f(lattice, leaf_of, place_of) for each grid in a cell of the first level. leaf_of(c) returns the
+    /// items of the grid's cell c, and place_of(c) its Place in walks.
     template <class F>
     void for_each_lattice_in(const typename Lattice<D>::Cell& cell, F f) const {
         for (const Inner& inner : grids_in(rows_.cursor().row(cell)))
@@ -91,6 +91,7 @@ public:
             Flow flow = Flow::go_on;
             const std::uint32_t row = cursor.row(cell);
             if (row == CellRows<D>::none) return cursor.emptiness();
+            // Walk the grids in an occupied cell, until the query stops.
             for (const Inner& inner : grids_in(row))
                 if (flow == Flow::go_on)
                     flow = walk_lattice(inner.lattice(margin_), query, [&](const auto& c) {
@@ -117,6 +118,7 @@ public:
             return std::binary_search(items_.begin() + starts_[start], items_.begin() + starts_[start + 1],
                                       p);
         };
+        // Each part must be in a grid that covers it, in every cell that it reaches there.
         for (PrimitiveId p = 0; p < set.size() && fault.empty(); ++p)
             entering.for_each(p, set.bounds(p), [&](const auto& cell) {
                 const auto part = entering.part(p, cell);
@@ -136,14 +138,14 @@ public:
 
 private:
     using Cell = typename Lattice<D>::Cell;
-    /// Of a grid of the second level, on average.
+    /// The most cells of a grid of the second level that a part is in, on average.
     static constexpr std::uint64_t most_cells_a_part = 8;
 
-    /// A grid in a cell of the first level: where its cells' starts begin, and how many there are along each
-    /// axis.
+    /// A grid in a cell of the first level: the index in `starts_` of its first cell, and its number of cells
+    /// along each axis.
     struct Inner {
         static constexpr std::int32_t most_cells = 255;
-        Box<T, D> parts;  // bounds of what it holds
+        Box<T, D> parts;  // bounds of the parts in it
         std::uint32_t start = 0;
         std::array<std::uint8_t, static_cast<std::size_t>(D)> resolution{};
 
@@ -158,7 +160,7 @@ private:
             return n;
         }
         std::uint32_t start_of(const Cell& c) const { return start + number(c); }
-        /// Its cells may be no larger than what answers err by: the pad is that at least.
+        /// Inner cells can be smaller than the numeric error of an answer, so the pad is at least that error.
         Lattice<D> lattice(T margin) const {
             Cell along;
             for (std::size_t a = 0; a < D; ++a) along[a] = resolution[a];
@@ -167,12 +169,12 @@ private:
             return lattice;
         }
     };
-    /// Of a primitive what stands in a cell of the first level.
+    /// A primitive's part in a cell of the first level.
     struct Part {
         Box<T, D> box;
         PrimitiveId id;
     };
-    /// What some rows of the first level become.
+    /// The second level of some rows of the first. Indexes count from 0 until all are joined.
     struct Divided {
         std::vector<std::uint32_t> first_inner;
         std::vector<Inner> inner;
@@ -187,14 +189,16 @@ private:
     Leaf leaf(std::uint32_t start) const {
         return {items_.data(), starts_[start], starts_[start + 1] - starts_[start]};
     }
-    /// Of a cell of the second level.
+    /// The place of a cell of the second level.
     static Place place_of(std::uint32_t start) { return {start, 1}; }
 
+    /// Builds the second level.
     template <PrimitiveSet P>
     void divide(const P& set, Executor& executor) {
         const CellEntering entering(set, lattice(), options_.insert, margin_);
         std::vector<Divided> pieces(rows_.block_count());
         executor.expect(rows_.items().size());
+        // Divide the rows of each block of bricks.
         executor.for_each_piece(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p) {
                 std::size_t done = 0;
@@ -206,6 +210,7 @@ private:
                 executor.advance(done);
             }
         });
+        // Join the pieces in their order, and shift their indexes.
         for (Divided& piece : pieces) {
             refuse_beyond(options_.budget, items_.size() + piece.items.size());
             for (const std::uint32_t first : piece.first_inner)
@@ -235,23 +240,27 @@ private:
         add_grid(entering, std::span(parts).first(large), piece);
         add_grid(entering, std::span(parts).subspan(large), piece);
     }
-    /// Sorts parts, large ones first, and returns how many shall have a grid of their own: so that a ray
-    /// through the cell, whose half area is given, is expected to do least. With the chance of meeting the
-    /// bounds of n parts (as the SAH has it) it goes through some ∛n of their cells, and tests as many parts.
+    /// Sorts parts, large ones first, and returns how many of them get a grid of their own. The choice
+    /// minimizes the expected work of a ray through the cell, whose half area is given. The ray meets the
+    /// bounds of n parts with the chance that the SAH gives. Then it walks through some ∛n of their cells (in
+    /// the plane √n), and tests as many parts.
     static std::size_t part_by_size(std::vector<Part>& parts, double cell_half_area) {
         const auto size = [](const Part& p) { return max_component(p.box.extent()); };
         std::ranges::sort(parts, [&](const Part& a, const Part& b) {
             return size(a) != size(b) ? size(a) > size(b) : a.id < b.id;
         });
+        // The expected work of a grid over n parts.
         const auto work = [&](std::size_t n, const Box<T, D>& bounds) {
             if (n == 0) return 0.0;
             const double chance = static_cast<double>(bounds.half_area()) / cell_half_area;
             return 1 + 2 * chance * std::pow(static_cast<double>(n), 1.0 / D);
         };
+        // The work of the grid of small parts, for each number k of large ones.
         std::vector<double> work_of_small(parts.size() + 1, 0);
         Box<T, D> bounds;
         for (std::size_t k = parts.size(); k-- > 0;)
             work_of_small[k] = work(parts.size() - k, bounds.expand(parts[k].box));
+        // Choose the k of least work in both grids.
         std::size_t best = 0;
         double least = std::numeric_limits<double>::infinity();
         bounds = {};
@@ -264,12 +273,14 @@ private:
     template <PrimitiveSet P>
     void add_grid(const CellEntering<P>& entering, std::span<const Part> parts, Divided& piece) const {
         if (parts.empty()) return;
+        // Choose the grid's bounds and resolution.
         Inner inner;
         for (const Part& part : parts) inner.parts.expand(part.box);
         inner.start = static_cast<std::uint32_t>(piece.starts.size());
         set_resolution(inner, parts, entering);
         piece.inner.push_back(inner);
 
+        // Insert the parts, and sort the entries by cell.
         const auto lattice = inner.lattice(margin_);
         std::vector<CellEntry> entries;
         for (const Part& part : parts)
@@ -278,14 +289,16 @@ private:
                 return true;
             });
         std::ranges::sort(entries, {}, [](const CellEntry& e) { return std::pair(e.cell, e.id); });
+        // Append the items of each cell, empty cells included.
         auto entry = entries.begin();
         for (std::uint32_t c = 0; c < inner.cell_count(); ++c) {
             piece.starts.push_back(static_cast<std::uint32_t>(piece.items.size()));
             for (; entry != entries.end() && entry->cell == c; ++entry) piece.items.push_back(entry->id);
         }
     }
-    /// As many cells as the density asks for, but no more than what leaves a part in 8 of them, or in as many
-    /// as the limit allows: where many are as large as their bounds, dividing parts none.
+    /// As many cells as the density gives, but so few that a part's box reaches at most 8 of them on average,
+    /// or at most `items_per_primitive` if that is less. Where many parts are as large as their common
+    /// bounds, more cells would not separate them.
     template <PrimitiveSet P>
     void set_resolution(Inner& inner, std::span<const Part> parts, const CellEntering<P>& entering) const {
         const GridResolution wanted{.density = options_.inner_density};
@@ -306,9 +319,9 @@ private:
     Options options_;
     Box<T, D> bounds_;
     CellRows<D> rows_;
-    std::vector<std::uint32_t> first_inner_;  // of each row, and the end of the last
+    std::vector<std::uint32_t> first_inner_;  // first grid of each row, and the end of the last
     std::vector<Inner> inner_;
-    std::vector<std::uint32_t> starts_;  // of each cell's items, and the end of the last
+    std::vector<std::uint32_t> starts_;  // first item of each cell, and the end of the last
     std::vector<PrimitiveId> items_;
     T margin_ = T(0);
     std::size_t count_ = 0;

@@ -11,7 +11,7 @@ namespace hedgerow {
 template <std::floating_point T>
 class KdNode {
 public:
-    static constexpr std::uint32_t most = (1u << 30) - 1;  // of a link
+    static constexpr std::uint32_t most = (1u << 30) - 1;  // the largest link
 
     static KdNode inner(const AxisPlane<T>& plane) {
         return KdNode(std::bit_cast<Bits>(plane.position), static_cast<std::uint32_t>(plane.axis));

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <hedgerow/structures/kdtree/builders/build.h>
-#include <hedgerow/structures/mailbox.h>
-#include <hedgerow/structures/walk_planes.h>
+#include <hedgerow/walks/mailbox.h>
+#include <hedgerow/walks/planes.h>
 
 namespace hedgerow {
 
-/// A primitive stands in every leaf that its part reaches, and is found in the cell where it is hit; a
-/// mailbox keeps it from being tested again in the next. Memory: 8 bytes a node (16 for double), 4 an item,
-/// and a packed triangle an item; with planes by cost there are at most 2·items nodes beside the empty ones,
-/// and items are 1.5 to 3 times the primitives on meshes.
+/// A primitive is in every leaf that its part reaches, and is found in the cell where it is hit. A mailbox
+/// skips most tests that would be repeated in the next cells. Memory: 8 bytes a node (16 for double), 4 an
+/// item, and a packed triangle an item. There are at most 2 nodes for each item and each empty leaf. With
+/// planes by cost, items are 1.5 to 3 times the primitives on meshes.
 template <std::floating_point T, int D>
 class KdTree : public PlantedCutTree<T, D, KdNode<T>> {
 public:

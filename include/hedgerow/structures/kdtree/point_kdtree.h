@@ -1,19 +1,19 @@
-/// The kd-tree as it began: over points, which are themselves the inner nodes.
+/// The original kd-tree, over points: each node is a point.
 #pragma once
 
 #include <algorithm>
 #include <bit>
 
 #include <hedgerow/structures/references.h>
-#include <hedgerow/structures/walk_planes.h>
+#include <hedgerow/walks/planes.h>
 
 namespace hedgerow {
 
-/// Axes in turn; the median by its axis is the node, what lies before it is below on the low side, what lies
-/// behind on the high side (Bentley 1975). The tree is as full as a heap and lies like one: the children of
-/// node i are 2i + 1 and 2i + 2, so that no link is stored (Jensen, Realistic image synthesis using photon
-/// mapping, 2001). Memory: 8 bytes a point (12 for double). Built in O(n log n). It holds points alone, in
-/// any number of dimensions.
+/// The axes take turns from level to level. A node is the median point by its axis; the points before it are
+/// in its low subtree, and the points behind it in its high subtree (Bentley 1975). The tree is as full as a
+/// heap and has the layout of a heap: the children of node i are 2i + 1 and 2i + 2, so that no link is stored
+/// (Jensen, Realistic image synthesis using photon mapping, 2001). Memory: 8 bytes a point (12 for double).
+/// Built in O(n log n). For points only, in 1, 2 or 3 dimensions.
 template <std::floating_point T, int D>
 class PointKdTree {
 public:
@@ -39,12 +39,13 @@ public:
     std::size_t bytes() const {
         return positions_.capacity() * sizeof(T) + items_.capacity() * sizeof(PrimitiveId);
     }
-    /// NodeIds are below it: one more than points, for the child that the last inner node may lack.
+    /// NodeIds are below this: the number of points, and one more for the child that the last inner node may
+    /// lack.
     std::size_t node_count() const { return items_.empty() ? 0 : items_.size() + 1; }
     std::size_t leaf_count() const { return (items_.size() + 1) / 2; }
     int depth() const { return static_cast<int>(std::bit_width(items_.size())); }
 
-    // What the walk and `fold` ask.
+    // For the walk and `fold`.
     bool empty() const { return items_.empty(); }
     bool is_leaf(NodeId n) const { return low_child(n) >= items_.size(); }
     bool is_empty(NodeId n) const { return n >= items_.size(); }
@@ -71,6 +72,7 @@ public:
         if (set.size() != items_.size()) return "not built over these points";
         std::vector<std::uint8_t> seen(set.size());
         std::string fault;
+        // Visit each node with the cell that the planes above it leave.
         const auto visit = [&](auto& self, NodeId n, const Box<T, D>& cell) -> void {
             if (n >= items_.size()) return;
             if (items_[n] >= seen.size() || seen[items_[n]]++) return void(fault = "a point is held twice");
@@ -89,16 +91,17 @@ public:
 
 private:
     static int axis_of(NodeId n) { return static_cast<int>(std::bit_width(n + 1) - 1) % D; }
-    /// How many of n nodes, as full as a heap, are below the root on the low side.
+    /// The size of the root's low subtree, in a tree of n nodes that is as full as a heap.
     static std::size_t low_size(std::size_t n) {
         if (n == 1) return 0;
         const std::size_t half_level = std::bit_floor(n) / 2;
         return half_level - 1 + std::min(half_level, n - (2 * half_level - 1));
     }
-    /// The subtree of node n over references[first, last). Equal positions are told apart by id.
+    /// Builds the subtree of node n over references[first, last). Equal positions are ordered by id.
     void grow(ReferenceList<T, D>& references, std::size_t first, std::size_t last, NodeId n,
               Executor& executor) {
         if (first == last) return;
+        // Move the median to the middle, and store it as node n.
         const std::size_t middle = first + low_size(last - first);
         const int axis = axis_of(n);
         const auto at = [&](std::size_t i) { return references.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -107,6 +110,7 @@ private:
         });
         items_[n] = references[middle].id();
         positions_[n] = references[middle].low[axis];
+        // Build both subtrees, in parallel if they are large.
         const auto grow_task = [&](std::size_t from, std::size_t to, NodeId child) {
             grow(references, from, to, child, executor);
             if (to - from <= worth_a_task) executor.advance(to - from);

@@ -1,4 +1,4 @@
-/// How an orthtree's cells are divided: which primitives stand in which orthant, and when a cell is a leaf.
+/// How an orthtree's cells are divided: which primitives are in which orthant, and which cells are leaves.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace hedgerow {
 
-/// The orthants of a cell that a box reaches, if it reaches the cell: a bit for each.
+/// The orthants of a cell that a box reaches, a bit for each. The box must reach the cell.
 template <std::floating_point T, int D>
 unsigned orthants_reached(const Box<T, D>& box, const Vec<T, D>& middle) {
     unsigned orthants = (1u << (1 << D)) - 1;
@@ -20,8 +20,8 @@ unsigned orthants_reached(const Box<T, D>& box, const Vec<T, D>& middle) {
     return orthants;
 }
 
-/// Which orthants of a cell primitives stand in. It depends on the primitive and the cell alone, so that what
-/// is inserted later stands where it would have stood from the start.
+/// Finds the orthants of a cell that a primitive is in. They depend on the primitive and the cell alone, so a
+/// primitive that is inserted later is in the same cells as if it had been in the build.
 template <PrimitiveSet P>
 class OrthantStanding {
 public:
@@ -30,15 +30,15 @@ public:
 
     explicit OrthantStanding(const P& set) : set_(set) {}
 
-    /// Only a set that is told apart more finely than by boxes needs a margin, over its own coordinates: a
-    /// closest point and an overlap lie in the box.
+    /// How far cells are enlarged for a primitive with this box, by the box's own coordinates. A set that is
+    /// tested by boxes alone needs no margin: closest points and overlaps lie in the box.
     static T margin(const Box<T, D>& box) {
         if constexpr (HitsLieOnPrimitives<P>)
             return cell_margin(box);
         else
             return T(0);
     }
-    /// The orthants that a primitive that stands in the cell stands in: at least one.
+    /// The orthants of `cell` that a primitive of the cell is in: at least one.
     unsigned operator()(PrimitiveId id, const Cube<T, D>& cell) const {
         const Box<T, D> box = set_.bounds(id);
         const T around = margin(box);
@@ -57,22 +57,25 @@ private:
     const P& set_;
 };
 
-/// What decides where a tree ends.
+/// Limits that decide which cells are leaves.
 template <std::floating_point T>
 struct OrthtreeLimits {
     std::uint32_t leaf_size = 0;
-    /// Cells are not divided into smaller ones than this.
+    /// The least half width of a cell.
     T least_half = T(0);
 };
 
-/// Grows the subtree of a cell top down. A cell of more than leaf_size primitives is divided when
-/// - that does not exceed its room (in words of four bytes): each cell shares what its group of children does
-///   not take among them, by their primitives, so that the whole stays within the room of the root;
-/// - the copies of primitives in the orthants are fewer than 2^(D−1) times the primitives. An orthant has
-///   1/2^(D−1) of its cell's surface, so that is: when a random line through the cell is expected to be
-///   tested against fewer primitives than before (the SAH of equal cells). Where they all lie along a plane
-///   (in the plane, a line) it would not, however deep one went;
-/// - they do not all have the same box, and the orthants' middles are numbers of T.
+/// Grows the subtree of a cell top down. A cell of more than leaf_size primitives is divided if all of this
+/// is true:
+/// - Its room suffices. Room counts words of four bytes. The group of children takes some of it, and the
+///   children share the rest in proportion to their primitives. So the whole tree stays within the room of
+///   the root.
+/// - The orthants together have fewer than 2^(D−1) times as many primitives, copies included, as the cell. An
+///   orthant has 1/2^(D−1) of its cell's surface, so a random line through the cell is then expected to be
+///   tested against fewer primitives than before (the SAH of equal cells). Primitives that cross the cell
+///   along one plane (in the plane, a line) fail this at every depth.
+/// - The primitives do not all have the same box, and the cell's half width is above the limit.
+/// - The orthants' middles are numbers of T.
 template <PrimitiveSet P>
 class OrthantGrowth {
 public:
@@ -84,14 +87,17 @@ public:
     OrthantGrowth(const P& set, const OrthtreeLimits<T>& limits, Executor& executor)
         : set_(set), standing_(set), limits_(limits), executor_(executor) {}
 
-    /// The ids are used up. The same tree for any number of threads. `work` is what the executor is told of
-    /// when all is done, in primitives: the cell's share, since deeper cells hold more copies.
+    /// Builds the subtree of a cell from ids, which are used up. The tree is the same for any number of
+    /// threads. `work` is the cell's share of the progress that the executor receives, in primitives. The
+    /// cell's size is no measure of it, since deeper cells have more copies.
     OrthantNode grow(Ids& ids, const Cube<T, D>& cell, std::uint64_t room, Store& store,
                      double work = 0) const {
+        // Divide the ids among the orthants, or make a leaf of them.
         Parts parts;
         if (!divide(ids, cell, room, parts)) return store.make_leaf(ids);
         const bool alone = ids.size() < worth_a_task;
         Ids().swap(ids);
+        // Make a group, and grow a child in each orthant.
         unsigned occupied = 0;
         for (unsigned i = 0; i < Store::width; ++i)
             if (!parts[i].ids.empty()) occupied |= 1u << i;
@@ -115,9 +121,10 @@ private:
     using Parts = std::array<Part, Store::width>;
     static constexpr std::uint64_t group_words = sizeof(typename Store::Group) / 4;
 
-    /// Each child in a store of its own; then they are brought together in their order.
+    /// Grows each child in a store of its own, and then copies these stores into one in their order.
     void grow_side_by_side(Parts& parts, const Cube<T, D>& cell, std::uint32_t group, Store& store,
                            double work) const {
+        // Grow the children from `first` to `last`, by halves. Each does its share of the work.
         std::size_t copies = 0;
         for (const Part& part : parts) copies += part.ids.size();
         std::array<Store, Store::width> grown;
@@ -135,6 +142,7 @@ private:
             executor_.both([&] { self(self, first, middle); }, [&] { self(self, middle, last); });
         };
         some(some, 0, Store::width);
+        // Reserve memory for all children, and copy them one by one.
         std::size_t groups = 0, words = 0;
         for (const Store& s : grown) groups += s.group_count(), words += s.list().size();
         store.reserve(groups, words);
@@ -145,10 +153,12 @@ private:
         }
     }
 
+    /// Divides a cell's ids into those of its orthants. Returns false if the cell is to be a leaf.
     bool divide(const Ids& ids, const Cube<T, D>& cell, std::uint64_t room, Parts& parts) const {
         const std::size_t n = ids.size();
         if (n <= limits_.leaf_size || cell.half <= limits_.least_half || !cell.divisible() || all_alike(ids))
             return false;
+        // Count the primitives of each orthant. Refuse too many copies, or more words than there is room for.
         const auto orthants = look_up(ids, cell);
         std::array<std::uint32_t, Store::width> counts{};
         for (const unsigned in : orthants)
@@ -156,11 +166,13 @@ private:
         std::uint64_t copies = 0, words = group_words;
         for (const std::uint32_t c : counts) copies += c, words += Store::capacity_for(c);
         if (copies >= (std::uint64_t(n) << (D - 1)) || words > room) return false;
+        // Share the spare room among the children by their counts.
         const double spare = static_cast<double>(room - words) / static_cast<double>(copies);
         for (unsigned i = 0; i < Store::width; ++i) {
             parts[i].ids.reserve(counts[i]);
             parts[i].room = Store::capacity_for(counts[i]) + static_cast<std::uint64_t>(spare * counts[i]);
         }
+        // Copy each id to its orthants.
         for (std::size_t k = 0; k < n; ++k)
             for (unsigned left = orthants[k]; left != 0; left &= left - 1)
                 parts[static_cast<unsigned>(std::countr_zero(left))].ids.push_back(ids[k]);

@@ -4,62 +4,63 @@
 #include <cmath>
 
 #include <hedgerow/structures/item_limit.h>
-#include <hedgerow/structures/mailbox.h>
 #include <hedgerow/structures/orthtree/root.h>
 #include <hedgerow/structures/orthtree/validate.h>
+#include <hedgerow/walks/mailbox.h>
 
 namespace hedgerow {
 
 /// Regular subdivision (Finkel and Bentley 1974; for rays Glassner, Space subdivision for fast ray tracing,
-/// 1984). A primitive stands in every leaf that it meets (cells.h). Every plane is a number of T (root.h), so
-/// a cell is the same to a build, an insertion and a walk. When cells are divided: growth.h.
+/// 1984). A primitive is in every leaf that it meets (cells.h). Every plane is a number of T (root.h), so
+/// builds, insertions and walks compute the same cells. When cells are divided: growth.h.
 ///
-/// `insert` and `erase` cost O(depth) a cell that the primitive meets, and what it takes to divide or join
-/// the leaves that it enters or leaves; nothing depends on how many primitives there are but the depth, and
-/// now and then (amortized) a list that is written anew. A leaf of more than leaf_size is divided, and leaves
-/// that together hold no more are joined again, so that walks through a tree that shrank are short. What lies
-/// out of the root's cell makes the tree grow upward: a root twice as wide, with the old one as an orthant;
-/// where that would be too deep or not exact, the tree is built anew over what it holds. Where dividing does
-/// not part primitives (equal boxes; many through one place) leaves are longer, and a change of one costs
-/// O(its items).
+/// `insert` and `erase` cost O(depth) for each cell that the primitive meets, and the work to divide or join
+/// the leaves that change. The number of primitives matters only for the depth, and for lists that are copied
+/// now and then (amortized). A leaf of more than leaf_size is divided, and leaves that together have no more
+/// are joined again, so that walks through a tree that shrank are short. A primitive outside of the root's
+/// cell makes the tree grow upward: it gets a root twice as wide, with the old one as an orthant. Where that
+/// would be too deep or not exact, or if the root is a leaf, the tree is built anew over its primitives.
+/// Where division does not separate primitives (equal boxes; many through one place) leaves are longer, and a
+/// change of such a leaf costs O(its items).
 ///
 /// Memory: 8 bytes a node (a group of 2^D children is 64 bytes, 32 in the plane), 4 an item, 1 bit a
-/// primitive. Groups and items stay within 128 bytes a primitive (`items_per_primitive` words, see growth.h)
-/// in every build: the worst case. On meshes it is about 40, on points 7. Insertions keep to it when they
-/// divide a leaf, but what is large beside the cells may go beyond it, since it must stand in each. Arrays
-/// that grow have an eighth more room than they need, and up to half of the items' list and of the groups may
-/// wait to be used again, so after changes it is up to 2.25 times as much a primitive that is held.
+/// primitive. After every build, groups and items take at most 128 bytes a primitive (`items_per_primitive`
+/// words, see growth.h). On meshes they take about 40, on points 7. Insertions keep to the limit when they
+/// divide a leaf, but primitives that are large beside the cells may exceed it, since they must be in each
+/// cell that they meet. Arrays that grow have an eighth more memory than they need, and up to half of the
+/// items' list and of the groups may be free for reuse. So after changes the tree takes up to 2.25 times as
+/// much for each primitive in it.
 template <std::floating_point T, int D>
 class Orthtree {
 public:
     struct Options {
-        /// Cells of no more primitives are leaves.
+        /// Cells of at most this many primitives are leaves.
         std::uint32_t leaf_size = 8;
-        /// How often the first cell may be halved.
+        /// How often the first cell may be halved: at most 32 times.
         int max_depth = 20;
         /// A build divides cells while groups and items together stay within so many words of 4 bytes for
-        /// each primitive, so it has fewer items than that. Where primitives are as large as the scene, or
-        /// many are in one place, leaves are longer. Meshes need 10.
+        /// each primitive, so it makes fewer items than that. At least 1. Where primitives are as large as
+        /// the scene, or many are in one place, leaves are longer. Meshes need 10.
         double items_per_primitive = 32;
-        /// Test a primitive once a query, in however many cells it stands.
+        /// Skips most repeated tests of a primitive within a query.
         bool mailbox = true;
     };
     static constexpr auto packed_order = PackedOrder::of_ids;
     static constexpr bool exclusive() { return false; }
     static constexpr int dimension = D;
     static constexpr unsigned width = 1u << D;
-    /// With what it grows upward; the walk's stack has room for it.
+    /// The most levels, with those that the tree grows upward. The walk's stack has room for them.
     static constexpr int max_depth = 48;
     static constexpr int deepest_option = 32;
 
-    /// Throws UsageError for options out of range, InputError for bad primitives.
+    /// Throws UsageError for options out of range, InputError for bad primitives or 2^31 or more of them.
     template <PrimitiveSet P>
     static Orthtree build(const P& set, const Options& options, Executor& executor) {
         if (options.leaf_size < 1) throw UsageError("octree, quadtree: leaf_size=0 is not at least 1");
         if (options.max_depth < 0 || options.max_depth > deepest_option)
             throw UsageError("octree, quadtree: max_depth=" + std::to_string(options.max_depth) +
                              " is not from 0 to " + std::to_string(deepest_option));
-        most_items(options.items_per_primitive, set.size());  // refuses what is no limit
+        most_items(options.items_per_primitive, set.size());  // throws UsageError for less than 1
         if (set.size() >= OrthantNode::inner_bit)
             throw InputError("an octree or quadtree holds fewer than 2^31 primitives, and was given " +
                              std::to_string(set.size()));
@@ -72,12 +73,13 @@ public:
         return tree;
     }
 
-    /// Of all that was ever held since the tree was last built: no answer depends on it.
+    /// The bounds of all primitives that were in the tree at any time since it was last built. No answer
+    /// depends on them.
     const Box<T, D>& bounds() const { return bounds_; }
-    /// The blocks of all leaves; after changes with gaps of 0xFFFFFFFF.
+    /// The blocks of all leaves, and gaps between them, whose words are not ids (OrthantStore::list).
     std::span<const PrimitiveId> items() const { return store_.list(); }
     std::size_t bytes() const { return store_.bytes() + held_.capacity() / 8; }
-    /// NodeIds are below it.
+    /// NodeIds are below this.
     std::size_t node_count() const { return 1 + width * store_.group_count(); }
     std::size_t leaf_count() const {
         return sum_over(root_, [](OrthantNode n) { return std::size_t(!n.inner() && !n.empty()); });
@@ -88,14 +90,15 @@ public:
     int depth() const { return count_ == 0 ? 0 : depth_of(root_); }
     const Options& options() const { return options_; }
 
-    /// How many primitives are held, and whether one is.
+    /// The number of primitives in the tree, and whether `id` is one of them.
     std::size_t size() const { return count_; }
     bool holds(PrimitiveId id) const { return id < held_.size() && held_[id]; }
     PrimitiveId id_end() const { return static_cast<PrimitiveId>(held_.size()); }
 
-    /// Takes up primitive `id` of the set: false, and nothing is changed, if it is held already. Throws
-    /// InputError, and changes nothing, if the set has no such primitive or it is bad. `count` is told of the
-    /// nodes opened, and of the leaves with the items that were looked at.
+    /// Inserts primitive `id` of the set. Returns false, and changes nothing, if it is already in the tree.
+    /// Throws InputError, and changes nothing, if the set has no such primitive, if it is bad, or if `items`
+    /// has 2^31 words or more. `count` receives the nodes opened, and the leaves with the items that were
+    /// looked at.
     template <PrimitiveSet P, class Count>
     bool insert(const P& set, PrimitiveId id, Count& count) {
         const Box<T, D> box = reference_of(set, id).box();
@@ -118,8 +121,9 @@ public:
         NoVisits none;
         return insert(set, id, none);
     }
-    /// Lets go of primitive `id`, which must be as it was when it was inserted: false, and nothing is
-    /// changed, if it is not held.
+    /// Erases primitive `id`, which must be as it was when it was inserted. Returns false, and changes
+    /// nothing, if it is not in the tree. Throws InputError, and changes nothing, if the set has no such
+    /// primitive or it is bad.
     template <PrimitiveSet P, class Count>
     bool erase(const P& set, PrimitiveId id, Count& count) {
         if (!holds(id)) return false;
@@ -136,7 +140,7 @@ public:
         return erase(set, id, none);
     }
 
-    // What the walk and `fold` ask.
+    // For the walk and `fold`.
     OrthantNode root() const { return root_; }
     const Cube<T, D>& cell() const { return cell_; }
     const OrthantNode* children(OrthantNode n) const { return store_.group(n.first).child.data(); }
@@ -159,13 +163,13 @@ public:
     std::string validate(const P& set) const {
         return OrthtreeInspection<Orthtree, P>(*this, set).fault();
     }
-    // What it asks.
+    // For OrthtreeInspection.
     const OrthantStore<D>& store() const { return store_; }
     void gather(OrthantNode leaf, std::vector<PrimitiveId>& ids) const {
         const auto items = store_.items(leaf);
         ids.insert(ids.end(), items.begin(), items.end());
     }
-    /// Brings what leaves hold in order, each once.
+    /// Sorts ids and drops repeats. Returns whether more are left than a leaf is to have.
     bool is_more_than_a_leaf(std::vector<PrimitiveId>& ids) const {
         std::sort(ids.begin(), ids.end());
         ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -173,9 +177,9 @@ public:
     }
 
 private:
-    /// In words, for what is held.
+    /// The limit on groups and items, in words of 4 bytes.
     std::uint64_t room() const { return most_items(options_.items_per_primitive, count_); }
-    /// Where a node stands: which child of which group. The root: of none.
+    /// The place of a node: which child of which group. The root is in no group.
     struct Place {
         std::uint32_t group = 0xFFFFFFFFu;
         unsigned child = 0;
@@ -184,7 +188,7 @@ private:
         return p.group == Place().group ? root_ : store_.group(p.group).child[p.child];
     }
 
-    /// Builds anew over what is held.
+    /// Builds the tree anew over the primitives in it.
     template <PrimitiveSet P>
     void plant(const P& set, Executor& executor) {
         std::vector<PrimitiveId> ids;
@@ -203,11 +207,13 @@ private:
         store_.shrink_to_fit();
     }
 
-    /// Grows upward until a box is inside; false, and nothing is changed, where that does not do.
+    /// Grows the tree upward until the box is in the root's cell. Returns false, and changes nothing, if the
+    /// tree has to be built anew instead.
     bool enclose(const Box<T, D>& box) {
         if (!root_.inner()) return !root_.empty() && cell_.box().contains(box);
+        // Double the root's cell until it contains the box, as long as it is exact and not too deep.
         Cube<T, D> cell = cell_;
-        std::vector<unsigned> corners;  // which orthant each becomes of the next
+        std::vector<unsigned> corners;  // which orthant of the next cell each cell becomes
         while (!cell.box().contains(box)) {
             unsigned i = 0;
             for (int k = 0; k < D; ++k)
@@ -218,6 +224,7 @@ private:
             const T deepest = std::ldexp(limits_.least_half, max_depth - 1);
             if (!cell.exact(cell.half) || cell.half >= deepest) return false;
         }
+        // Make a group for each new cell, with the old root as its only occupied child.
         for (const unsigned i : corners) {
             const std::uint32_t group = store_.allocate_group();
             store_.group(group).child[i] = root_;
@@ -246,8 +253,9 @@ private:
             add(set, id, {n.first, i}, cell.orthant(i), count);
         }
     }
-    /// A leaf that has become too long becomes a subtree, if that parts it. One that was not parted is tried
-    /// again whenever its block grows, so that its insertions cost O(1) each, amortized.
+    /// Replaces a leaf that has become too long by a subtree, if division separates its primitives. A leaf
+    /// that stays whole is tried again whenever its block grows, so that its insertions cost O(1) each,
+    /// amortized.
     template <PrimitiveSet P, class Count>
     void divide(const P& set, Place place, const Cube<T, D>& cell, Count& count) {
         const OrthantNode leaf = at(place);
@@ -280,7 +288,7 @@ private:
         at(place) = OrthantNode::inner_over(n.first, occupied);
         join(place, count);
     }
-    /// Leaves that together fit in one become one.
+    /// Joins the children of a node into one leaf, if they are leaves whose primitives fit in one.
     template <class Count>
     void join(Place place, Count& count) {
         const OrthantNode n = at(place);

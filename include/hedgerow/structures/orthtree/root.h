@@ -17,12 +17,13 @@ T power_of_two_above(T x) {
 }
 }  // namespace detail
 
-/// A cube around a scene such that every plane that halves it, and the halves of it, and so on down to what T
-/// resolves there, is a number of T: nothing is rounded when a cell is found again from its parent, by
-/// whatever way. Its width is a power of two, at least 9/8 of the scene's and 2^7 steps of the largest
-/// coordinate. Its corner is an odd multiple of a small step (2^−12 of the width, where T can), so that
-/// planes seldom fall on the round coordinates at which models have their vertices: what touches a plane
-/// stands on both sides of it.
+/// A cube around a scene. The planes that halve it are numbers of T, and so are those that halve its
+/// orthants, down to what T resolves there. So nothing is rounded when a cell is computed from its parent,
+/// and every way to a cell gives the same cell. The width of the cube is a power of two. It is at least 9/8
+/// of the scene's width, and at least 2^(7−p) of the largest coordinate, where p is the number of digits of
+/// T. The cube's corner is an odd multiple of a small step (2^−12 of the width, if T can). So planes seldom
+/// fall on the round coordinates at which models have their vertices: a primitive that touches a plane is on
+/// both sides of it.
 template <std::floating_point T, int D>
 Cube<T, D> root_cube(const Box<T, D>& scene) {
     using limits = std::numeric_limits<T>;

@@ -1,4 +1,4 @@
-/// Where an orthtree's nodes and items live: groups of children, and blocks of ids that grow and shrink.
+/// The memory of an orthtree's nodes and items: groups of children, and blocks of ids that grow and shrink.
 #pragma once
 
 #include <algorithm>
@@ -7,16 +7,16 @@
 #include <span>
 #include <vector>
 
-#include <hedgerow/error.h>
-#include <hedgerow/structures/walk_orthants.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/walks/orthants.h>
 
 namespace hedgerow {
 
-/// Groups are of one size; a freed one is used again. A leaf's items are a block of one list. How long a
-/// block is follows from how many items it holds (`capacity_for`), so that nothing has to remember it: just
-/// as many, up to 16; beyond, a fourth more at most. Freed blocks wait for items of the same length. When
-/// freed blocks make up half of the list, or freed groups half of all groups, what is in use is copied to
-/// arrays of its size, so that all of it costs O(1) an item, amortized.
+/// All groups have one size, and a freed group is used again. A leaf's items are a block of one list. The
+/// length of a block follows from its number of items (`capacity_for`), so it is not stored: up to 16 it is
+/// the number itself, beyond that at most a fourth more. Freed blocks are used again for items of the same
+/// length. When freed blocks make up half of the list, or freed groups half of all groups, everything in use
+/// is copied to arrays of its size. So all of this costs O(1) an item, amortized.
 template <int D>
 class OrthantStore {
 public:
@@ -35,15 +35,16 @@ public:
 
     const Group& group(std::uint32_t g) const { return groups_[g]; }
     Group& group(std::uint32_t g) { return groups_[g]; }
-    /// With those that wait for their next use, which are empty leaves.
+    /// The number of groups, freed ones included. The children of a freed group are empty leaves.
     std::size_t group_count() const { return groups_.size(); }
     std::size_t groups_in_use() const { return groups_.size() - free_group_count_; }
-    /// The list of all blocks: what is not in use is `none`.
+    /// The list of all blocks. Unused words are `none`, but the first word of a free block is the next free
+    /// block of its length.
     const std::vector<PrimitiveId>& list() const { return list_; }
     std::span<const PrimitiveId> items(OrthantNode leaf) const {
         return std::span(list_).subspan(leaf.first, leaf.count);
     }
-    /// In words of four bytes, what waits for its next use left out.
+    /// Words of four bytes in the groups and blocks that are in use.
     std::uint64_t words_in_use() const {
         return groups_in_use() * std::uint64_t(sizeof(Group) / 4) + list_.size() - free_words_;
     }
@@ -79,13 +80,13 @@ public:
         return leaf;
     }
     void free_leaf(OrthantNode leaf) { free_block(leaf.first, capacity_for(leaf.count)); }
-    /// The leaf with one item more. Whether its block grew shows in `capacity_for`.
+    /// The leaf with one item more. `capacity_for` tells whether its block grew.
     OrthantNode added(OrthantNode leaf, PrimitiveId id) {
         leaf = resized(leaf, leaf.count + 1);
         list_[leaf.first + leaf.count - 1] = id;
         return leaf;
     }
-    /// The leaf without an item, if it has it. O(items).
+    /// The leaf without the item, or unchanged if it does not have the item. O(items).
     OrthantNode removed(OrthantNode leaf, PrimitiveId id) {
         const auto begin = list_.begin() + leaf.first, end = begin + leaf.count;
         const auto found = std::find(begin, end, id);
@@ -94,7 +95,7 @@ public:
         return resized(leaf, leaf.count - 1);
     }
 
-    /// A copy of another store's subtree, depth first.
+    /// Copies a subtree from another store, depth first. Returns its root.
     OrthantNode graft(const OrthantStore& from, OrthantNode node) {
         if (!node.inner()) return make_leaf(from.items(node));
         const std::uint32_t g = allocate_group();
@@ -113,7 +114,8 @@ public:
         list_.shrink_to_fit();
     }
 
-    /// Copies what is in use where more than half of the list, or of the groups, waits.
+    /// Copies everything in use to new arrays if at least half of the list (and 1024 words), or of the groups
+    /// (and 64), is free.
     void tidy(OrthantNode& root) {
         const bool words_wait = free_words_ >= 1024 && free_words_ >= list_.size() / 2;
         const bool groups_wait = free_group_count_ >= 64 && free_group_count_ >= groups_.size() / 2;
@@ -127,16 +129,16 @@ public:
 private:
     static constexpr std::uint32_t none = 0xFFFFFFFFu;
     static constexpr std::uint32_t exact = 16;
-    /// So that every child has a NodeId.
+    /// The most groups for which every child has a NodeId.
     static constexpr std::size_t most_groups = none / width;
 
-    /// Each length a block may have, numbered: four between powers of two.
+    /// Numbers the lengths that a block may have: each up to 16, then four between powers of two.
     static constexpr std::size_t length_class(std::uint32_t capacity) {
         if (capacity <= exact) return capacity;
         const auto bits = static_cast<std::uint32_t>(std::bit_width(capacity - 1));
         return exact + 4 * (bits - 5) + (capacity >> (bits - 3)) - 4;
     }
-    /// An array that is full grows by an eighth: O(1) an element, amortized.
+    /// Reserves memory for `more` elements. A full array grows by an eighth: O(1) an element, amortized.
     template <class Array>
     static void make_room(Array& array, std::size_t more) {
         const std::size_t wanted = array.size() + more;
@@ -180,7 +182,7 @@ private:
     std::vector<PrimitiveId> list_;
     std::uint32_t free_group_ = none;
     std::size_t free_group_count_ = 0;
-    /// The first free block of each length; each names the next.
+    /// The first free block of each length. The first word of a free block is the next one.
     std::array<std::uint32_t, 128> free_blocks_;
     std::size_t free_words_ = 0;
 };

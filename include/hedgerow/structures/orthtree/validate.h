@@ -1,4 +1,4 @@
-/// What may be wrong with an orthtree.
+/// Finds faults in an orthtree.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace hedgerow {
 
-/// Looks at every node and item once, then for every primitive at each cell that it is to stand in: about the
-/// work of a build, serial.
+/// Checks every node and item once, then looks for every primitive in each cell that it must be in. That is
+/// about the work of a build, serial.
 template <class S, PrimitiveSet P>
 class OrthtreeInspection {
 public:
@@ -17,7 +17,7 @@ public:
 
     OrthtreeInspection(const S& tree, const P& set) : tree_(tree), set_(set), standing_(set) {}
 
-    /// Empty if nothing is wrong.
+    /// The first fault; empty if nothing is wrong.
     std::string fault() {
         if (tree_.id_end() > set_.size()) return "not built over these primitives";
         look_at(tree_.root(), tree_.cell(), 0);

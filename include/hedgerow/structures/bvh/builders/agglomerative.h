@@ -1,11 +1,12 @@
-/// Agglomerative clustering: from single primitives, again and again the two clusters are joined whose common
-/// box is least (Walter, Bala, Kulkarni, Pingali, RT 2008), in the approximate form that scales (AAC; Gu, He,
-/// Fatahalian, Blelloch, HPG 2013): a recursion along the bits of a Morton curve hands few clusters up from
-/// each part, f(n) = δ^(½+ε)/2 · n^(½−ε), so that only near ones are ever compared. δ = 20 and ε = 0.1, its
-/// high-quality setting. O(n) but for the sort. The top joins are one thread's, a small part of the work.
+/// Agglomerative clustering (Walter, Bala, Kulkarni, Pingali, RT 2008): starts from single primitives and
+/// repeatedly joins the two clusters whose common box has the least area. This is the approximate form that
+/// scales (AAC; Gu, He, Fatahalian, Blelloch, HPG 2013): a recursion along the bits of a Morton curve, in
+/// which a part of n primitives hands only f(n) = δ^(½+ε)/2 · n^(½−ε) clusters up, so that only near clusters
+/// are ever compared. δ = 20 and ε = 0.1 are the paper's high-quality setting. O(n) but for the sort. The top
+/// joins run in one thread; they are a small part of the work.
 ///
-/// Of pairs that are equally near, the smaller one is joined first, so that clusters all alike make no chain.
-/// Boxes that nest do; `Collapse` cuts chains where they grow too deep.
+/// Of equally near pairs the smaller one is joined first, so that clusters that are all alike form no chain.
+/// Nested boxes do form chains; `Collapse` cuts a chain where it grows too deep.
 #pragma once
 
 #include <cmath>
@@ -15,13 +16,14 @@
 
 namespace hedgerow {
 
-/// A list of clusters and the nearest of each. O(count²) while few clusters share their nearest, as in space.
+/// A list of clusters and the nearest neighbour of each. O(count²) while few clusters share their nearest
+/// neighbour, as in space.
 template <std::floating_point T, int D>
 class NearestPairs {
 public:
     explicit NearestPairs(std::vector<Cluster<T>>& clusters) : clusters_(clusters) {}
 
-    /// Joins the nearest two until `target` are left.
+    /// Joins the nearest two clusters until `target` are left.
     void reduce(std::size_t target, JoinedTree<T, D>& tree) {
         if (clusters_.size() <= target) return;
         find_all();
@@ -36,7 +38,8 @@ private:
         T distance = std::numeric_limits<T>::infinity();
         std::size_t index = 0, differs = 0;
 
-        /// Of equal ones that whose number differs in the lowest bits, so that clusters all alike pair up.
+        /// Keeps the nearer neighbour. Of equally near ones it keeps the one whose index differs from `own`
+        /// in the lowest bits, so that clusters that are all alike pair up.
         void consider(T d, std::size_t i, std::size_t own) {
             if (d < distance || (d == distance && (i ^ own) < differs)) *this = {d, i, i ^ own};
         }
@@ -69,15 +72,18 @@ private:
             if (j != i) nearest_[i].consider(between(i, j), j, i);
     }
 
-    /// The joined takes a's place in the list, the last b's. Boxes only grow, so that the joined is as near
-    /// to another as a or b was, or farther: then the other looks anew.
+    /// Joins clusters a and b, a < b. The new cluster takes a's place in the list, and the last cluster takes
+    /// b's. Boxes only grow, so the new cluster is as near to another one as a or b was, or farther. If it is
+    /// farther, that other cluster searches for its nearest neighbour again.
     void join(std::size_t a, std::size_t b, JoinedTree<T, D>& tree) {
+        // Put the new cluster in a's place and the last one in b's.
         clusters_[a] = tree.join(clusters_[a], clusters_[b]);
         const std::size_t last = clusters_.size() - 1;
         clusters_[b] = clusters_[last];
         nearest_[b] = nearest_[last];
         clusters_.pop_back();
         nearest_.pop_back();
+        // Compare each other cluster with the new one, and correct the indices of clusters that moved.
         nearest_[a] = {};
         lost_.clear();
         for (std::size_t i = 0; i < last; ++i) {
@@ -92,6 +98,7 @@ private:
                 near.index = b;
             }
         }
+        // Search again for each cluster whose nearest neighbour is farther now.
         for (const std::size_t i : lost_) find(i);
     }
 
@@ -106,7 +113,7 @@ public:
     Agglomerative(std::span<const Reference<T, D>> references, Executor& executor)
         : tree_(references, executor), curve_(tree_.order()), executor_(executor) {}
 
-    /// Of at least one primitive.
+    /// The tree over all primitives, of which there must be at least one.
     const JoinedTree<T, D>& build() {
         auto clusters = gather(curve_.root());
         NearestPairs<T, D>(clusters).reduce(1, tree_);
@@ -118,13 +125,16 @@ private:
     using Part = typename MortonTree<T, D>::Node;
     static constexpr double few = 20, epsilon = 0.1;
 
+    /// f(n) clusters: how many a part of n primitives hands up.
     static std::size_t handed_up(std::uint32_t n) {
         return static_cast<std::size_t>(
             std::max(1.0, std::pow(few, 0.5 + epsilon) / 2 * std::pow(n, 0.5 - epsilon)));
     }
+    /// The clusters that a part of the curve hands up.
     std::vector<Cluster<T>> gather(Part part) {
         const std::uint32_t size = curve_.size(part);
         std::vector<Cluster<T>> clusters;
+        // Gather single primitives from a small part, and clusters from the halves of a large one.
         if (size <= few) {
             for (std::uint32_t i = part.first; i < part.last; ++i) clusters.push_back(tree_.cluster(i));
         } else {
@@ -139,6 +149,7 @@ private:
             }
             clusters.insert(clusters.end(), second.begin(), second.end());
         }
+        // Join the nearest of them.
         NearestPairs<T, D>(clusters).reduce(handed_up(size), tree_);
         return clusters;
     }

@@ -1,5 +1,6 @@
-/// Binned SAH (Wald, RT 2007): each axis of the centers is cut into equal bins, and only the borders of bins
-/// are considered. O(n) a level. The number of bins shrinks with the node, as in Embree: min(bins, 4 + n/20).
+/// Binned SAH (Wald, RT 2007): cuts the box of the centers into equal bins along each axis and considers
+/// splits only at the borders of bins. O(n) a level. The number of bins shrinks with the node, as in Embree:
+/// min(bins, 4 + n/20).
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,7 @@ public:
         Bins bins;
         const Binning binning = fill(bins, range);
         const Best best = cheapest(bins, binning.count, range.size());
-        if (best.axis < 0 || cheaper_as_leaf(range, best.cost)) return false;  // −1: all centers equal
+        if (best.axis < 0 || cheaper_as_leaf(range, best.cost)) return false;  // −1: all in one bin
         divide(range, binning, bins, best, left, right);
         return true;
     }
@@ -46,7 +47,7 @@ protected:
     struct Binning {
         int count;
         Lanes<T> low, scale, last;
-        T low_of[4], scale_of[4] = {};  // the same, by axis
+        T low_of[4], scale_of[4] = {};  // `low` and `scale` by axis
 
         Binning(const Range<T, D>& range, int most)
             : count(static_cast<int>(
@@ -63,8 +64,8 @@ protected:
             scale = Lanes<T>::load(s);
             last = Lanes<T>::all(T(count - 1));
         }
-        /// Whether a reference lies in a bin before `border`. Comparing places is comparing bins: a border is
-        /// a whole number.
+        /// A predicate: whether a reference lies in a bin before `border`. It compares without rounding to a
+        /// bin, since a border is a whole number.
         auto before(int axis, int border) const {
             return [axis, low_at = low_of[axis], scale_at = scale_of[axis], end = static_cast<T>(border)](
                        const auto& r) { return product(r.center2(axis) - low_at, scale_at) < end; };
@@ -107,14 +108,15 @@ protected:
             (b < best.border ? boxes.first : boxes.second).expand(bins.of[best.axis][b].box);
         return boxes;
     }
-    /// Whether a split of that cost (of the sum of area·count) is not worth its node.
+    /// Whether a leaf costs no more than a split with `cost` as its sum of area·count over both sides.
     bool cheaper_as_leaf(const Range<T, D>& range, double cost) const {
         const double area = static_cast<double>(range.box.template half_area<D>());
         return options_.makes_leaf(range.size(), area,
                                    options_.traversal_cost * area + options_.intersection_cost * cost);
     }
 
-    /// The sum of area·count over both sides, at its least. Of equal costs the first axis and border.
+    /// The split with the least sum of area·count over both sides. Of equal ones it is the first, by axis and
+    /// then by border.
     static Best cheapest(const Bins& bins, int count, std::uint32_t total) {
         Best best;
         for (int k = 0; k < D; ++k) sweep(bins.of[k], count, total, k, best);
@@ -126,6 +128,7 @@ protected:
 
 private:
     static void sweep(const Bin* bins, int count, std::uint32_t total, int axis, Best& best) {
+        // Compute the cost of the right side of each border, from the last border to the first.
         double right_cost[max_bins];
         auto box = LaneBox<T>::none();
         std::uint32_t right = 0;
@@ -134,6 +137,7 @@ private:
             right += bins[b].count;
             right_cost[b] = cost(box, right);
         }
+        // Add the cost of the left side, and skip borders that have an empty side.
         box = LaneBox<T>::none();
         std::uint32_t left = 0;
         for (int b = 1; b < count; ++b) {

@@ -1,5 +1,5 @@
-/// From a tree with a primitive a leaf, however it was found, to a BuildTree: subtrees become leaves where
-/// that is cheaper, and no leaf lies too deep.
+/// Turns any tree with one primitive a leaf into a BuildTree: subtrees become leaves where that is cheaper,
+/// and no leaf lies too deep.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace hedgerow {
 
-/// A binary tree over `size(root())` primitives, one a leaf.
+/// A binary tree over `size(root())` primitives, one primitive a leaf.
 template <class S, class T>
 concept FullTree = requires(const S& s, typename S::Node n) {
     { s.root() } -> std::same_as<typename S::Node>;
@@ -20,7 +20,7 @@ concept FullTree = requires(const S& s, typename S::Node n) {
     { s.box(n) } -> std::convertible_to<LaneBox<T>>;                                   // where size(n) == 1
 };
 
-/// A subtree's leaves anew, in their order, by halves: the least depth there is.
+/// A new tree over the leaves of a subtree, in their order, halved by count: the least depth there is.
 template <class Tree>
 class Halves {
 public:
@@ -61,15 +61,16 @@ template <class Tree>
 inline constexpr bool is_halved<Halves<Tree>> = true;
 
 /// Bottom-up collapse: a subtree of at most `max_leaf_size` primitives becomes a leaf where that costs no
-/// more by the SAH. O(n), parallel over subtrees. Where a node lies so deep that only halving its primitives
-/// by count keeps the bound on depth, they are halved. A subtree of n primitives owns 2n − 1 places in the
-/// list of nodes and n among the items, so the result is the same for any number of threads.
+/// more by the SAH. O(n), parallel over subtrees. A node so deep that only halving by count keeps the bound
+/// on depth has its primitives halved. A subtree of n primitives owns 2n − 1 places in the list of nodes and
+/// n in the list of items, so the result is the same for any number of threads.
 template <std::floating_point T, int D>
 class Collapse {
 public:
     Collapse(const SahOptions& options, Executor& executor) : options_(options), executor_(executor) {}
 
-    /// `cost` becomes the tree's SAH cost times the root's area.
+    /// The collapsed tree over n primitives. `cost`, if given, is set to its SAH cost times the root's half
+    /// area.
     template <FullTree<T> Tree>
     BuildTree<T, D> build(const Tree& tree, std::uint32_t n, double* cost = nullptr) {
         if (n == 0) return {};
@@ -85,23 +86,26 @@ private:
     struct Grown {
         LaneBox<T> box;
         double cost;
-        std::uint32_t leaves, end;  // end: the first node place after those in use
+        std::uint32_t leaves, end;  // end: the first place after the nodes in use
     };
 
-    /// The subtree of n, its items from `first`, its nodes from `at`.
+    /// Writes the subtree of `n`, its items from `first` on and its nodes from `at` on.
     template <class Tree>
     Grown grow(const Tree& tree, typename Tree::Node n, std::uint32_t first, std::uint32_t at, int depth) {
         const std::uint32_t size = tree.size(n);
-        if (size == 1 || (size <= 8 && options_.always_leaf(size))) {  // 8: a bound on the recursion of fill
+        // Make a leaf where that is the cheapest whatever the boxes are.
+        if (size == 1 || (size <= 8 && options_.always_leaf(size))) {  // 8 bounds the recursion of `fill`
             auto box = LaneBox<T>::none();
             fill(tree, n, first, box);
             return leaf(box, area(box), first, size, at);
         }
+        // Halve the primitives by count where the tree would grow too deep otherwise.
         if constexpr (!is_halved<Tree>)
             if (depth + static_cast<int>(std::bit_width(size)) >= bvh_max_depth) {
                 const Halves<Tree> halves(tree, n);
                 return grow(halves, halves.root(), first, at, depth);
             }
+        // Write both children, as two tasks if the subtree is large, and join or collapse them.
         const auto [l, r] = tree.children(n);
         const std::uint32_t on_left = tree.size(l);
         Grown left, right;

@@ -6,15 +6,16 @@
 
 namespace hedgerow {
 
-/// A subtree on its way up: its node, and where a join of it may be kept. A join of a and b takes b's place
-/// and leaves a's to the joined, so that each finds one, whatever the order of joins and whoever makes them.
+/// A subtree that is not joined yet: its box, its node, and a place where a join of it may be stored. The
+/// join of a and b is stored in b's place, and the new cluster keeps a's. So each join finds a place,
+/// whatever the order of joins and whichever thread makes them.
 template <std::floating_point T>
 struct Cluster {
     LaneBox<T> box;
     std::uint32_t node, place;
 };
 
-/// How far apart two clusters are: the area of the box around both (Walter, Bala, Kulkarni, Pingali, RT
+/// The distance of two clusters: the half area of the box around both (Walter, Bala, Kulkarni, Pingali, RT
 /// 2008).
 template <int D, std::floating_point T>
 T distance(const LaneBox<T>& a, const LaneBox<T>& b) {
@@ -23,8 +24,8 @@ T distance(const LaneBox<T>& a, const LaneBox<T>& b) {
     return both.template half_area<D>();
 }
 
-/// Nodes 0 to n − 1 are the primitives in Morton order, the next n the places of joins, one of which stays
-/// free.
+/// Nodes 0 to n − 1 are the primitives in Morton order. The next n nodes are places of joins, one of which
+/// stays unused.
 template <std::floating_point T, int D>
 class JoinedTree {
 public:

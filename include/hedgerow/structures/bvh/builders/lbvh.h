@@ -1,9 +1,9 @@
-/// Linear BVH (Lauterbach, Garland, Sengupta, Luebke, Manocha, EG 2009): primitives along a Morton curve,
-/// each node split where the highest bit changes in which its codes differ. The split is found by bisection
-/// from the root down, as by Karras (HPG 2012) from every node at once; boxes are gathered on the way back.
+/// Linear BVH (Lauterbach, Garland, Sengupta, Luebke, Manocha, EG 2009): sorts primitives along a Morton
+/// curve and splits each node at the highest bit in which its codes differ. Bisection finds the split, from
+/// the root down; Karras (HPG 2012) does that from every node at once. Boxes are gathered on the way back up.
 ///
-/// O(n), most of it the sort: the fastest build here, and the tree knows nothing of the sizes of primitives.
-/// Primitives of one cell of the curve are halved by count.
+/// O(n), most of it the sort: the fastest build here. The tree takes no account of the sizes of primitives.
+/// Primitives in one cell of the curve are halved by count.
 #pragma once
 
 #include <hedgerow/structures/bvh/builders/collapse.h>
@@ -11,7 +11,7 @@
 
 namespace hedgerow {
 
-/// The tree that a Morton order implies; a node is a part of the curve.
+/// The tree that a Morton order implies. A node is a stretch of the curve.
 template <std::floating_point T, int D>
 class MortonTree {
 public:
@@ -34,7 +34,8 @@ public:
     LaneBox<T> box(Node n) const { return order_.reference(n.first).lanes(); }
 
 private:
-    /// References lie in their own order, and the recursion would wait for each.
+    /// Subtrees of at most so many references are prefetched whole: references lie in their own order, not in
+    /// the curve's, and the recursion would wait for each.
     static constexpr std::uint32_t at_once = 32;
     void prefetch(Node n) const {
         for (std::uint32_t i = n.first; i < n.last; ++i) order_.prefetch(i);

@@ -1,5 +1,5 @@
-/// The order of primitives along a Morton curve (Morton 1966): what lies near in it mostly lies near in
-/// space.
+/// The order of primitives along a Morton curve (Morton 1966): primitives near each other on the curve are
+/// mostly near each other in space.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 namespace hedgerow {
 
 /// Cells along the curve: 21 bits an axis in 3D, 31 in 2D, the first axis' highest. Cells are cubes over the
-/// box of the centers: along a short side of it there are fewer, and no bit is spent on what does not differ.
-/// A box without extent, or too narrow to divide, is one cell.
+/// box of the centers. A short side of the box has fewer cells: its leading bits are 0 in every code, and no
+/// split is spent on them. A box without extent, or too narrow to divide, is one cell.
 template <std::floating_point T, int D>
 class MortonCells {
 public:
@@ -35,7 +35,7 @@ public:
     }
 
 private:
-    /// Bit i to bit D·i.
+    /// Moves bit i to bit D·i.
     static std::uint64_t spread(std::uint64_t x) {
         if constexpr (D == 3) {
             x = (x | x << 32) & 0x001F00000000FFFFu;
@@ -70,13 +70,13 @@ LaneBox<T> box_of_centers2(std::span<const Reference<T, D>> references, Executor
     return all;
 }
 
-/// References in the order of the curve; those of one cell in their own. O(n): a key is what fits of a code
-/// above the reference's place, and is sorted by the code's first 33 bits by radix; the few that are still
-/// alike, by comparing whole codes.
+/// References in the order of the curve; those of one cell keep their own order. A key has the reference's
+/// place in its low bits and as much of its code as fits above. Keys are sorted by the first 33 bits of the
+/// code by radix, in O(n). The few keys that are still alike are sorted by comparing whole codes.
 template <std::floating_point T, int D>
 class MortonOrder {
 public:
-    /// Looks at the references for as long as it lives.
+    /// Keeps a view of the references, which must outlive it.
     MortonOrder(std::span<const Reference<T, D>> references, Executor& executor)
         : references_(references),
           cells_(box_of_centers2(references, executor)),
@@ -97,8 +97,8 @@ public:
     const Reference<T, D>& reference(std::size_t i) const { return references_[place(keys_[i])]; }
     void prefetch(std::size_t i) const { __builtin_prefetch(&reference(i)); }
 
-    /// Where the part [first, last) of at least two divides: the first of those in whose codes the highest
-    /// bit is set that differs in it; the middle, where none does.
+    /// Where the part [first, last), of at least two elements, divides: at the first element whose code has
+    /// the highest differing bit set; in the middle if all codes are equal.
     std::size_t split(std::size_t first, std::size_t last) const {
         const std::uint64_t differing = keys_[first] ^ keys_[last - 1];
         if (differing >> place_bits_ != 0)
@@ -114,12 +114,13 @@ private:
     std::size_t place(std::uint64_t key) const { return key & ((std::uint64_t(1) << place_bits_) - 1); }
     std::uint64_t code_of(std::uint64_t key) const { return cells_.code(references_[place(key)].center2()); }
 
-    /// Bisection without branches: which way it goes cannot be guessed.
+    /// The first element of [first, last) with `bit` set, where the first has it clear and the last has it
+    /// set. Bisection without branches, since a processor cannot predict its direction.
     template <class Bits>
     static std::size_t first_set(std::size_t first, std::size_t last, std::uint64_t bit, Bits bits) {
         std::size_t clear = first;
         for (std::size_t step = std::bit_floor(last - first - 1); step > 0; step /= 2) {
-            const std::size_t next = clear + step < last ? clear + step : last - 1;  // the last has it set
+            const std::size_t next = clear + step < last ? clear + step : last - 1;  // the last has the bit
             clear = (bits(next) & bit) == 0 ? next : clear;
         }
         return clear + 1;
@@ -133,7 +134,8 @@ private:
             return x != y ? x < y : a < b;
         });
     }
-    /// Each block sorts the runs that begin in it. Where they do is found before any is sorted.
+    /// Each block sorts the runs that begin in it. The first run of each block is found before any run is
+    /// sorted, so that no block reads keys that another one moves.
     void sort_rest(Executor& executor) {
         if (size() <= few) return sort_run(0, size());
         const Blocks blocks{size(), 16384};

@@ -1,12 +1,13 @@
-/// Parallel locally-ordered clustering (Meister and Bittner, TVCG 2018): clusters lie along a Morton curve,
-/// each looks at `radius` neighbours to either side for the one with which its box would be least, and those
-/// that choose each other are joined; again, until one is left. Each pair is looked at once, as in PLOC++
-/// (Benthin, Drabinski, Tessari, Dittebrandt, 2022).
+/// Parallel locally-ordered clustering (Meister and Bittner, TVCG 2018): clusters lie along a Morton curve.
+/// Each cluster chooses, of `radius` neighbours to either side, the one with which its common box is least,
+/// and two clusters that choose each other are joined. Rounds repeat until one cluster is left. Within a
+/// block the distance of each pair is computed once, as in PLOC++ (Benthin, Drabinski, Tessari, Dittebrandt,
+/// 2022).
 ///
-/// O(n · radius) in all where rounds join a part of the clusters, as they do of any usual scene. Where nearly
-/// all would choose one that chose another (boxes that nest), neighbours on the curve are joined two by two
-/// instead, so that rounds stay O(log n). A larger radius costs time and brings little beyond 10: on the
-/// scenes of docs/design/003-builders.md 16 lowers the SAH cost by 1% more.
+/// O(n · radius) in all where each round joins a share of the clusters, as in any usual scene. Where nearly
+/// all clusters would choose one that chose another (nested boxes), neighbours on the curve are joined two by
+/// two instead, so that there are O(log n) rounds. A larger radius costs time and
+/// brings nothing beyond 10 (docs/design/003-builders.md).
 #pragma once
 
 #include <hedgerow/structures/bvh/builders/joined.h>
@@ -27,7 +28,7 @@ public:
           next_(count_),
           choice_(count_) {}
 
-    /// Of at least one primitive.
+    /// The tree over all primitives, of which there must be at least one.
     const JoinedTree<T, D>& build() {
         executor_.for_each_piece(count_, 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) clusters_[i] = tree_.cluster(i);
@@ -43,9 +44,11 @@ private:
 
     void round() {
         const Blocks blocks{count_, block};
+        // Let each cluster choose its nearest neighbour.
         blocks.each(executor_, [&](std::size_t, std::size_t begin, std::size_t end) { choose(begin, end); });
         std::vector<std::uint32_t> before(blocks.number());
         std::uint32_t joins = count_joins(blocks, before);
+        // Pair neighbours on the curve if the choices join too few clusters.
         if (joins < count_ / 16 && count_ > few) {
             for (std::uint32_t i = 0; i < count_; ++i) choice_[i] = (i ^ 1u) < count_ ? i ^ 1u : i;
             joins = count_joins(blocks, before);
@@ -57,21 +60,23 @@ private:
         clusters_.swap(next_);
     }
 
-    /// Of equally near neighbours i prefers the one whose number differs from its own in the lowest bits. So
-    /// clusters that are all alike pair up, and some two always choose each other.
+    /// Sets the choice of each cluster i in [begin, end) to its nearest neighbour. Of equally near ones it is
+    /// the one whose index differs from i in the lowest bits. So clusters that are all alike pair up, and
+    /// some two clusters always choose each other.
     void choose(std::size_t begin, std::size_t end) {
         T best[block];
         std::size_t differs[block];
         std::fill_n(best, end - begin, std::numeric_limits<T>::infinity());
         std::fill_n(differs, end - begin, std::numeric_limits<std::size_t>::max());
-        const auto consider = [&](std::size_t i, std::size_t bits,
-                                  T d) {  // without branches: none is guessed
+        // Keep the nearer neighbour, without branches, which could not be predicted.
+        const auto consider = [&](std::size_t i, std::size_t bits, T d) {
             T& least = best[i - begin];
             std::size_t& with = differs[i - begin];
             const bool nearer = (d < least) | ((d == least) & (bits < with));
             least = nearer ? d : least;
             with = nearer ? bits : with;
         };
+        // Compute the distance of each pair once, for whichever of the two are in the block.
         for (std::size_t i = begin - std::min(begin, radius_); i < end; ++i) {
             const LaneBox<T> box = clusters_[i].box;
             const std::size_t last = std::min(count_, i + radius_ + 1);
@@ -81,6 +86,7 @@ private:
                 if (j < end) consider(j, i ^ j, d);
             }
         }
+        // Turn the bits in which indices differ back into indices.
         for (std::size_t i = begin; i < end; ++i)
             choice_[i] = static_cast<std::uint32_t>(i ^ differs[i - begin]);
     }
@@ -89,7 +95,8 @@ private:
 
     bool joins_into_earlier(std::size_t i) const { return choice_[i] < i && mutual(i); }
 
-    /// Fills in how many clusters before each block are joined into an earlier one, and returns how many are.
+    /// Sets before[b] to the number of clusters before block b that are joined into an earlier one, and
+    /// returns the number in all blocks.
     std::uint32_t count_joins(const Blocks& blocks, std::vector<std::uint32_t>& before) {
         blocks.each(executor_, [&](std::size_t b, std::size_t begin, std::size_t end) {
             before[b] = 0;

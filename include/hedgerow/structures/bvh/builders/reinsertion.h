@@ -1,13 +1,13 @@
 /// Improvement by reinsertion (Bittner, Hapala, Havran, CGF 2013), in batches that are searched in parallel
-/// (Meister and Bittner, EG 2018): subtrees are taken out and put beside the node where the areas of all
-/// inner nodes sum up to least.
+/// (Meister and Bittner, EG 2018): a subtree is taken out and inserted beside the node for which the areas of
+/// all inner nodes have the least sum.
 ///
-/// A pass looks for the best place of the largest three tenths of the nodes, by branch and bound from each
-/// node's own place upward, then moves those that gain, greatest gain first, unless an earlier move touched
-/// the same nodes. Searches see the tree as it was before the pass and moves are made by one thread in a
-/// fixed order, so that the result is the same for any number of threads. O(n log n) a pass, as is observed.
-/// The result never costs more than the tree that was given, by the SAH. Left out: Bittner's order by how
-/// badly a node fits (sum, minimum and area of its children).
+/// A pass searches the best place for each of the largest three tenths of the nodes, by branch and bound from
+/// the node's own place upward. Then it makes the moves that gain, greatest gain first, and skips a move if
+/// an earlier one touched the same nodes. Searches see the tree as it was before the pass, and one thread
+/// makes the moves in a fixed order, so the result is the same for any number of threads. O(n log n) a pass,
+/// as is observed. By the SAH the result never costs more than the given tree. Left out: Bittner's order by
+/// how badly a node fits (sum, minimum and area of its children).
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ public:
     using Node = std::uint32_t;
     static constexpr Node none = 0xFFFFFFFFu;
 
-    /// Of a tree of at least one primitive, one a leaf.
+    /// A copy of a tree of at least one primitive, one primitive a leaf.
     explicit MovableTree(const BuildTree<T, D>& tree) {
         const std::size_t count = 2 * tree.items.size() - 1;
         boxes_.reserve(count);
@@ -53,8 +53,8 @@ public:
         return n == top;
     }
 
-    /// Takes `n` (neither the root nor its child) out and makes it the sibling of `to`, which is not below
-    /// it.
+    /// Takes out `n`, which is neither the root nor a child of it, and inserts it as the sibling of `to`,
+    /// which is not below `n`.
     void move(Node n, Node to) {
         const Node joint = parent(n), rest = sibling(n), above = parent(joint);
         replace(above, joint, rest);
@@ -68,7 +68,7 @@ public:
 
 private:
     struct Links {
-        Node parent, left, right;  // of a leaf `left` is none and `right` its primitive
+        Node parent, left, right;  // a leaf has none in `left` and its primitive in `right`
         std::uint32_t size;
     };
 
@@ -108,7 +108,7 @@ class Reinsertion {
 public:
     Reinsertion(MovableTree<T, D>& tree, Executor& executor) : tree_(tree), executor_(executor) {}
 
-    /// At most so many passes; none after one that gained less than `least_gain`.
+    /// Makes at most `passes` passes, and stops after one that gains no more than `least_gain` of the cost.
     void improve(int passes) {
         double cost = inner_area();
         for (int left = passes; left > 0; --left) {
@@ -119,15 +119,16 @@ public:
             cost = now;
         }
     }
-    /// What the executor is told of so many passes, in primitives.
+    /// The work of so many passes, in primitives, as `Executor::expect` counts it.
     std::size_t work(int passes) const {
         return static_cast<std::size_t>(passes) * work_a_search * searches(tree_.node_count());
     }
 
 private:
     using Node = typename MovableTree<T, D>::Node;
-    static constexpr double share = 0.3, least_gain = 0.005;  // a pass, of nodes and of cost
-    static constexpr std::size_t work_a_search = 4;           // primitives split in the time of a search
+    // Per pass: the share of the nodes that is searched, and the least gain as a share of the cost.
+    static constexpr double share = 0.3, least_gain = 0.005;
+    static constexpr std::size_t work_a_search = 4;  // primitives that are split in the time of one search
 
     struct Move {
         Node node = 0, to = 0;
@@ -144,23 +145,26 @@ private:
         return sum;
     }
     void pass() {
+        // Search the best place of each large node in parallel.
         std::vector<Move> moves = largest();
         executor_.for_each_piece(moves.size(), 64, [&](std::size_t begin, std::size_t end) {
             std::vector<Open> open;
             for (std::size_t i = begin; i < end; ++i) moves[i] = best_move(moves[i].node, open);
             executor_.advance(work_a_search * (end - begin));
         });
+        // Sort the moves that gain, the greatest gain first and equal gains by node.
         std::erase_if(moves, [](const Move& m) { return !(m.gain > 0); });
         sort_watched(moves.begin(), moves.end(), executor_, [](const Move& a, const Move& b) {
             return a.gain != b.gain ? a.gain > b.gain : a.node < b.node;
         });
+        // Make the moves one after another.
         touched_.assign(tree_.node_count(), std::uint8_t(0));
         for (std::size_t i = 0; i < moves.size(); ++i) {
             if (i % 1024 == 0) executor_.look();
             apply(moves[i]);
         }
     }
-    /// The nodes of largest area that can be moved, in the order of their numbers.
+    /// The movable nodes of largest area, in the order of their numbers.
     std::vector<Move> largest() const {
         std::vector<std::pair<double, Node>> all;
         for (Node n = 0; n < tree_.node_count(); ++n)
@@ -174,13 +178,14 @@ private:
         return moves;
     }
 
-    /// A subtree in which the place may be, and what has been gained on the way to it.
+    /// A subtree that may contain the new place, and the gain on the way to it.
     struct Open {
         double gain;
         Node top;
     };
-    /// Upward from the node's place the other child of each ancestor is searched. Its parent is gained, which
-    /// goes, and by how much the ancestors shrink below the one that the old and the new place share.
+    /// The best move of a node: searches the other child of each ancestor, from the node's place upward. The
+    /// gain is the area of the node's parent, which the move removes, and the area by which ancestors shrink:
+    /// those that are not above the new place.
     Move best_move(Node node, std::vector<Open>& open) const {
         Move best{node, node, 0};
         double gain = tree_.area(tree_.parent(node));
@@ -196,7 +201,8 @@ private:
         }
         return best;
     }
-    /// Branch and bound: the new joint is no smaller than the node, and what is passed on the way down grows.
+    /// Branch and bound: the new parent is no smaller than the moved node, and the nodes passed on the way
+    /// down only grow, so no place in a subtree gains more than `gain - own`.
     void search(std::vector<Open>& open, Move& best) const {
         const double own = tree_.area(best.node);
         while (!open.empty()) {
@@ -215,7 +221,8 @@ private:
             open.push_back({below, r});
         }
     }
-    /// Not if an earlier move changed the surroundings of either place, or brought `to` below the node.
+    /// Makes a move, unless an earlier one changed the surroundings of either place or brought `to` below the
+    /// node.
     void apply(const Move& m) {
         const Node changed[] = {m.node, tree_.sibling(m.node), tree_.parent(m.node), m.to,
                                 tree_.parent(m.to)};
@@ -232,7 +239,8 @@ private:
     std::vector<std::uint8_t> touched_;
 };
 
-/// `tree`, which has a primitive a leaf, after at most so many passes; its leaves are made last.
+/// `tree`, which must have one primitive a leaf, after at most `passes` passes. Leaves of several primitives
+/// are made last. Without a gain it is the collapse of `tree` itself.
 template <std::floating_point T, int D>
 BuildTree<T, D> reinserted(const BuildTree<T, D>& tree, const SahOptions& options, int passes,
                            Executor& executor) {

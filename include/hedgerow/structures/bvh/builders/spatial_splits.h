@@ -1,6 +1,6 @@
 /// SBVH (Stich, Friedrich, Dietrich, Spatial splits in bounding volume hierarchies, HPG 2009): where the two
-/// sides of the best split of objects overlap much, a plane may cut the primitives themselves, each side
-/// keeping the bounds of its part.
+/// sides of the best split of objects overlap much, a plane may cut the primitives themselves. Each side then
+/// stores the bounds of its parts.
 #pragma once
 
 #include <hedgerow/structures/bvh/builders/binned.h>
@@ -8,23 +8,23 @@
 
 namespace hedgerow {
 
-/// A primitive cut by a plane stands on both sides, or, where that costs less, whole on one (the paper's
-/// unsplitting). Each range owns spare places for what it may duplicate, and passes them on to its children
-/// by their sizes, so that memory has a bound and the tree is the same however many threads build it.
+/// A primitive that a plane cuts is stored on both sides or, where that costs less, whole on one (the paper's
+/// unsplitting). Each range owns spare places for duplicates, and divides them between its children by their
+/// sizes. So memory has a bound, and the tree is the same however many threads build it.
 ///
-/// Where it pays: long or large triangles that boxes fit badly (a turned building). On scans, whose triangles
-/// are small beside their nodes, and on hair finer than the nodes above it, it hardly does
+/// Spatial splits pay for long or large triangles that boxes fit badly (a turned building). They hardly pay
+/// on scans, whose triangles are small beside their nodes, and on hair finer than the nodes above it
 /// (docs/design/003-builders.md).
 ///
-/// A part's bounds are enlarged by the margin of cells.h on every side, within the bounds of what it was cut
-/// from, so that the leaves of a primitive together hold every answer that lies on it.
+/// The bounds of a part are enlarged by the margin of cells.h on every side, within the bounds of the
+/// reference that was cut. So the leaves of a primitive together contain every answer that lies on it.
 template <std::floating_point T, int D>
 class SpatialSplitter : public BinnedSplitter<T, D> {
 public:
     using Base = BinnedSplitter<T, D>;
 
     /// `duplicates`: how many references may be added, as a share of the primitives. `overlap`: a plane is
-    /// only tried where the boxes of the best split of objects overlap by more than that share of the root's
+    /// tried only where the boxes of the best split of objects overlap by at least that share of the root's
     /// area (the paper's α).
     SpatialSplitter(CornersOf<T, D> corners, ReferenceList<T, D> references, const SahOptions& options,
                     double duplicates, double overlap)
@@ -50,8 +50,10 @@ public:
         const auto binning = this->fill(bins, range);
         const auto objects = this->cheapest(bins, binning.count, range.size());
         Plane plane;
+        // Try planes if there is room and the best split of objects overlaps much.
         if (range.room > 0 && overlap_of(bins, binning.count, objects) >= worth_a_plane_)
             plane = cheapest_plane(range);
+        // Make a leaf if that costs no more than the cheaper split; otherwise make that split.
         const double cost = std::min(objects.cost, plane.cost);
         if (!(cost < std::numeric_limits<double>::infinity()) || this->cheaper_as_leaf(range, cost))
             return false;
@@ -69,7 +71,8 @@ private:
         LaneBox<T> left = LaneBox<T>::none(), right = LaneBox<T>::none();
         std::uint32_t on_left = 0, on_right = 0;
     };
-    /// What lies between two planes across an axis: the parts there, and which primitives begin and end.
+    /// The space between two planes across an axis: the box of the parts in it, and how many primitives begin
+    /// and end there.
     struct Slab {
         LaneBox<T> box = LaneBox<T>::none();
         std::uint32_t begin = 0, end = 0;
@@ -83,7 +86,7 @@ private:
         return shared.empty() ? 0 : static_cast<double>(shared.half_area());
     }
 
-    /// The parts of a reference on the sides of a plane. Either may be empty.
+    /// The parts of a reference on the two sides of a plane. Either may be empty.
     std::pair<Reference<T, D>, Reference<T, D>> parts(const Reference<T, D>& r, int axis, T position) const {
         Box<T, D> low = r.box(), high = low;
         low.high[axis] = std::min(low.high[axis], position + margin_);
@@ -94,13 +97,15 @@ private:
         }
         return {{low, r.id()}, {high, r.id()}};
     }
-    /// Bounds of what is spanned by some corners on the sides of a plane: of the corners there, and of the
-    /// places where edges cross it. (Within a reference's own box that is all of its part, and seldom more.)
+    /// Bounds, on each side of a plane, of the simplex that the corners span: bounds of the corners on that
+    /// side and of the points where edges cross the plane. Their intersection with a reference's own box
+    /// contains all of its part, and seldom more.
     std::pair<Box<T, D>, Box<T, D>> cut_corners(
         const std::array<Vec<T, D>, static_cast<std::size_t>(D)>& corners, int axis, T position) const {
         std::pair<Box<T, D>, Box<T, D>> sides;
         auto& [low, high] = sides;
         for (std::size_t i = 0; i < corners.size(); ++i) {
+            // Add the corner to its side, and the crossing of the edge that begins there to both sides.
             const Vec<T, D>&p = corners[i], &q = corners[(i + 1) % corners.size()];
             if (p[axis] <= position) low.expand(p);
             if (p[axis] >= position) high.expand(p);
@@ -115,14 +120,17 @@ private:
         return sides;
     }
 
-    /// Of equal slabs along each axis the border of least cost that the room allows.
+    /// Cuts the range's box into equal slabs along each axis. Returns the border of least cost whose
+    /// duplicates the room allows.
     Plane cheapest_plane(const Range<T, D>& range) const {
         Plane best;
         const Box<T, D> box = range.box.template box<D>();
         const int count = std::min(most_slabs, 4 + static_cast<int>(std::min(range.size() / 20, 64u)));
         for (int axis = 0; axis < D; ++axis) {
+            // Skip an axis along which slabs would be no wider than 8 margins.
             const T width = (box.high[axis] - box.low[axis]) / T(count);
             if (!(width > 8 * margin_)) continue;
+            // Add the parts of all references to the slabs, then find the cheapest border.
             std::array<Slab, most_slabs> slabs;
             const auto border = [&](int i) { return box.low[axis] + product(T(i), width); };
             const auto slab = [&](T x) {
@@ -134,7 +142,7 @@ private:
         }
         return best;
     }
-    /// Chops a reference at each border that it crosses.
+    /// Chops a reference at each border that it crosses, and adds the parts to their slabs.
     template <class SlabOf, class Border>
     void enter(const Reference<T, D>& whole, int axis, SlabOf slab, Border border,
                std::array<Slab, most_slabs>& slabs) const {
@@ -154,12 +162,14 @@ private:
     template <class Border>
     static void sweep(const Range<T, D>& range, int axis, int count, Border border,
                       const std::array<Slab, most_slabs>& slabs, Plane& best) {
+        // Gather the box of the right side of each border, from the last border to the first.
         std::array<LaneBox<T>, most_slabs> right_box;
         auto box = LaneBox<T>::none();
         for (auto b = static_cast<std::size_t>(count); b-- > 1;) {
             box.expand(slabs[b].box);
             right_box[b] = box;
         }
+        // Compute the cost of each border, and skip those with an empty side or too many references.
         Plane p{0, axis, T(0), LaneBox<T>::none(), LaneBox<T>::none(), 0, range.size()};
         for (std::size_t b = 1; b < static_cast<std::size_t>(count); ++b) {
             p.left.expand(slabs[b - 1].box);
@@ -173,8 +183,8 @@ private:
         }
     }
 
-    /// Brings what lies wholly left before what lies wholly right, and straddlers to one side or both. False,
-    /// and the references are only reordered, if all end on one side.
+    /// Moves references that lie wholly left before those that lie wholly right, and straddlers to one side
+    /// or both. Returns false, with the references only reordered, if all end on one side.
     bool cut(const Range<T, D>& range, const Plane& plane, Range<T, D>& left, Range<T, D>& right) {
         auto& all = this->references_;
         std::uint32_t last = range.last, end = range.last;
@@ -182,9 +192,10 @@ private:
         for (std::uint32_t i = range.first; i < last;) {
             const Reference<T, D> r = all[i];
             int sides = sides_of(r, plane);
-            // Rounding may find more straddlers than the slabs had counted.
+            // By rounding there may be more straddlers than the slabs counted. Without room they stay whole.
             if (sides == both && end == range.first + range.capacity()) sides = only_left;
             if (sides == both) {
+                // Replace the reference by its left part, and append the right part behind all others.
                 const auto [low, high] = parts(r, plane.axis, plane.position);
                 left.add(low), right.add(high);
                 all[i++] = low;
@@ -207,6 +218,7 @@ private:
         const auto [low, high] = parts(r, plane.axis, plane.position);
         if (low.box().empty()) return only_right;
         if (high.box().empty()) return only_left;
+        // Compare the costs of a split with those of the whole reference on one side.
         const auto with = [&](LaneBox<T> box) {
             box.expand(r.lanes());
             return box;

@@ -1,5 +1,5 @@
-/// Full-sweep SAH (Wald, Boulos, Shirley, TOG 2007): centers are sorted once an axis, every border between
-/// two primitives is considered, and a stable partition keeps the orders sorted. O(n log n).
+/// Full-sweep SAH (Wald, Boulos, Shirley, TOG 2007): sorts the centers once along each axis, considers every
+/// border between two primitives, and keeps the orders sorted by a stable partition. O(n log n).
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ public:
         }
     }
 
-    /// In the order of the first axis, which the leaves keep.
+    /// A view of the references in the order along the first axis, which the items of leaves keep.
     struct Ordered {
         const SweepSplitter& all;
         std::size_t size() const { return all.references_.size(); }
@@ -106,7 +106,7 @@ private:
     ReferenceList<T, D> references_;
     std::vector<std::uint32_t> order_[D];
     std::vector<double> right_cost_;
-    std::vector<std::uint8_t> goes_left_;  // bytes, not bits: subtrees are split at the same time
+    std::vector<std::uint8_t> goes_left_;  // bytes, not bits: threads write theirs at the same time
     std::vector<std::uint32_t> scratch_;
 };
 

@@ -1,4 +1,4 @@
-/// Top-down building: one recursion, whatever decides the splits.
+/// Top-down building: one recursion for all splitters.
 #pragma once
 
 #include <bit>
@@ -12,7 +12,7 @@ template <std::floating_point T, int D>
 struct Range {
     std::uint32_t first = 0, last = 0;
     LaneBox<T> box = LaneBox<T>::none(), centers2 = LaneBox<T>::none();
-    /// Places behind its own for references that a split may add.
+    /// Spare places behind the range, for references that splits may add.
     std::uint32_t room = 0;
 
     std::uint32_t size() const { return last - first; }
@@ -30,11 +30,13 @@ struct Range {
     }
 };
 
-/// `Splitter` has `references()`, the `root()` over them, `split(range, left, right) -> bool` (false: make a
-/// leaf; otherwise it has arranged its references so that `left` comes before `right`) and `halve(range,
-/// left, right)`, which splits by count and always succeeds; one whose ranges have room also `share_room`.
-/// Subtrees over a capacity of n own 2n − 1 places in the list of nodes, so the tree is the same however many
-/// threads build it; small ones, of one thread each, fill theirs without gaps.
+/// Builds a tree from the root down. `Splitter` has `references()`; the `root()` over them; `split(range,
+/// left, right) -> bool`; and `halve(range, left, right)`, which splits by count and always succeeds. A
+/// `split` that returns true has arranged the references so that `left` comes before `right`. One that
+/// returns false makes a leaf, or halves where a leaf would be too large. A splitter whose ranges have room
+/// also has `share_room`. A subtree over a capacity of n owns 2n − 1 places in the list of nodes, so the tree
+/// is the same however many threads build it. A small subtree is built by one thread, and fills its places
+/// without gaps.
 template <std::floating_point T, int D, class Splitter>
 class TopDown {
 public:
@@ -55,8 +57,9 @@ public:
     }
 
 private:
-    /// Returns how many leaves there are below.
+    /// Writes the subtree of a range, its nodes from `at` on. Returns how many leaves it has.
     std::uint32_t grow(const Range<T, D>& range, std::uint32_t at, int depth) {
+        // Make a leaf if the range is not divided.
         BuildNode<T, D>& node = tree_.nodes[at];
         node.set(range.box.template box<D>());
         node.count = 0;
@@ -65,6 +68,7 @@ private:
             node.first = range.first, node.count = range.size();
             return 1;
         }
+        // Write both children, as two tasks if the range is large.
         node.left = at + 1;
         std::uint32_t on_left = 0, on_right = 0;
         if (range.size() > worth_a_task) {
@@ -73,7 +77,7 @@ private:
                            [&] { on_right = grow_task(right, node.right, depth + 1); });
         } else {
             on_left = grow(left, node.left, depth + 1);
-            node.right = at + 2 * on_left;  // so many nodes on the left, and one
+            node.right = at + 2 * on_left;  // behind 2 · on_left − 1 nodes
             on_right = grow(right, node.right, depth + 1);
         }
         return node.first = on_left + on_right;
@@ -92,6 +96,7 @@ private:
     }
     bool divide_references(const Range<T, D>& range, int depth, Range<T, D>& left, Range<T, D>& right) {
         if (range.size() == 1) return false;
+        // Only halve where the halvings that are still needed reach the bound on depth.
         const int halvings = static_cast<int>(std::bit_width(range.size()));
         const bool deep = depth + halvings >= bvh_max_depth;
         if (!deep && splitter_.split(range, left, right)) return true;
@@ -105,7 +110,7 @@ private:
             splitter_.share_room(range, left, right);
     }
 
-    /// Where ranges had room to spare, leaves lie apart.
+    /// Gathers the items leaf by leaf: unused room leaves gaps between leaves.
     void gather_items(BuildNode<T, D>& node) {
         if (node.count == 0)
             return gather_items(tree_.nodes[node.left]), gather_items(tree_.nodes[node.right]);
@@ -121,7 +126,7 @@ private:
     BuildTree<T, D> tree_;
 };
 
-/// What the splitters over one array of references share.
+/// The base of splitters that arrange one array of references.
 template <std::floating_point T, int D>
 class ReferenceSplitter {
 public:
@@ -131,7 +136,8 @@ public:
         return Range<T, D>::over(references_, 0, static_cast<std::uint32_t>(references_.size()));
     }
 
-    /// Equal counts, in the order of the centers on their widest axis; ids decide between equal ones.
+    /// Splits into equal counts, in the order of the centers along their widest axis. Ids order equal
+    /// centers.
     void halve(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
         const int axis = max_axis(range.centers2.template box<D>().extent());
         const std::uint32_t middle = range.first + range.size() / 2;
@@ -139,7 +145,7 @@ public:
         std::nth_element(at(range.first), at(middle), at(range.last), [axis](const auto& a, const auto& b) {
             return a.center2(axis) != b.center2(axis) ? a.center2(axis) < b.center2(axis) : a.id() < b.id();
         });
-        // Which of two halves an element falls in is certain; its place there is not until it is sorted.
+        // nth_element decides the half of each element, but not its place there: sorting decides the place.
         const auto by_id = [](const auto& a, const auto& b) { return a.id() < b.id(); };
         std::sort(at(range.first), at(middle), by_id);
         std::sort(at(middle), at(range.last), by_id);
@@ -147,8 +153,8 @@ public:
         right = Range<T, D>::over(references_, middle, range.last);
     }
 
-    /// What room a split has left goes to its sides by their sizes: the left side's lies before the right
-    /// side, which moves up.
+    /// Divides the room that a split has left between its sides by their sizes. The left side's room lies
+    /// before the right side, which moves up.
     void share_room(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
         const std::uint32_t taken = left.size() + right.size(), room = range.capacity() - taken;
         left.room = static_cast<std::uint32_t>(std::uint64_t(room) * left.size() / taken);
@@ -160,16 +166,19 @@ public:
     }
 
 protected:
-    /// Brings those that go left before the others and gathers both sides' centers, but not their boxes.
-    /// False if all are on one side. (Lomuto's partition, without a branch: which side a primitive goes to is
-    /// guessed wrong as often as not.)
+    /// Moves references that go left before the others. Computes the boxes of both sides' centers, but not of
+    /// their references. Returns false if all are on one side. (Lomuto's partition, without a branch: a
+    /// processor would predict the side of a primitive wrongly as often as not.)
     template <class GoesLeft>
     bool partition(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right, GoesLeft goes_left) {
         constexpr T infinity = std::numeric_limits<T>::infinity();
-        constexpr T apart[] = {infinity, T(0), infinity};  // from the left side, by whether it goes there
+        // A center is added with apart = 0 and skipped with infinity: apart[goes] is for the left side's box,
+        // and apart[1 + goes] for the right side's.
+        constexpr T apart[] = {infinity, T(0), infinity};
         left = {range.first, range.first};
         right = {range.last, range.last};
         auto on_left = left.centers2, on_right = right.centers2;
+        // Swap each reference to the border, and move the border on if the reference goes left.
         std::uint32_t border = range.first;
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             const Reference<T, D> r = references_[i];

@@ -1,7 +1,7 @@
 /// Volumes fitted around points: in double, dilated by a margin, and rounded outward to T.
 ///
-/// What is fitted need not be the least of its kind; that it holds the points is made sure of at the end, by
-/// heights and radii measured with the very normals, axes and centers that are kept.
+/// A fitted volume need not be the least of its kind. It contains the points, because its heights and radii
+/// are measured at the end, with the very normals, axes and centers that are stored.
 #pragma once
 
 #include <hedgerow/geometry/volumes.h>
@@ -10,7 +10,8 @@
 namespace hedgerow {
 
 namespace detail {
-/// How far points reach along a normal, outward by what measuring may err by and by the margin.
+/// The slab along a normal that contains the points, enlarged by the margin and by the rounding error of the
+/// heights.
 template <int D>
 Slab<D> slab_around(PointSpan<D> points, const Vec<double, D>& normal, double margin) {
     Slab<D> s{normal, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -25,9 +26,9 @@ Slab<D> slab_around(PointSpan<D> points, const Vec<double, D>& normal, double ma
     return s;
 }
 
-/// A center from which the points reach about as little as may be: towards the farthest point in ever shorter
-/// steps (Bădoiu and Clarkson 2003), from the middle of two points that lie far apart (Ritter 1990). With 32
-/// steps the radius is within some percent of the least.
+/// The center of a ball around the points that is about as small as possible. It starts from the middle of
+/// two points that lie far apart (Ritter 1990), and moves towards the farthest point in ever shorter steps
+/// (Bădoiu and Clarkson 2003). With 32 steps the radius is within some percent of the least.
 template <int D>
 Vec<double, D> center_of(PointSpan<D> points) {
     const Vec<double, D> a = farthest(points, points[0]), b = farthest(points, a);
@@ -42,7 +43,7 @@ Vec<double, D> center_of(PointSpan<D> points) {
 }
 }  // namespace detail
 
-/// Fits a volume around points, of which there is at least one. O(points).
+/// Fits a volume around at least one point. O(points).
 template <class V>
 struct VolumeFit;
 
@@ -53,13 +54,13 @@ struct VolumeFit<Sphere<T, D>> {
         s.center = Vec<T, D>(detail::center_of(points));
         const Vec<double, D> center(s.center);
         const double r = length(detail::farthest(points, center) - center);
-        const double sides = std::sqrt(static_cast<double>(D));  // margin is along each axis
+        const double sides = std::sqrt(static_cast<double>(D));  // the margin is along each axis
         s.radius = rounded_up<T>(r * (1 + 0x1p-45) + sides * margin + detail::negligible);
         return s;
     }
 };
 
-/// In a frame that was looked for, or in that of the coordinates if its box is no larger.
+/// A box in the frame of `frame_of_small_box`, or in that of the coordinates if its box there is no larger.
 template <class T, int D>
 struct VolumeFit<Obb<T, D>> {
     static Obb<T, D> around(PointSpan<D> points, double margin) {
@@ -95,7 +96,7 @@ struct VolumeFit<Kdop<T, D, k>> {
     }
 };
 
-/// Along whichever of the principal and the coordinates' axes makes the smallest surface.
+/// The cylinder of least surface along one of the principal axes or the coordinate axes.
 template <class T>
 struct VolumeFit<Cylinder<T>> {
     static Cylinder<T> around(PointSpan<3> points, double margin) {
@@ -113,13 +114,16 @@ struct VolumeFit<Cylinder<T>> {
 
 private:
     static Cylinder<T> along(PointSpan<3> points, const Vec3d& axis, double margin) {
+        // Measure the ends along the axis.
         Cylinder<T> c{};
         c.axis = Vec<T, 3>(axis);
         const auto s = detail::slab_around(points, Vec3d(c.axis), margin);
         c.low = rounded_down<T>(s.low), c.high = rounded_up<T>(s.high);
+        // Center the cylinder on the points as seen along its axis.
         std::vector<Vec3d> flat;
         for (const auto& p : points) flat.push_back(c.across(p - points[0]));
         c.point = Vec<T, 3>(points[0] + detail::center_of(PointSpan<3>(flat)));
+        // Measure the radius. 1.75 is above √3: the margin is along each coordinate axis.
         double r = 0, size = 0;
         for (const auto& p : points) {
             const Vec3d from = p - Vec3d(c.point);
@@ -131,9 +135,9 @@ private:
     }
 };
 
-/// The faces of the hull of the points that matter most: of more than `most_corners` the extreme ones in as
-/// many directions are taken. The faces are then pushed out until they hold all. Where the points have next
-/// to no volume, the faces are those of an oriented box.
+/// The faces of the convex hull of the points or, if there are more than `most_corners`, of the extreme
+/// points in that many directions. The faces are then pushed out until they contain all points. Where the
+/// points have next to no volume, the faces are those of an oriented box.
 template <class T>
 struct HullFit {
     static constexpr std::size_t most_corners = 64;
@@ -153,11 +157,13 @@ struct HullFit {
 
 private:
     static std::vector<Vec3d> copy(PointSpan<3> points) { return {points.begin(), points.end()}; }
-    /// In directions that a spiral spreads evenly over the sphere (Saff and Kuijlaars 1997).
+    /// The extreme points in directions that a spiral spreads evenly over the sphere (Saff and Kuijlaars
+    /// 1997).
     static std::vector<Vec3d> extreme(PointSpan<3> points) {
         std::vector<Vec3d> found;
         for (std::size_t i = 0; i < most_corners; ++i) {
             const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(most_corners);
+            // 2.3999… is the golden angle, π(3 − √5).
             const double turn = 2.399963229728653 * static_cast<double>(i), r = std::sqrt(1 - product(z, z));
             const Vec3d direction(r * std::cos(turn), r * std::sin(turn), z);
             found.push_back(*std::max_element(

@@ -1,4 +1,4 @@
-/// Orthonormal frames in which points reach little: principal axes, and those of a small oriented box.
+/// Orthonormal frames in which points have a small extent: principal axes, and those of a small oriented box.
 #pragma once
 
 #include <span>
@@ -24,8 +24,8 @@ namespace detail {
 template <int D>
 using Points = std::vector<Vec<double, D>>;
 
-/// The points moved and scaled so that their box is centred and its longest side is 1. All 0 where it is so
-/// short that its reciprocal overflows.
+/// The points moved and scaled so that their box is centred and its longest side is 1. All points become 0
+/// where that side is so short that its reciprocal might overflow.
 template <int D>
 Points<D> brought_to_one(PointSpan<D> points) {
     Box<double, D> box;
@@ -39,7 +39,7 @@ Points<D> brought_to_one(PointSpan<D> points) {
     return brought;
 }
 
-/// The eigenvectors of the covariance of points that are about 1 apart.
+/// The eigenvectors of the covariance of points whose extent is about 1.
 template <int D>
 Rows<D> axes_of_covariance(const Points<D>& points) {
     Vec<double, D> mean;
@@ -59,7 +59,7 @@ Vec<double, D> coordinates_in(const Rows<D>& frame, const Vec<double, D>& p) {
     for (int k = 0; k < D; ++k) x[k] = dot(frame[static_cast<std::size_t>(k)], p);
     return x;
 }
-/// How far the points reach along each axis.
+/// The extent of the points along each axis.
 template <int D>
 Vec<double, D> extent_in(const Rows<D>& frame, const Points<D>& points) {
     Box<double, D> box;
@@ -71,8 +71,8 @@ double half_area(const Vec<double, D>& extent) {
     return Box<double, D>{Vec<double, D>(), extent}.half_area();
 }
 
-/// The heights of a point along directions that are spread evenly: in space towards the faces, corners and
-/// edges of a cube.
+/// The heights of a point along evenly spread directions: in space, towards the faces, corners and edges of a
+/// cube.
 inline auto heights(const Vec3d& p) {
     const double x = p[0], y = p[1], z = p[2];
     return std::array{x,     y,     z,     x + y + z, x + y - z, x - y + z, x - y - z,
@@ -83,16 +83,18 @@ inline auto heights(const Vec2d& p) {
     return std::array{x, y, x + y, x - y, x + x + y, x + x - y, x + y + y, x - y - y};
 }
 
-/// The points of greatest and least height along each direction of `heights`, after the box of a frame was
-/// scaled to a cube: rods and plates are then sampled like balls.
+/// The points of greatest and least height along each direction of `heights`, after the points' box in a
+/// frame is scaled to a cube. The scaling samples rods and plates like balls.
 template <int D>
 Points<D> extreme(const Points<D>& points, Rows<D> frame) {
     constexpr std::size_t slabs = decltype(heights(Vec<double, D>()))().size();
     if (points.size() <= 2 * slabs) return points;
+    // Scale the frame, so that the points' box in it is a cube.
     const Vec<double, D> extent = extent_in(frame, points);
     for (int k = 0; k < D; ++k)
         if (extent[k] > 0)
             frame[static_cast<std::size_t>(k)] = frame[static_cast<std::size_t>(k)] / extent[k];
+    // Find the lowest and the highest point along each direction.
     struct Farthest {
         double low = std::numeric_limits<double>::infinity(), high = -low;
         std::size_t lowest = 0, highest = 0;
@@ -105,6 +107,7 @@ Points<D> extreme(const Points<D>& points, Rows<D> frame) {
             if (height[s] > f.high) f.high = height[s], f.highest = i;
         }
     }
+    // Return each of these points once, in the order given.
     std::vector<std::size_t> places;
     for (const Farthest& f : farthest) places.push_back(f.lowest), places.push_back(f.highest);
     std::sort(places.begin(), places.end());
@@ -127,9 +130,9 @@ template <int D>
 Vec<double, D> farthest(PointSpan<D> points, const Vec<double, D>& from) {
     return greatest<D>(points, [&](const Vec<double, D>& p) { return distance2(p, from); });
 }
-/// An axis along two points that lie far apart, and one across it and across two points that lie far apart as
-/// seen along it. The box of least volume often lies so: of a regular tetrahedron it has two opposite edges
-/// as diagonals of faces.
+/// A frame with one axis along two points that lie far apart, and one across that axis and across two points
+/// that lie far apart as seen along it. The box of least volume often lies so: in that of a regular
+/// tetrahedron, two opposite edges of the tetrahedron are diagonals of faces.
 inline Rows<3> spanning_axes(const Points<3>& points) {
     const Vec3d a = farthest<3>(points, points[0]), b = farthest<3>(points, a), along = normalized(b - a);
     const auto far_across = [&](const Vec3d& c) {
@@ -141,8 +144,8 @@ inline Rows<3> spanning_axes(const Points<3>& points) {
     return {along, cross(normal, along), normal};
 }
 
-/// A frame, turned about each axis in turn to where its box around the points has the least surface, until no
-/// turn gains.
+/// A frame that is turned about each axis in turn to where its box around the points has the least surface,
+/// until no turn gains.
 template <int D>
 class TurnedFrame {
 public:
@@ -156,11 +159,12 @@ public:
     double half_area() const { return detail::half_area(extent_); }
 
 private:
-    /// Turns an axis and the next in their plane. False where that gains less than a thousandth.
+    /// Turns an axis and the next one in their plane. Returns false where that gains less than a thousandth.
     bool turn(int first) {
         const int second = (first + 1) % D;
         auto& x = frame_[static_cast<std::size_t>(first)];
         auto& y = frame_[static_cast<std::size_t>(second)];
+        // Measure the rectangles around the points as seen in that plane.
         flat_.clear();
         for (const auto& p : points_) flat_.push_back({dot(x, p), dot(y, p)});
         double least = half_area() * (1 - 0x1p-10);
@@ -171,6 +175,7 @@ private:
             if (const double area = detail::half_area(extent); area < least)
                 least = area, side = r.side, extent_ = extent;
         });
+        // Turn both axes to the side of the best rectangle.
         const Vec<double, D> old = x;
         x = normalized(x * side[0] + y * side[1]);
         y = normalized(y * side[0] - old * side[1]);
@@ -186,19 +191,20 @@ private:
 
 }  // namespace detail
 
-/// The principal axes of the points: their covariance's eigenvectors.
+/// The principal axes of the points: the eigenvectors of their covariance.
 template <int D>
 Rows<D> principal_axes(PointSpan<D> points) {
     return detail::axes_of_covariance(detail::brought_to_one(points));
 }
 
-/// The frame of a box around the points whose surface is small: mostly within some percent of the least.
+/// The frame of a box around the points with a small surface: mostly within some percent of the least.
 ///
-/// Principal axes (Gottschalk, Lin and Manocha 1996) say nothing where they tie: a cube's may lie anyhow. So
-/// they are turned about each axis to where the box is least, which calipers find, and so is a frame across
-/// two far apart pairs of points; the better one is returned. Only points that are extreme in 26 directions
-/// (in the plane 16) are looked at, as by Larsson and Källberg (Fast Computation of Tight-Fitting Oriented
-/// Bounding Boxes, 2011). O(points), and some microseconds.
+/// Principal axes (Gottschalk, Lin and Manocha 1996) say nothing where their variances are equal: those of a
+/// cube may lie anyhow. So the principal frame is turned about each of its axes to where the box is least,
+/// which calipers find. In space a second frame, across two pairs of points far apart, is turned likewise,
+/// and the better frame is returned. Only points that are extreme in 26 directions (in the plane 16) are
+/// measured, as by Larsson and Källberg (Fast Computation of Tight-Fitting Oriented Bounding Boxes, 2011).
+/// O(points), and some microseconds.
 template <int D>
 Rows<D> frame_of_small_box(PointSpan<D> points) {
     const auto all = detail::brought_to_one(points);

@@ -1,4 +1,4 @@
-/// What a bounding volume looks like: a polytope in double, for pictures.
+/// The shape of a bounding volume, for pictures: a polytope in double.
 #pragma once
 
 #include <numbers>
@@ -11,8 +11,8 @@ namespace hedgerow {
 
 namespace detail {
 
-/// Calls f(normal, offset) for half-spaces normal·x <= offset that all hold the volume: of what is round,
-/// some that touch it.
+/// Calls f(normal, offset) for half-spaces normal·x <= offset that each contain the volume. Round volumes
+/// give some of their tangent planes.
 template <SlabVolume V, class F>
 void for_each_tangent(const V& v, F f) {
     for (int i = 0; i < v.slab_count(); ++i) {
@@ -44,12 +44,14 @@ void for_each_tangent(const Cylinder<T>& c, F f) {
     const auto ends = c.ends();
     f(ends.normal, ends.high);
     f(-ends.normal, -ends.low);
+    // Make two axes across the cylinder's, by the coordinate axis that is least parallel to it.
     Vec3d beside;
     int least = 0;
     for (int k = 1; k < 3; ++k)
         if (std::abs(ends.normal[k]) < std::abs(ends.normal[least])) least = k;
     beside[least] = 1;
     const Vec3d x = normalized(cross(ends.normal, beside)), y = normalized(cross(ends.normal, x));
+    // Cover the round side by planes that touch it.
     for (int i = 0; i < sides; ++i) {
         const double angle = 2 * std::numbers::pi * i / sides;
         const Vec3d n = x * std::cos(angle) + y * std::sin(angle);
@@ -59,7 +61,7 @@ void for_each_tangent(const Cylinder<T>& c, F f) {
 
 }  // namespace detail
 
-/// The volume's part in a box.
+/// The part of a volume in a box. Round volumes are replaced by the polytope of some of their tangent planes.
 template <class T, int D>
 Polytope<D> region_in(const AnyVolume<T, D>& volume, const Box<double, D>& box) {
     Polytope<D> region(box);

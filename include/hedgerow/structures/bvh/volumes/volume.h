@@ -1,4 +1,4 @@
-/// The list of bounding volumes, and any one of them behind one type.
+/// The list of bounding volumes, and one type for any of them.
 #pragma once
 
 #include <string>
@@ -6,14 +6,14 @@
 #include <tuple>
 #include <variant>
 
-#include <hedgerow/error.h>
+#include <hedgerow/base/error.h>
 #include <hedgerow/structures/bvh/volumes/fit.h>
 
 namespace hedgerow {
 
-/// What a BVH's nodes are bounded by. `box` is the default BVH; kdop6 (in the plane kdop4) is the same box by
-/// way of the study structure, to compare the others with. Hulls and cylinders are for space; kdop4 and kdop8
-/// for the plane, the other k-DOPs for space.
+/// The kinds of bounding volumes of a BVH's nodes. `box` is the default BVH. kdop6 (in the plane kdop4) is
+/// the same box in the study structure, to compare the other kinds with. Hulls and cylinders are for space;
+/// kdop4 and kdop8 are for the plane, the other k-DOPs for space.
 enum class Volume { box, sphere, obb, kdop4, kdop6, kdop8, kdop14, kdop18, kdop26, cylinder, hull };
 inline constexpr std::pair<std::string_view, Volume> volume_names[] = {
     {"box", Volume::box},       {"sphere", Volume::sphere},     {"obb", Volume::obb},
@@ -22,7 +22,7 @@ inline constexpr std::pair<std::string_view, Volume> volume_names[] = {
     {"hull", Volume::hull},     {"cylinder", Volume::cylinder},
 };
 
-/// The volumes of a tree, all of one kind; `kind` says which.
+/// The volumes of a tree, all of one kind, which is `kind`.
 template <class V, int D, Volume of_kind>
 class VolumeList {
 public:
@@ -39,7 +39,7 @@ private:
     std::vector<V> volumes_;
 };
 
-/// Hulls: each a stretch of one list of faces.
+/// The hulls of a tree. The faces of a hull are a stretch of one common list.
 template <class T>
 class HullList {
 public:
@@ -87,17 +87,18 @@ struct VolumeLists<T, 3> {
 };
 }  // namespace detail
 
-/// The volumes of a tree, of the one kind that was chosen at run time.
+/// The volumes of a tree, all of the kind that was chosen at run time.
 template <std::floating_point T, int D>
 using AnyVolumeList = typename detail::VolumeLists<T, D>::Variant;
 
-/// An empty list for volumes of that kind. Throws InputError where there are none: of boxes, and of kinds for
-/// another dimension.
+/// An empty list for volumes of that kind. Throws UsageError for a kind that has no list: for boxes, and for
+/// kinds of another dimension.
 template <std::floating_point T, int D>
 AnyVolumeList<T, D> list_of(Volume kind) {
     AnyVolumeList<T, D> lists;
     std::string there_are;
     bool found = false;
+    // Collect the names of all kinds of this dimension, and make the list of the kind asked for.
     const auto look = [&]<class List>(std::type_identity<List>) {
         for (const auto& [name, known] : volume_names)
             if (known == List::kind) there_are += (there_are.empty() ? "" : ", ") + std::string(name);
@@ -106,6 +107,7 @@ AnyVolumeList<T, D> list_of(Volume kind) {
     [&]<class... List>(std::type_identity<std::variant<List...>>) {
         (look(std::type_identity<List>()), ...);
     }(std::type_identity<AnyVolumeList<T, D>>());
+    // Name the wrong kind and the right ones.
     if (!found)
         for (const auto& [name, known] : volume_names)
             if (known == kind)
@@ -115,14 +117,14 @@ AnyVolumeList<T, D> list_of(Volume kind) {
     return lists;
 }
 
-/// Volume i of a list. Which kind it is, is asked at every test: a jump that a processor guesses, since it is
-/// the same throughout a tree.
+/// Volume i of a list. Every test branches on the kind of volume. A processor predicts that jump, since the
+/// kind is the same throughout a tree.
 template <std::floating_point T, int D>
 struct AnyVolume {
     const AnyVolumeList<T, D>& list;
     std::size_t i;
 
-    // Functions of their own: they know no query and no primitives, so each is compiled but once.
+    // Not inlined: the functions depend on neither query nor primitives, so each is compiled only once.
     [[gnu::noinline]] friend Interval<double> part_in(const ThickLine<D>& line, const AnyVolume& v) {
         return v.visit([&](const auto& volume) { return part_in(line, volume); });
     }

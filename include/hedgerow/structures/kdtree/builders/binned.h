@@ -1,12 +1,13 @@
-/// Binned SAH for kd-trees (Shevtsov, Soupikov, Kapustin, EG 2007): only the borders of equal bins are
-/// considered, O(n) a level.
+/// Binned SAH for kd-trees (Shevtsov, Soupikov, Kapustin, EG 2007): the candidates are the borders of equal
+/// bins. O(n) a level.
 #pragma once
 
 #include <hedgerow/structures/kdtree/builders/costs.h>
 
 namespace hedgerow {
 
-/// How many parts begin and end in each bin of an axis is all that the SAH needs at its borders.
+/// Chooses among the borders of bins. The SAH at a border needs only how many parts begin and end in each
+/// bin.
 template <std::floating_point T, int D>
 class KdBinnedPlanes {
 public:
@@ -29,12 +30,13 @@ public:
 
 private:
     void try_axis(const Cell& cell, int axis, KdBest<T>& best) const {
+        // Skip an axis along which the cell is too thin for bins.
         const T low = cell.box.low[axis], width = cell.box.high[axis] - low;
         const T scale = T(bins_) / width;
         if (!(width > 0) || !(scale <= std::numeric_limits<T>::max())) return;
         std::array<std::uint32_t, most_bins> begins{}, ends{};
-        // Counted as in the bin before a border exactly if on that side of it: bins are moved by no rounding
-        // that the borders do not share.
+        // A coordinate is counted in a bin before a border exactly if it lies on that side of the border. So
+        // the bin is found by comparison with the borders, and the rounding of `scale` does not matter.
         const auto border = [&](int b) { return low + product(width, T(b) / T(bins_)); };
         const auto bin = [&](T x, auto beyond) {
             int b = std::clamp(static_cast<int>(std::clamp(product(x - low, scale), T(0), T(bins_ - 1))), 0,
@@ -43,10 +45,12 @@ private:
             while (b + 1 < bins_ && beyond(x, border(b + 1))) ++b;
             return static_cast<std::size_t>(b);
         };
+        // Count the parts that begin and end in each bin.
         for (const auto& r : cell.inside) {
             ++begins[bin(r.low[axis], std::greater_equal<>())];
             ++ends[bin(r.high[axis], std::greater<>())];
         }
+        // Offer each border, with the numbers of parts on its sides.
         const KdAxisCosts<T, D> costs(costs_, cell.box, axis);
         std::uint32_t on_low = 0, on_high = cell.size();
         for (int b = 1; b < bins_; ++b) {

@@ -1,4 +1,4 @@
-/// The list of kd-tree builders.
+/// The list of kd-tree builders, and their options.
 #pragma once
 
 #include <hedgerow/structures/kdtree/builders/costs.h>
@@ -9,25 +9,27 @@ enum class KdBuilder { sah, binned, median, midpoint };
 
 struct KdOptions {
     KdBuilder builder = KdBuilder::sah;
-    /// Cells of no more primitives are leaves. 0: 1 where costs decide, else 4.
+    /// Cells of at most this many primitives are leaves. 0: 1 for builders by cost (sah, binned), otherwise
+    /// 4.
     std::uint32_t leaf_size = 0;
-    /// 0: by the number of primitives (usual_depth).
+    /// The most levels, leaves included. 0: chosen from the number of primitives (usual_depth).
     int max_depth = 0;
-    /// Of the binned builder.
+    /// Bins along each axis, for the binned builder: 2 to KdBinnedPlanes::most_bins, not checked.
     int bins = 32;
-    /// The tree has at most so many items for each primitive. Where planes only repeat primitives, as in a
-    /// fan of slivers, cells are then left whole: the build and its memory have a bound, and such leaves are
-    /// long. 0: 16 where costs decide, else 64. Meshes need 3.5 and 60.
+    /// The most items of a tree for each primitive, at least 1. Where planes only repeat primitives, as in a
+    /// fan of slivers, cells then become leaves earlier. So the build and its memory are bounded, and such
+    /// leaves are long. 0: 16 for builders by cost, otherwise 64. Meshes need 3.5 and 60.
     double items_per_primitive = 0;
     KdCosts costs = {};
-    /// Off only to show what it brings.
+    /// Skips most repeated tests of a primitive within a query. Off only to measure its effect.
     bool mailbox = true;
 };
-/// No tree is deeper.
+/// The most levels of any tree.
 inline constexpr int kd_max_depth = 64;
 
-/// The tree below a root that holds every reference; `root` is called again where the limit of items is
-/// passed, so that nobody keeps a second list meanwhile. Empty, if the root is. Compiled in core
+/// Builds the tree below a root cell that has every reference. `root` is called again if the tree exceeds the
+/// limit of items, so that no second list is kept meanwhile. An empty root gives an empty tree. Throws
+/// UsageError for fewer than one item a primitive, and InputError for too many nodes. Compiled in core
 /// (src/core/build_kdtree.cpp), for float and double, in 2D and 3D.
 template <std::floating_point T, int D>
 CutTree<KdNode<T>> build_kd_tree(FunctionRef<KdCell<T, D>()> root, PartIn<T, D> part_in,

@@ -5,24 +5,24 @@
 
 namespace hedgerow {
 
-/// How the SAH decides (MacDonald and Booth 1990): opening an inner node costs `traversal_cost`, testing a
-/// primitive `intersection_cost`. Pharr, Jakob and Humphreys have 1 to 5; here a node costs as much as four
-/// triangles, which a packed leaf tests fast, as measured (docs/design/004-plane-trees.md).
+/// Costs for the SAH (MacDonald and Booth 1990): an inner node costs `traversal_cost`, a test of a primitive
+/// `intersection_cost`. Pharr, Jakob and Humphreys use 1 to 5. Here a node costs as much as four triangles,
+/// as measured, since a packed leaf tests triangles fast (docs/design/004-plane-trees.md).
 struct KdCosts {
     double traversal_cost = 4;
     double intersection_cost = 1;
-    /// A plane that cuts off empty space costs that part less.
+    /// The fraction by which the tests below a plane cost less if the plane cuts off empty space.
     double empty_bonus = 0.2;
 };
 
-/// The least costly plane seen so far, and where it is.
+/// The plane of least cost so far.
 template <std::floating_point T>
 struct KdBest {
     double cost = std::numeric_limits<double>::infinity();
     AxisPlane<T> plane;
 };
 
-/// What a plane across one axis of a cell costs. Areas of the halves are linear in its position.
+/// The costs of planes across one axis of a cell. The areas of the halves are linear in the plane's position.
 template <std::floating_point T, int D>
 class KdAxisCosts {
 public:
@@ -41,7 +41,7 @@ public:
         whole_ = area(high_ - low_);
     }
 
-    /// Offers a plane with that many primitives on its sides.
+    /// Offers a plane with `on_low` and `on_high` primitives on its sides. `best` keeps it if it costs less.
     void offer(T position, std::uint32_t on_low, std::uint32_t on_high, KdBest<T>& best) const {
         const double x = static_cast<double>(position);
         if (!(low_ < x && x < high_)) return;
@@ -60,7 +60,7 @@ private:
     double low_, high_, caps_, around_, whole_;
 };
 
-/// The plane, if opening the cell is cheaper than testing all that stands in it.
+/// The best plane, if it costs less than testing all primitives of the cell.
 template <std::floating_point T, int D>
 std::optional<AxisPlane<T>> if_it_pays(const KdBest<T>& best, const KdCell<T, D>& cell,
                                        const KdCosts& costs) {

@@ -1,4 +1,4 @@
-/// kd-tree building: how a cell is cut, whatever chooses the planes.
+/// kd-tree building: how a cell is cut, independent of how planes are chosen.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace hedgerow {
 
-/// A cell and what stands in it: of each primitive the bounds of its part in the cell, enlarged on every side
-/// by the margin (cells.h).
+/// A cell and the references in it. A reference has the bounds of its primitive's part in the cell, enlarged
+/// on every side by the margin (cells.h).
 template <std::floating_point T, int D>
 struct KdCell {
     Box<T, D> box;
@@ -18,8 +18,9 @@ struct KdCell {
     std::uint32_t size() const { return static_cast<std::uint32_t>(inside.size()); }
 };
 
-/// Which side of a plane a reference goes to: its part reaches beyond the plane by more than nothing. Both,
-/// if it straddles. What lies on a plane reaches to both sides, since parts are enlarged.
+/// Whether a reference goes to the low or the high side of a plane: its part reaches beyond the plane. A
+/// reference that straddles the plane goes to both sides. A primitive on the plane straddles it, since parts
+/// are enlarged.
 template <std::floating_point T, int D>
 bool goes_low(const Reference<T, D>& r, const AxisPlane<T>& plane) {
     return r.low[plane.axis] < plane.position;
@@ -29,17 +30,18 @@ bool goes_high(const Reference<T, D>& r, const AxisPlane<T>& plane) {
     return r.high[plane.axis] > plane.position;
 }
 
-/// Where a reference of a divided cell stands in its halves.
+/// The indexes of a cell's reference in the two halves of the cell.
 struct KdPlaces {
     static constexpr std::uint32_t nowhere = 0xFFFFFFFFu;
     std::uint32_t low = nowhere, high = nowhere;
-    bool cut = false;  // it straddled the plane: its parts are new
+    bool cut = false;  // straddled the plane: its parts are new
 };
 
-/// `Planes` chooses: `choose(cell, lists, depth) -> std::optional<AxisPlane>` (none: a leaf). It may carry
-/// `Lists` of its own beside each cell: `begin(root)` makes them, and `divide(lists, places, low, high)`
-/// hands them on. Straddlers are clipped anew (perfect splits, Havran 2000; Wald and Havran 2006), and
-/// dropped where nothing of them is left.
+/// Cuts cells by the planes that `Planes` chooses: `choose(cell, lists, depth) -> std::optional<AxisPlane>`
+/// (none: the cell becomes a leaf). `Planes` may keep `Lists` of its own for each cell: `begin(root,
+/// executor)` makes them, and `divide(lists, places, low, high, low_lists, high_lists)` passes them on to the
+/// halves. Straddlers are clipped anew (perfect splits, Havran 2000; Wald and Havran 2006), and dropped from
+/// a half where nothing of them is left.
 template <std::floating_point T, int D, class Planes>
 class KdCutter {
 public:

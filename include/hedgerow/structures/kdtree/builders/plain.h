@@ -1,13 +1,14 @@
-/// The two plain ways to a plane: the median, with the axes in turn, and the middle.
+/// The two plain ways to choose a plane: the median, with the axes in turn, and the middle of the cell.
 #pragma once
 
 #include <hedgerow/structures/kdtree/builders/cutter.h>
 
 namespace hedgerow {
 
-/// The canonical kd-tree (Bentley 1975): as one goes down the axes take turns, and the plane is the median of
-/// the centers. Or the middle of the cell's widest axis. A cell becomes a leaf when it holds few enough, or
-/// when a plane would leave nearly all on both sides.
+/// The canonical kd-tree (Bentley 1975): the axes take turns from level to level, and the plane is the median
+/// of the centers. Without `median`, the plane is the middle of the cell's widest axis. A cell becomes a leaf
+/// if it has few enough primitives, or if a plane would leave about seven eighths of them on both sides; with
+/// `median` all axes are tried first.
 template <std::floating_point T, int D>
 class KdPlainPlanes {
 public:
@@ -40,7 +41,7 @@ private:
         const auto middle = centers.begin() + static_cast<std::ptrdiff_t>(centers.size() / 2);
         std::nth_element(centers.begin(), middle, centers.end());
         return *std::max_element(centers.begin(), middle) / 2 +
-               *middle / 2;  // between points, not through one
+               *middle / 2;  // between two centers, not through one
     }
     static std::optional<AxisPlane<T>> if_it_divides(const Cell& cell, const AxisPlane<T>& plane) {
         if (!(cell.box.low[plane.axis] < plane.position && plane.position < cell.box.high[plane.axis]))

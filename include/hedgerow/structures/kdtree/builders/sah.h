@@ -6,7 +6,7 @@
 
 namespace hedgerow {
 
-/// Events are sorted once for the whole tree. A divided cell hands its lists on in order; only those of
+/// Events are sorted once for the whole tree. A divided cell passes its lists on in order. Only the events of
 /// straddlers, whose parts are new, are sorted again and merged in.
 template <std::floating_point T, int D>
 class KdSahPlanes {

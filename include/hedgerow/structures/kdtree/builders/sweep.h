@@ -7,8 +7,8 @@
 
 namespace hedgerow {
 
-/// Where the part of a reference begins or ends along an axis. At equal positions ends come first: what ends
-/// at a plane and what begins there are on different sides of it.
+/// Where the part of a reference begins or ends along an axis. At equal positions ends come first: a part
+/// that ends at a plane and a part that begins there are on different sides of the plane.
 template <std::floating_point T>
 struct KdEvent {
     T position;
@@ -24,7 +24,7 @@ struct KdEvent {
     }
 };
 
-/// Offers the planes at sorted events of `count` parts. O(events).
+/// Offers the planes at all sorted events of `count` parts. O(events).
 template <std::floating_point T, int D>
 void sweep_events(const std::vector<KdEvent<T>>& events, std::uint32_t count, const KdAxisCosts<T, D>& costs,
                   KdBest<T>& best) {

@@ -1,0 +1,39 @@
+/// Options of wide BVHs, and the function that builds one.
+#pragma once
+
+#include <hedgerow/engine/wide_tree.h>
+#include <hedgerow/structures/bvh/build_tree.h>
+
+namespace hedgerow {
+
+/// The builder of the binary tree that a wide tree is collapsed from, fastest first: linear (LBVH), binned
+/// SAH, and binned SAH improved by reinsertion.
+enum class WideBuilder { fast, medium, high };
+inline constexpr WideBuilder wide_builders[] = {WideBuilder::fast, WideBuilder::medium, WideBuilder::high};
+
+struct WideOptions {
+    WideBuilder builder = WideBuilder::medium;
+    /// Children per node: 4, 8 or 16. 0 chooses the width that the kernels of this processor are best at.
+    int width = 0;
+    /// Largest number of primitives in a leaf: 1 to `wide_leaf_size`.
+    std::uint32_t max_leaf_size = wide_leaf_size;
+    /// Costs of the binary tree's SAH (SahOptions): to open a node, and to test a triangle. Over instances
+    /// WideBvh multiplies the second by WideBvh::instance_cost.
+    double traversal_cost = 4, intersection_cost = 1;
+    /// Largest number of passes of reinsertion, for the builder `high`.
+    int reinsertion = 10;
+    /// In bytes; 0 for no budget. A build that may take more is refused before it allocates (budget.h has
+    /// the bound).
+    double budget = 0;
+};
+
+/// The options with a width chosen in place of 0. Throws UsageError for an option out of its range.
+WideOptions resolved(const WideOptions& options);
+
+/// Builds the tree over all references. Throws UsageError for an option out of its range, and InputError for
+/// more than 2^28 leaves. Compiled in core (src/engine/build.cpp), for float and double, in 2D and 3D.
+template <std::floating_point T, int D>
+WideTree<T, D> build_wide_tree(ReferenceList<T, D> references, const WideOptions& options,
+                               Executor& executor);
+
+}  // namespace hedgerow

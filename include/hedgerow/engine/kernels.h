@@ -1,0 +1,87 @@
+/// Kernels: rays against triangles in a wide BVH, and against instances of such indexes, with the
+/// processor's vectors. This header says which instruction sets there are, and what each offers.
+///
+/// The kernels are one source (src/engine/), compiled for every instruction set that the compiler knows
+/// (AVX-512, AVX2, SSE4; NEON) and chosen at run time. All give the same bits as the plain walk. Where there
+/// is no kernel, the plain walk answers.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include <hedgerow/engine/hit_filter.h>
+#include <hedgerow/engine/triangle_blocks.h>
+#include <hedgerow/engine/wide_tree.h>
+#include <hedgerow/probes/ray_array.h>
+#include <hedgerow/walks/kernel.h>
+
+namespace hedgerow {
+
+/// What a kernel needs to know of an index: the tree, the triangles of its leaves, and the ids that hits
+/// report (empty if these are the positions). What it needs to know of the call: the filter of hits, and the
+/// number of the first ray in its batch.
+struct WideScene {
+    const WideTree<float, 3>& tree;
+    const TriangleBlock<float>* blocks;
+    Strided<std::uint32_t> faces;
+    HitFilter filter = {};
+    std::size_t first_ray = 0;
+    std::uint32_t instance = 0, geometry = 0;  // reported by hits
+};
+
+/// An instance of an index of triangles in a wide BVH (instances/instance_set.h). `back` transforms from the
+/// world into the index's space, as PlacedIndex::inside does. The pointers are to members of the index, so
+/// they are valid while it stays at its address.
+struct alignas(64) WideInstance {
+    double back[4][3];  // columns of the linear part, then the shift
+    const WideTree<float, 3>* tree;
+    const TriangleBlocks<float>* triangles;
+    const Strided<std::uint32_t>* faces;
+    std::uint32_t mask, geometry;
+};
+static_assert(sizeof(WideInstance) == 128);
+
+/// Instances in a wide BVH, whose items are the numbers of the instances. `error` is a length, hit_error of
+/// the set: a ray's hit may lie this much farther from its instance's box than a hit on a triangle from its
+/// own.
+struct WideInstances {
+    const WideTree<float, 3>& tree;
+    const WideInstance* all;
+    float error;
+    HitFilter filter = {};
+};
+
+/// The kernels of one kind of query. The answer is a bool, or a Hit that is false where nothing is hit. A
+/// kernel owns nothing that an exception from the filter would leave behind.
+template <class Answer>
+struct RayKernels {
+    Answer (*one)(const WideScene&, const Ray<float, 3>&);
+    Answer (*among_instances)(const WideInstances&, const Ray<float, 3>&);
+    KernelUse (*many)(const WideScene&, const RayArray<float, 3>&, Answer*);
+};
+
+/// The kernels of one instruction set.
+struct WideKernels {
+    std::string_view instruction_set;
+    /// The width (children per node) that these kernels are best at.
+    int width;
+    RayKernels<Hit<float>> closest;
+    RayKernels<bool> any;
+};
+
+/// The kernels in use, or nullptr for the plain walk. The first call chooses them: those that the
+/// environment variable HEDGEROW_INSTRUCTION_SET names, or the best there are. A name that
+/// `instruction_sets()` lacks is ignored.
+const WideKernels* wide_kernels();
+
+/// The instruction sets that this processor and this build have, best first. "plain" is last and always
+/// there.
+std::vector<std::string_view> instruction_sets();
+/// Switches to another instruction set, from now on and for all threads. Throws UsageError for a name that
+/// is not in the list.
+void use_instruction_set(std::string_view name);
+
+/// The width (children per node) of new indexes: what the kernels in use are best at, or 8 without kernels.
+int preferred_wide_width();
+
+}  // namespace hedgerow

@@ -1,0 +1,45 @@
+/// What a query is: what counts as an answer. A walk offers it candidates; the query holds the limit, which
+/// may only shrink. A query knows no structure.
+#pragma once
+
+#include <cstdint>
+
+#include <hedgerow/primitives/concepts.h>
+
+namespace hedgerow {
+
+/// Whether a walk opens near cells first. A query that reports whatever it overlaps needs no order.
+enum class Order { none, nearest };
+
+/// What a walk needs of a query. `probe` is its geometry. `limit` is the largest t (of a ray) or distance²
+/// (of a point) that can still change the answer; a negative limit ends the walk before it begins. `offer` is
+/// called with each candidate that a primitive's test gives, and may stop the walk.
+template <class Q>
+concept Query = requires(Q& q, const Q& asked, const CandidateOf<typename Q::Probe>& candidate) {
+    { Q::order } -> std::convertible_to<Order>;
+    { asked.probe() } -> std::convertible_to<const typename Q::Probe&>;
+    { asked.limit() } -> std::convertible_to<typename Q::Probe::Scalar>;
+    { q.offer(candidate) } -> std::same_as<Flow>;
+};
+
+/// A query that an Index makes, walks and reads: `answer` is called once, after the walk.
+template <class Q>
+concept AnsweringQuery = Query<Q> && requires(Q& q) {
+    q.answer();
+};
+
+/// The number of a node in its tree. The root is 0, and every other node has a number of its own below the
+/// tree's `node_count()`.
+using NodeId = std::uint32_t;
+
+/// What a query says of a whole subtree before the walk opens it.
+enum class Verdict { prune, open, accept };
+
+/// A query that can take a whole subtree at once (counts, containment, multipoles). What it knows of each
+/// node comes from `fold`.
+template <class Q>
+concept SubtreeQuery = Query<Q> && requires(Q& q, NodeId node) {
+    { q.accept(node) } -> std::same_as<Verdict>;
+};
+
+}  // namespace hedgerow

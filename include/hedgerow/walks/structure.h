@@ -1,0 +1,65 @@
+/// What a structure is: a way to divide space or primitives, and a walk through it. Read query.h first, then
+/// this.
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <string>
+
+#include <hedgerow/parallel/executor.h>
+#include <hedgerow/walks/query.h>
+#include <hedgerow/walks/visits.h>
+
+namespace hedgerow {
+
+namespace detail {
+/// A query with no answer, for concepts alone: every walk compiles with it.
+template <class P>
+struct AnyQuery {
+    using Probe = BoxProbe<typename P::Scalar, P::dimension>;
+    static constexpr Order order = Order::none;
+    const Probe& probe() const;
+    typename P::Scalar limit() const;
+    Flow offer(const CandidateOf<Probe>&);
+};
+}  // namespace detail
+
+/// A structure S over primitives P, as an Index holds it. It knows no query: `walk` brings any query to each
+/// leaf that can hold an answer within the query's limit.
+///
+/// - `build` throws InputError for bad primitives, and UsageError for options out of their range.
+/// - `exclusive` says that each primitive is in one leaf, so that no candidate is offered twice.
+/// - `items` lists the primitives, leaf by leaf. `bytes` is the memory beyond the primitives themselves.
+/// - `depth` counts levels, leaves included.
+/// - `validate` describes the first fault that it finds, and is empty for a sound structure.
+template <class S, class P>
+concept Structure = PrimitiveSet<P> &&
+    requires(const S& s, const P& set, const typename S::Options& options, Executor& executor,
+             detail::AnyQuery<P>& query, Visits& count) {
+    { S::build(set, options, executor) } -> std::same_as<S>;
+    { s.bounds() } -> std::same_as<const Box<typename P::Scalar, P::dimension>&>;
+    { s.exclusive() } -> std::same_as<bool>;
+    { s.items() } -> std::convertible_to<std::span<const PrimitiveId>>;
+    { s.bytes() } -> std::same_as<std::size_t>;
+    { s.node_count() } -> std::same_as<std::size_t>;
+    { s.leaf_count() } -> std::same_as<std::size_t>;
+    { s.depth() } -> std::same_as<int>;
+    { s.validate(set) } -> std::same_as<std::string>;
+    s.walk(set, query, count);
+};
+
+/// Whether a structure answers queries of a probe. All do, unless their `answers<Probe>` says no.
+template <class S, class Probe>
+concept AnswersProbe = !requires {
+    requires !S::template answers<Probe>;
+};
+
+/// A structure that can insert and erase single primitives. Both return false, and change nothing, where the
+/// primitive is held already or is not held.
+template <class S, class P>
+concept ChangesOneByOne = requires(S& s, const P& set, PrimitiveId id) {
+    { s.insert(set, id) } -> std::same_as<bool>;
+    { s.erase(set, id) } -> std::same_as<bool>;
+};
+
+}  // namespace hedgerow

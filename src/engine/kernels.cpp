@@ -1,0 +1,99 @@
+/// The kernels, compiled for each instruction set: Highway's foreach_target includes this file once for
+/// each. Only Highway's headers are used; nothing is linked.
+#if HEDGEROW_HAS_HIGHWAY
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/kernels.cpp"
+// Not worth their code: SSSE3 beside SSE4, and what AVX-512 has gained since its beginnings. Not possible:
+// SVE, whose vectors have no known length and so cannot be members.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "compiled.h"
+#if HWY_TARGET != HWY_SCALAR
+#include "instances-inl.h"
+#include "many-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+template <Wanted wanted>
+struct Answering {
+    template <int W>
+    struct One {
+        static auto answer(const WideScene& scene, const Ray<float, 3>* asked) {
+            return answer_one<W, wanted>(scene, *asked);
+        }
+        static auto answer(const WideInstances& scene, const Ray<float, 3>* asked) {
+            return answer_one_of_instances<W, wanted>(scene, *asked);
+        }
+    };
+    template <int W>
+    struct Many {
+        template <class Answer>
+        static KernelUse answer(const WideScene& scene, const RayArray<float, 3>* rays, Answer* answers) {
+            return answer_many<W, wanted>(scene, *rays, answers);
+        }
+    };
+};
+
+template <Wanted wanted, class Answer>
+inline constexpr RayKernels<Answer> ray_kernels = {
+    [](const WideScene& scene, const Ray<float, 3>& ray) -> Answer {
+        return by_width<Answering<wanted>::template One>(scene, &ray);
+    },
+    [](const WideInstances& scene, const Ray<float, 3>& ray) -> Answer {
+        return by_width<Answering<wanted>::template One>(scene, &ray);
+    },
+    [](const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
+        return by_width<Answering<wanted>::template Many>(scene, &rays, answers);
+    }};
+
+inline constexpr WideKernels kernels {
+#if HWY_TARGET == HWY_AVX3
+    "avx512", 16,
+#elif HWY_TARGET == HWY_AVX2
+    "avx2", 8,
+#elif HWY_TARGET == HWY_SSE4
+    "sse4", 4,
+#else
+    "neon", 4,
+#endif
+        ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>
+};
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET != HWY_SCALAR
+
+#if HWY_ONCE
+namespace hedgerow::detail {
+
+std::vector<const WideKernels*> compiled_wide_kernels() {
+    std::vector<const WideKernels*> all;
+#if HWY_TARGETS & HWY_AVX3
+    all.push_back(&N_AVX3::kernels);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    all.push_back(&N_AVX2::kernels);
+#endif
+#if HWY_TARGETS & HWY_SSE4
+    all.push_back(&N_SSE4::kernels);
+#endif
+#if HWY_TARGETS & HWY_NEON
+    all.push_back(&N_NEON::kernels);
+#endif
+    return all;
+}
+
+}  // namespace hedgerow::detail
+#endif
+
+#else
+#include "compiled.h"
+
+std::vector<const hedgerow::WideKernels*> hedgerow::detail::compiled_wide_kernels() {
+    return {};
+}
+#endif

@@ -1,0 +1,272 @@
+/// A ray against the boxes of a node, and against the triangles of a leaf.
+#if defined(HEDGEROW_ENGINE_TESTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HEDGEROW_ENGINE_TESTS_INL_H
+#undef HEDGEROW_ENGINE_TESTS_INL_H
+#else
+#define HEDGEROW_ENGINE_TESTS_INL_H
+#endif
+
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include <hwy/highway.h>
+
+#include <hedgerow/engine/kernels.h>
+
+#include "rays-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class D>
+HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(&bits));
+    return static_cast<unsigned>(bits);
+}
+
+// Vectors for a row of W floats: all of the row, or as much of it as a vector has room for.
+template <int W>
+using Floats = hn::CappedTag<float, W>;
+
+// The numbers of a ray that the test of boxes needs, each in all lanes.
+template <int W>
+struct Slabs {
+    using V = hn::Vec<Floats<W>>;
+
+    V inverse[3], enter_at[3], leave_at[3], s_min;
+    std::size_t near_row[3];
+
+    HWY_INLINE explicit Slabs(const WideRay& ray) {
+        constexpr Floats<W> f;
+        for (int k = 0; k < 3; ++k) {
+            inverse[k] = hn::Set(f, ray.inverse[k]);
+            enter_at[k] = hn::Set(f, ray.enter_at[k]);
+            leave_at[k] = hn::Set(f, ray.leave_at[k]);
+            near_row[k] = ray.near_row[k];
+        }
+        s_min = hn::Set(f, ray.s_min);
+    }
+};
+
+// The boxes of W children: a mask of those that the ray enters, and the s at which it does.
+template <int W>
+struct Boxes {
+    static constexpr Floats<W> f{};
+    using V = hn::Vec<Floats<W>>;
+    static constexpr int lanes = static_cast<int>(hn::MaxLanes(f)), parts = W / lanes;
+
+    V entry[parts];
+    hn::Mask<Floats<W>> entered[parts];
+
+    HWY_INLINE Boxes() = default;
+    HWY_INLINE Boxes(const std::byte* node, const Slabs<W>& ray, float s_limit) {
+        for (int p = 0; p < parts; ++p) {
+            const auto near_s = [&](int k) {
+                const V planes = row(node, ray.near_row[k], p);
+                return hn::MulSub(planes, ray.inverse[k], ray.enter_at[k]);
+            };
+            const auto far_s = [&](int k) {
+                const V planes = row(node, ray.near_row[k] ^ (4 * W), p);
+                return hn::MulSub(planes, ray.inverse[k], ray.leave_at[k]);
+            };
+            const V exit = hn::Min(hn::Min(far_s(0), far_s(1)), hn::Min(far_s(2), hn::Set(f, s_limit)));
+            entry[p] = hn::Max(hn::Max(near_s(0), near_s(1)), hn::Max(near_s(2), ray.s_min));
+            entered[p] = hn::Le(entry[p], exit);
+        }
+    }
+    HWY_INLINE unsigned bits() const {
+        unsigned all = 0;
+        for (int p = 0; p < parts; ++p) all |= bits_of(f, entered[p]) << (p * lanes);
+        return all;
+    }
+    HWY_INLINE void store(float* at) const {
+        for (int p = 0; p < parts; ++p) hn::Store(entry[p], f, at + p * lanes);
+    }
+    static HWY_INLINE V row(const std::byte* node, std::size_t at, int part) {
+        return hn::Load(f, reinterpret_cast<const float*>(node + at) + part * lanes);
+    }
+};
+
+template <int W>
+HWY_INLINE const std::uint32_t* children_of(const std::byte* node) {
+    return reinterpret_cast<const std::uint32_t*>(node + 24 * W);
+}
+
+// Corners of triangles in the sheared space of a ray. The lanes are triangles as one ray sees them, one
+// triangle as several rays see it, or pairs of a triangle and a ray.
+template <class F>
+struct Corners {
+    using V = hn::Vec<F>;
+    V x[3], y[3], z[3];
+
+    // `from_origin(k, c)` is corner c minus the ray's origin, along the ray's axis k.
+    template <class FromOrigin>
+    HWY_INLINE Corners(FromOrigin from_origin, V shear_x, V shear_y) {
+        for (int c = 0; c < 3; ++c) {
+            z[c] = from_origin(2, c);
+            x[c] = hn::Sub(from_origin(0, c), hn::Mul(shear_x, z[c]));
+            y[c] = hn::Sub(from_origin(1, c), hn::Mul(shear_y, z[c]));
+        }
+    }
+    // A filter, in two halves. A rounded difference of rounded products has the right sign or is 0. A
+    // triangle lies between its corners, so one that does not reach into the interval is not hit in it.
+    // Places that are not filled are NaN and fail every comparison.
+    HWY_INLINE hn::Mask<F> may_meet(F f, V direction_z, V s_low, V s_limit) const {
+        const auto forward = [&](V along) { return hn::Xor(along, hn::And(direction_z, hn::Set(f, -0.0f))); };
+        const V a = forward(z[0]), b = forward(z[1]), c = forward(z[2]);
+        return hn::And(around(f), hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), s_limit),
+                                          hn::Ge(hn::Max(a, hn::Max(b, c)), s_low)));
+    }
+    // First half of `may_meet`: whether the ray may pass between the edges.
+    HWY_INLINE hn::Mask<F> around(F f) const {
+        const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
+        const V u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(f);
+        return hn::Or(hn::Ge(hn::Min(u, hn::Min(v, w)), zero), hn::Le(hn::Max(u, hn::Max(v, w)), zero));
+    }
+};
+
+// Results of the exact test: t, u and v in the lanes where the ray's line meets the triangle.
+struct alignas(64) Meetings {
+    float t[16], u[16], v[16];
+};
+
+// Does what meet_exactly (geometry/entry.h) does, in the lanes of d: the same operations in the same order.
+// Returns the lanes that are met, a bit each.
+template <class D, class V, class W>
+HWY_INLINE unsigned meet_exactly_in(D d, const V (&x)[3], const V (&y)[3], const V (&z)[3], W direction_z,
+                                    Meetings& m, int at) {
+    const hn::Rebind<float, D> f;
+    W X[3], Y[3], Z[3];
+    for (int c = 0; c < 3; ++c)
+        X[c] = hn::PromoteTo(d, x[c]), Y[c] = hn::PromoteTo(d, y[c]), Z[c] = hn::PromoteTo(d, z[c]);
+    const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(X[p], Y[q]), hn::Mul(Y[p], X[q])); };
+    const W u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(d);
+    const auto none_below = hn::Ge(hn::Min(u, hn::Min(v, w)), zero);
+    const auto none_above = hn::Le(hn::Max(u, hn::Max(v, w)), zero);
+    const W det = hn::Add(hn::Add(u, v), w);
+    const auto met = hn::AndNot(hn::Eq(det, zero), hn::Or(none_below, none_above));
+    const W wa = hn::Div(u, det), wb = hn::Div(v, det), wc = hn::Div(w, det);
+    const W height = hn::Add(hn::Add(hn::Mul(wa, Z[0]), hn::Mul(wb, Z[1])), hn::Mul(wc, Z[2]));
+    hn::StoreU(hn::DemoteTo(f, hn::Div(height, direction_z)), f, m.t + at);
+    hn::StoreU(hn::DemoteTo(f, wb), f, m.u + at);
+    hn::StoreU(hn::DemoteTo(f, wc), f, m.v + at);
+    return bits_of(d, met);
+}
+// The candidates that are met, tested as many at once as a vector has doubles. `direction_z(d, i)` is the
+// direction's z in the lanes from i on.
+template <class F, class DirectionZ>
+HWY_INLINE unsigned meet_exactly_among(F f, const Corners<F>& corners, unsigned candidates,
+                                       DirectionZ direction_z, Meetings& m) {
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
+    constexpr hn::CappedTag<double, lanes> d;
+    constexpr int exact_lanes = static_cast<int>(hn::MaxLanes(d));
+    // One vector of doubles has all lanes.
+    if constexpr (exact_lanes == lanes) {
+        return candidates & meet_exactly_in(d, corners.x, corners.y, corners.z, direction_z(d, 0), m, 0);
+    } else {
+        // Several vectors: store the corners, and test each part that has candidates.
+        constexpr hn::Rebind<float, hn::CappedTag<double, lanes>> part;
+        alignas(64) float rows[3][3][lanes];
+        for (int c = 0; c < 3; ++c) {
+            hn::Store(corners.x[c], f, rows[0][c]);
+            hn::Store(corners.y[c], f, rows[1][c]);
+            hn::Store(corners.z[c], f, rows[2][c]);
+        }
+        unsigned met = 0;
+        for (int i = 0; i < lanes; i += exact_lanes) {
+            if ((candidates >> i & ((1u << exact_lanes) - 1)) == 0) continue;
+            hn::Vec<std::remove_const_t<decltype(part)>> at[3][3];
+            for (int k = 0; k < 3; ++k)
+                for (int c = 0; c < 3; ++c) at[k][c] = hn::Load(part, rows[k][c] + i);
+            met |= meet_exactly_in(d, at[0], at[1], at[2], direction_z(d, i), m, i) << i;
+        }
+        return candidates & met;
+    }
+}
+
+HWY_INLINE Hit<float> hit_of(const WideScene& scene, float t, float u, float v, std::uint32_t element) {
+    if (element == Hit<float>::none) return {};
+    const std::uint32_t id = scene.faces.empty() ? element : scene.faces[element];
+    return {t, u, v, id, scene.geometry, scene.instance, element};
+}
+
+// Whether the filter of the call keeps what is about to become the hit of a ray.
+HWY_INLINE bool kept(const WideScene& scene, std::size_t ray, float t, float u, float v,
+                     std::uint32_t element) {
+    return scene.filter.keeps(scene.filter.filter, scene.first_ray + ray, hit_of(scene, t, u, v, element));
+}
+
+// Whether a meeting at t replaces the ray's hit so far: t is in the interval, and less than that of the hit
+// (or equal, with a lower id).
+HWY_INLINE bool nearer(float t, std::uint32_t id, float t_min, float t_limit, std::uint32_t element) {
+    return t >= t_min && t <= std::numeric_limits<float>::max() &&
+           (t < t_limit || (t == t_limit && id < element));
+}
+
+// Tests the triangles of a block. A triangle that is hit nearer than the ray's hit so far (or as near, with
+// a lower number) becomes the hit, if `keeps(t, u, v, id)`. True if there was one.
+template <class Keeps>
+HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keeps keeps) {
+    using F = Floats<8>;
+    constexpr F f;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
+    const float* const rows = &block.corner[0][0][0];
+    bool found = false;
+    for (int at = 0; at < 8; at += lanes) {
+        // Filter in floats.
+        const auto from_origin = [&](int k, int c) {
+            return hn::Sub(hn::Load(f, rows + ray.row[k] + 8 * c + at), hn::Set(f, ray.origin[k]));
+        };
+        const Corners<F> corners(from_origin, hn::Set(f, ray.shear[0]), hn::Set(f, ray.shear[1]));
+        unsigned candidates = bits_of(
+            f, corners.may_meet(f, hn::Set(f, ray.z), hn::Set(f, ray.s_low), hn::Set(f, ray.s_limit)));
+        if (candidates == 0) continue;
+        // Test the candidates exactly, and keep the nearest.
+        Meetings m;
+        const auto z = [&](auto d, int) { return hn::Set(d, static_cast<double>(ray.z)); };
+        candidates = meet_exactly_among(f, corners, candidates, z, m);
+        for (; candidates != 0; candidates &= candidates - 1) {
+            const int i = std::countr_zero(candidates);
+            const float t = m.t[i];
+            const std::uint32_t id = block.id[at + i];
+            if (!nearer(t, id, ray.t_min, ray.t_limit, ray.element)) continue;
+            if (!keeps(t, m.u[i], m.v[i], id)) continue;
+            ray.t_limit = t;
+            ray.u = m.u[i], ray.v = m.v[i];
+            ray.element = id;
+            found = true;
+        }
+    }
+    if (found) ray.s_limit = s_limit_of(ray.t_limit, ray.z_length);
+    return found;
+}
+HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
+    return test_block(block, ray, [](float, float, float, std::uint32_t) { return true; });
+}
+// `test_block` with the filter of the call. It is not inlined, since a call inside the other would cost
+// registers.
+[[gnu::cold]] HWY_NOINLINE bool test_block_filtered(const WideScene& scene, std::uint32_t leaf, WideRay& ray,
+                                                    std::size_t number) {
+    return test_block(scene.blocks[leaf], ray, [&](float t, float u, float v, std::uint32_t id) {
+        return kept(scene, number, t, u, v, id);
+    });
+}
+// Tests the triangles of a leaf for ray `number`, with the filter of the call if there is one.
+HWY_INLINE bool test_triangles(const WideScene& scene, std::uint32_t leaf, WideRay& ray, std::size_t number) {
+    if (scene.filter.keeps != nullptr) [[unlikely]]
+        return test_block_filtered(scene, leaf, ray, number);
+    return test_block(scene.blocks[leaf], ray);
+}
+
+HWY_INLINE Hit<float> hit_of(const WideScene& scene, const WideRay& ray) {
+    return hit_of(scene, ray.t_limit, ray.u, ray.v, ray.element);
+}
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
