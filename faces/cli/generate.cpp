@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/mesh_file.h>

@@ -89,7 +89,8 @@ public:
     }
 
     /// Visits shells of cells around the point's own cell, until every cell of a shell is beyond the limit.
-    /// Skips those cells of a shell that are beyond the limit.
+    /// Skips those cells of a shell that are beyond the limit, and does not look at cells that are beyond it
+    /// along one axis: of a far point's shells only a thin part is near.
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit limit, Visit visit) const {
         // Find the point's own cell, and the outermost shell that has cells.
@@ -104,7 +105,8 @@ public:
         for (std::int32_t r = 0; r <= last; ++r) {
             // Visit the cells of a shell that are within the limit.
             bool any = false;
-            const bool go_on = for_each_in_shell(lattice, center, r, [&](const auto& cell) {
+            const auto [low, high] = reached(lattice, p, limit());
+            const bool go_on = for_each_in_shell(low, high, center, r, [&](const auto& cell) {
                 auto box = lattice.bounds(cell);
                 box.low = box.low - lattice.pad, box.high = box.high + lattice.pad;
                 // In T, in which distances in tiny scenes underflow. Rounded down by more than distances in T
@@ -119,21 +121,36 @@ public:
     }
 
 private:
-    /// Calls f for the cells with |cell − center| = r in the largest component, one side of the shell after
-    /// the other. Returns false if f did, else true.
+    /// The first and the last cell of the block that the limit reaches along each axis. It has the point's
+    /// own cell. The reach is larger than the limit's root by more than the test of a cell rounds.
+    static auto reached(const Lattice<D>& lattice, const Vec<double, D>& p, T limit) {
+        const double reach = std::sqrt(static_cast<double>(limit) +
+                                       16 * static_cast<double>(std::numeric_limits<T>::denorm_min())) *
+                             (1 + 0x1p-18);
+        std::pair<typename Lattice<D>::Cell, typename Lattice<D>::Cell> block;
+        for (int a = 0; a < D; ++a) {
+            const auto i = static_cast<std::size_t>(a);
+            block.first[i] = lattice.coordinate(p[a] - reach - 2 * lattice.pad[a], a);
+            block.second[i] = lattice.coordinate(p[a] + reach + 2 * lattice.pad[a], a);
+        }
+        return block;
+    }
+    /// Calls f for the cells from `least` to `most` with |cell − center| = r in the largest component, one
+    /// side of the shell after the other. Returns false if f did, else true.
     template <class Cell, class F>
-    static bool for_each_in_shell(const Lattice<D>& lattice, const Cell& center, std::int32_t r, F f) {
+    static bool for_each_in_shell(const Cell& least, const Cell& most, const Cell& center, std::int32_t r,
+                                  F f) {
         Cell first = center, last = center;
-        // Clip the block of the cells within r to the lattice.
+        // Clip the block of the cells within r.
         for (std::size_t a = 0; a < first.size(); ++a) {
-            first[a] = std::max(0, center[a] - r);
-            last[a] = std::min(lattice.resolution[a] - 1, center[a] + r);
+            first[a] = std::max(least[a], center[a] - r);
+            last[a] = std::min(most[a], center[a] + r);
         }
         if (r == 0) return f(center);
-        // Visit the two sides of the block across each axis, if they are in the lattice.
+        // Visit the two sides of the block across each axis.
         for (std::size_t a = 0; a < first.size(); ++a) {
             for (const std::int32_t side : {center[a] - r, center[a] + r}) {
-                if (side < 0 || side >= lattice.resolution[a]) continue;
+                if (side < least[a] || side > most[a]) continue;
                 Cell low = first, high = last;
                 low[a] = high[a] = side;
                 // Leave out the sides across earlier axes, so that each cell is visited once.

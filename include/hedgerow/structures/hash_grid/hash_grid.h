@@ -10,7 +10,7 @@ namespace hedgerow {
 struct HashGridOptions {
     /// Length of a cell's side, in the units of the points. Searches within a radius are fastest if it is
     /// about that radius. 0: chosen so that the occupied extent has half as many cells as points. A cell is
-    /// at least a 2^30th of the extent.
+    /// at least a 2^29th of the extent.
     double cell = 0;
 };
 
@@ -143,7 +143,7 @@ public:
 private:
     /// Cells of one size over the occupied extent. Points on a low side of the extent are in its cells 0.
     static Lattice<D> lattice_over(const Box<T, D>& bounds, std::size_t count, double cell) {
-        constexpr double most_cells = 0x1p30;
+        constexpr double most_cells = 0x1p29;
         const Vec<double, D> low(bounds.low), extent = Vec<double, D>(bounds.high) - low;
         double side = cell > 0 ? cell : side_of_cells(extent, 0.5 * static_cast<double>(count));
         side = std::max({side, max_component(extent) / most_cells, 0x1p-1000});
