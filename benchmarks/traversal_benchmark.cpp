@@ -4,6 +4,7 @@
 ///   traversal_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:200000
 #include <hedgerow/any_index.h>
 #include <hedgerow/scenes/random.h>
+#include <hedgerow/structures/bvh/bvh.h>
 
 #include "measure/contest.h"
 #include "measure/machine.h"

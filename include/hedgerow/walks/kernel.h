@@ -4,17 +4,17 @@
 
 #include <concepts>
 #include <cstddef>
-#include <type_traits>
 
 namespace hedgerow {
 
 /// Answers queries Q of an index I without a walk. Empty, unless an engine specialises it for Q and I
-/// (engine/ray_kernels.h). A specialisation gives the same bits as the walk. It has
+/// (engine/ray_kernels.h). A specialisation gives the same bits as the walk. It is asked in IEEE mode, and
+/// only where no visits are counted. It has
 /// - `explicit operator bool()`: whether the kernel runs on this processor; if not, the walk answers;
 /// - `answer(index, arguments...)`: what `Q(index, arguments...)` answers after its walk.
 /// It may also have
-/// - `answer_many(index, first, probes, answers, filter)`: writes one answer a probe to an array. `first` is
-///   the number of the first probe in the batch. Returns a KernelUse;
+/// - `answer_many(index, first, probes, answers, filter)`: answers[i] is the answer to probes[i], which is
+///   number `first + i` of the batch for the filter. Returns a KernelUse;
 /// - `offer_inside(index, probe, instance, geometry, query)`: for a query of a world in which `index` is an
 ///   instance. Offers the candidates that the probe, in the instance's space, finds there, and
 ///   returns the query's Flow.
@@ -24,8 +24,7 @@ struct Kernel {};
 template <class Q, class I>
 concept HasKernel = requires(const Kernel<Q, I>& kernel) {
     static_cast<bool>(kernel);
-}
-&&!std::is_empty_v<Kernel<Q, I>>;
+};
 
 /// The data of an instance of an index I that kernels read. Empty, unless an engine specialises it with a
 /// type `Instance` and a function `of(index, back, mask, geometry)`.

@@ -11,9 +11,16 @@ namespace hedgerow {
 /// Whether a walk opens near cells first. A query that reports whatever it overlaps needs no order.
 enum class Order { none, nearest };
 
-/// What a walk needs of a query. `probe` is its geometry. `limit` is the largest t (of a ray) or distance²
-/// (of a point) that can still change the answer; a negative limit ends the walk before it begins. `offer` is
-/// called with each candidate that a primitive's test gives, and may stop the walk.
+/// What a walk needs of a query.
+/// - `probe` is its geometry.
+/// - `limit` is the largest t (of a ray) or distance² (of a point) that can still change the answer. It may
+/// only
+///   shrink. Infinity excludes nothing; the largest number excludes distances that overflow. A negative limit
+///   ends the walk before it begins; of a limit for boxes only the sign counts.
+/// - `offer` is called with each candidate that a primitive's test gives, and may stop the walk. A structure
+/// may
+///   offer a primitive more than once. The distance of a candidate may be infinite or NaN.
+/// - `order` is a wish: a walk may ignore it, and a VirtualQuery has the order of its probe.
 template <class Q>
 concept Query = requires(Q& q, const Q& asked, const CandidateOf<typename Q::Probe>& candidate) {
     { Q::order } -> std::convertible_to<Order>;
@@ -22,7 +29,8 @@ concept Query = requires(Q& q, const Q& asked, const CandidateOf<typename Q::Pro
     { q.offer(candidate) } -> std::same_as<Flow>;
 };
 
-/// A query that an Index makes, walks and reads: `answer` is called once, after the walk.
+/// A query that an Index makes, walks and reads. The Index calls the constructor Q(index, arguments...),
+/// which may keep `index.primitives()` (for `reported_id`), and after the walk `answer` once.
 template <class Q>
 concept AnsweringQuery = Query<Q> && requires(Q& q) {
     q.answer();

@@ -13,7 +13,7 @@
 namespace hedgerow {
 
 namespace detail {
-/// A query with no answer, for concepts alone: every walk compiles with it.
+/// A query for concepts alone, which look up `walk` with it.
 template <class P>
 struct AnyQuery {
     using Probe = BoxProbe<typename P::Scalar, P::dimension>;
@@ -27,10 +27,26 @@ struct AnyQuery {
 /// A structure S over primitives P, as an Index holds it. It knows no query: `walk` brings any query to each
 /// leaf that can hold an answer within the query's limit.
 ///
+/// `walk` is a template over primitives, query and count. It does nothing if the query's limit is negative,
+/// and ends where a leaf's test returns Flow::stop. A structure that is none of the trees in volumes.h,
+/// planes.h, orthants.h and no lattice does that by itself:
+///
+///     for each cell:
+///         count.node(Place{number});
+///         if (!query.probe().enter(box, query.limit(), at)) continue;  // the limit shrinks on the way
+///         count.leaf(leaf.count, Place{number});
+///         if (test_leaf(primitives, query.probe(), leaf, query) == Flow::stop) return;
+///
+/// and lists its cells under the same numbers by `for_each_cell(f(number, box, leaf))` (outline.h), for
+/// pictures and traces.
+///
+/// - A default-constructed structure contains nothing.
+/// - `packed_order` says how triangles are packed for rays: `of_leaves` if leaves are ranges of `items`, else
+///   `of_ids`. Without it, and without a member `pack`, they are not packed.
 /// - `build` throws InputError for bad primitives, and UsageError for options out of their range.
 /// - `exclusive` says that each primitive is in one leaf, so that no candidate is offered twice.
 /// - `items` lists the primitives, leaf by leaf. `bytes` is the memory beyond the primitives themselves.
-/// - `depth` counts levels, leaves included.
+/// - `node_count` is more than every NodeId. `depth` counts levels, leaves included; brute force has none.
 /// - `validate` describes the first fault that it finds, and is empty for a sound structure.
 template <class S, class P>
 concept Structure = PrimitiveSet<P> &&
