@@ -5,6 +5,7 @@
 
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/grid/grid.h>
 
 using namespace hedgerow;

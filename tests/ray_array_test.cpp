@@ -3,6 +3,7 @@
 
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/bvh/bvh.h>
 
 using namespace hedgerow;
 using namespace hedgerow::matrix;
