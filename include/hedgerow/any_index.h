@@ -51,17 +51,15 @@ public:
     /// InputError where the structure does not answer queries of this probe.
     template <AnsweringQuery Q, class Count, class... Arguments>
     auto answer(Count& count, Arguments&&... arguments) const {
-        return in_ieee_mode([&] {
-            Q query(*this, arguments...);
-            Virtual<Q> asked(query);
-            if constexpr (std::same_as<Count, Visits>) {
+        if constexpr (!std::same_as<Count, Visits>)
+            return counted<Q>(nullptr, arguments...);
+        else
+            return in_ieee_mode([&] {
+                Q query(*this, arguments...);
+                Virtual<Q> asked(query);
                 walk(asked, count);
-            } else {
-                Visits nobodys;
-                walk(asked, nobodys);
-            }
-            return query.answer();
-        });
+                return query.answer();
+            });
     }
 
     /// Whether the structure answers ray queries.
@@ -81,28 +79,24 @@ public:
         return one_by_one<AnyHit<AnyIndex>>(rays, visits, [&](std::size_t i, bool hit) { hits[i] = hit; });
     }
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits = nullptr) const {
-        Visits nobodys;
-        return answer<AllHits<AnyIndex>>(visits != nullptr ? *visits : nobodys, ray, hits);
+        return counted<AllHits<AnyIndex>>(visits, ray, hits);
     }
     /// Writes the closest point for each of `points`. The element is none (0xFFFFFFFF) where there is no
     /// primitive.
     void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
                         std::span<Visits> visits = {}) const {
-        Visits nobodys;
         for (std::size_t i = 0; i < points.size(); ++i)
             found[i] =
-                answer<ClosestPoint<AnyIndex>>(visits.empty() ? nobodys : visits[i], points[i], anywhere)
+                counted<ClosestPoint<AnyIndex>>(visits.empty() ? nullptr : &visits[i], points[i], anywhere)
                     .value_or(Near<T, D>{});
     }
     std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
                         Visits* visits = nullptr) const {
-        Visits nobodys;
-        return answer<Nearest<AnyIndex>>(visits != nullptr ? *visits : nobodys, point, k, anywhere, found);
+        return counted<Nearest<AnyIndex>>(visits, point, k, anywhere, found);
     }
     std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
                             Visits* visits = nullptr) const {
-        Visits nobodys;
-        return answer<Overlapping<AnyIndex>>(visits != nullptr ? *visits : nobodys, box, found);
+        return counted<Overlapping<AnyIndex>>(visits, box, found);
     }
 
     /// The structure's cells, parents before their children (walks/outline.h).
@@ -129,6 +123,12 @@ protected:
 private:
     static constexpr T anywhere = std::numeric_limits<T>::max();
 
+    /// `answer`, whose visits are added to `visits` if that is not null.
+    template <class Q, class... Arguments>
+    auto counted(Visits* visits, Arguments&&... arguments) const {
+        Visits nobodys;
+        return answer<Q>(visits != nullptr ? *visits : nobodys, arguments...);
+    }
     template <class Q, class Take>
     KernelUse one_by_one(const RayArray<T, D>& rays, std::span<Visits> visits, Take take) const {
         for (std::size_t i = 0; i < rays.size(); ++i) take(i, answer<Q>(visits[i], rays[i], KeepAll{}));

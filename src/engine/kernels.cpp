@@ -38,17 +38,19 @@ struct Answering {
     };
 };
 
+// Answers one ray in a scene of triangles or of instances.
+template <Wanted wanted, class Answer, class Scene>
+Answer answer_ray(const Scene& scene, const Ray<float, 3>& ray) {
+    return by_width<Answering<wanted>::template One>(scene, &ray);
+}
 template <Wanted wanted, class Answer>
-inline constexpr RayKernels<Answer> ray_kernels = {
-    [](const WideScene& scene, const Ray<float, 3>& ray) -> Answer {
-        return by_width<Answering<wanted>::template One>(scene, &ray);
-    },
-    [](const WideInstances& scene, const Ray<float, 3>& ray) -> Answer {
-        return by_width<Answering<wanted>::template One>(scene, &ray);
-    },
-    [](const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
-        return by_width<Answering<wanted>::template Many>(scene, &rays, answers);
-    }};
+KernelUse answer_rays(const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
+    return by_width<Answering<wanted>::template Many>(scene, &rays, answers);
+}
+
+template <Wanted wanted, class Answer>
+inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, answer_ray<wanted, Answer>,
+                                                   answer_rays<wanted, Answer>};
 
 inline constexpr WideKernels kernels {
 #if HWY_TARGET == HWY_AVX3

@@ -14,20 +14,23 @@
 namespace hedgerow {
 
 namespace detail {
-/// A ray query of the world, inside an object's index. Passes candidates on to the world's query, with the
-/// instance's number.
-template <class I, class Q>
-class RayInside {
+/// A query of the world, inside an object's index. Passes candidates on to the world's query, with the
+/// instance's number. Of points and boxes the object's structure only finds the primitives; their shapes in
+/// the world are tested (Placed).
+template <class Q, class InnerProbe>
+class Inside {
 public:
-    using Probe = RayProbe<typename I::Scalar, I::dimension>;
+    using Probe = InnerProbe;
+    using T = typename Probe::Scalar;
     static constexpr Order order = Q::order;
 
-    RayInside(const PlacedIndex<I>& placed, std::uint32_t instance, const typename Q::Probe& asked, Q& query)
-        : probe_(placed.inside(asked.ray()), placed.index().bounds()), query_(query), instance_(instance) {}
+    Inside(const Probe& probe, std::uint32_t instance, Q& query)
+        : probe_(probe), query_(query), instance_(instance) {}
 
     const Probe& probe() const { return probe_; }
-    typename I::Scalar limit() const { return probe_.usable() ? query_.limit() : typename I::Scalar(-1); }
-    Flow offer(RayCandidate<typename I::Scalar> c) {
+    const typename Q::Probe& world() const { return std::as_const(query_).probe(); }
+    T limit() const { return query_.limit(); }
+    Flow offer(CandidateOf<Probe> c) {
         c.instance = instance_;
         return flow_ = query_.offer(c);
     }
@@ -39,40 +42,22 @@ private:
     std::uint32_t instance_;
     Flow flow_ = Flow::go_on;
 };
-
-/// A point or box query of the world, inside an object's index. The object's structure only finds the
-/// primitives; their shapes in the world are tested (Placed).
-template <class I, class Q, class InnerProbe>
-class RegionInside {
+template <class I, class Q>
+class RayInside : public Inside<Q, RayProbe<typename I::Scalar, I::dimension>> {
 public:
-    using Probe = InnerProbe;
     using T = typename I::Scalar;
-    static constexpr Order order = Q::order;
+    using Base = Inside<Q, RayProbe<T, I::dimension>>;
 
-    RegionInside(const Probe& probe, std::uint32_t instance, Q& query)
-        : probe_(probe), query_(query), instance_(instance) {}
+    RayInside(const PlacedIndex<I>& placed, std::uint32_t instance, const typename Q::Probe& asked, Q& query)
+        : Base({placed.inside(asked.ray()), placed.index().bounds()}, instance, query) {}
 
-    const Probe& probe() const { return probe_; }
-    const typename Q::Probe& world() const { return std::as_const(query_).probe(); }
-    T limit() const { return query_.limit(); }
-    template <class Candidate>
-    Flow offer(Candidate c) {
-        c.instance = instance_;
-        return flow_ = query_.offer(c);
-    }
-    Flow flow() const { return flow_; }
-
-protected:
-    Probe probe_;
-    Q& query_;
-    std::uint32_t instance_;
-    Flow flow_ = Flow::go_on;
+    T limit() const { return this->probe().usable() ? Base::limit() : T(-1); }
 };
 template <class I, class Q>
-class PointInside : public RegionInside<I, Q, PointProbe<typename I::Scalar, I::dimension>> {
+class PointInside : public Inside<Q, PointProbe<typename I::Scalar, I::dimension>> {
 public:
     using T = typename I::Scalar;
-    using Base = RegionInside<I, Q, PointProbe<T, I::dimension>>;
+    using Base = Inside<Q, PointProbe<T, I::dimension>>;
     using Ball = typename PlacedIndex<I>::Ball;
 
     PointInside(const Ball& ball, std::uint32_t instance, Q& query)
@@ -80,7 +65,7 @@ public:
 
     /// The squared radius in the object's space. Computed again when the world's limit has shrunk.
     T limit() const {
-        if (const T world = this->query_.limit(); world != world_limit_) {
+        if (const T world = Base::limit(); world != world_limit_) {
             world_limit_ = world;
             limit_ = world < 0 ? world : ball_.radius2(world);
         }
@@ -161,7 +146,7 @@ public:
     }
     template <class Q>
     Flow test_leaf(const BoxProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
-        using Inside = detail::RegionInside<I, Q, BoxProbe<T, D>>;
+        using Inside = detail::Inside<Q, BoxProbe<T, D>>;
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             const PlacedIndex<I>& placed = all_[leaf.ids[i]];
             const Box<T, D> box = placed.inside(probe.box());

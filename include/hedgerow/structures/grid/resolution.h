@@ -5,6 +5,23 @@
 
 namespace hedgerow {
 
+/// The axes along which a box is not flat, by its extents as shares of the longest one.
+struct SpannedAxes {
+    int count = 0;
+    double volume = 1;  ///< of the box across these axes, in longest extents
+
+    template <int D>
+    explicit SpannedAxes(const Vec<double, D>& shares) {
+        for (int a = 0; a < D; ++a)
+            if (spans(shares[a])) volume = product(volume, shares[a]), ++count;
+    }
+    static bool spans(double share) { return share > 1e-3; }
+    /// The side of a cube of volume x across these axes.
+    double root(double x) const { return count == 1 ? x : count == 2 ? std::sqrt(x) : std::cbrt(x); }
+    /// How many of `cells` cubes that fill the box lie along the longest axis.
+    double cells_on_longest(double cells) const { return root(std::max(1.0, cells) / volume); }
+};
+
 /// `density`: so many cells for each primitive, as cubic as the scene allows (Cleary and Wyvill 1988); a
 /// density of 1 gives about as many cells as primitives. `roots`: 3·∛n along each axis (in the plane 3·√n),
 /// whatever the scene's shape.
@@ -35,14 +52,10 @@ private:
         const double longest = max_component(extent);
         if (!(longest > 0)) return Vec<double, D>::all(1);
         const Vec<double, D> share = extent / longest;
-        double volume = 1;
-        int axes = 0;
-        for (int a = 0; a < D; ++a)
-            if (share[a] > 1e-3) volume = product(volume, share[a]), ++axes;
-        const auto root = [&](double x) { return axes == 1 ? x : axes == 2 ? std::sqrt(x) : std::cbrt(x); };
         if (resolution > 0) return share * double(resolution);
-        if (heuristic == GridHeuristic::density) return share * root(std::max(1.0, density * count) / volume);
-        return map(share, [&](double s) { return s > 1e-3 ? 3 * root(count) : 1.0; });
+        const SpannedAxes axes(share);
+        if (heuristic == GridHeuristic::density) return share * axes.cells_on_longest(density * count);
+        return map(share, [&](double s) { return axes.spans(s) ? 3 * axes.root(count) : 1.0; });
     }
 };
 

@@ -1,6 +1,7 @@
 /// Hash grid: points in cells of a given size, over unbounded space. Only occupied cells are stored.
 #pragma once
 
+#include <hedgerow/structures/grid/resolution.h>
 #include <hedgerow/structures/hash_grid/cell_table.h>
 #include <hedgerow/structures/references.h>
 #include <hedgerow/walks/lattice.h>
@@ -161,11 +162,7 @@ private:
     static double side_of_cells(const Vec<double, D>& extent, double cells) {
         const double longest = max_component(extent);
         if (!(longest > 0)) return 1;
-        double volume = 1;
-        int axes = 0;
-        for (int a = 0; a < D; ++a)
-            if (extent[a] > 1e-3 * longest) volume = product(volume, extent[a] / longest), ++axes;
-        return longest * std::pow(volume / std::max(1.0, cells), 1.0 / axes);
+        return longest / SpannedAxes(extent / longest).cells_on_longest(cells);
     }
     Cell cell_at(const Vec<T, D>& p) const {
         Cell cell;

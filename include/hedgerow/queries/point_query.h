@@ -1,0 +1,51 @@
+/// The base of the queries of a point: the probe, and the answer that a candidate becomes.
+#pragma once
+
+#include <hedgerow/walks/query.h>
+
+namespace hedgerow {
+
+/// A primitive's closest point and its squared distance. `element` is the primitive's position in its set,
+/// `primitive` its id. Equal distances go to the lowest (instance, element).
+template <std::floating_point T, int D>
+struct Near {
+    T distance2 = std::numeric_limits<T>::infinity();
+    std::uint32_t primitive = no_primitive, element = no_primitive;
+    Vec<T, D> point;
+    std::uint32_t instance = 0;
+
+    friend bool operator==(const Near&, const Near&) = default;
+};
+
+/// The order of answers and candidates: by (distance², instance, element).
+template <class A, class B>
+bool nearer(const A& a, const B& b) {
+    return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : comes_before(a, b);
+}
+
+/// `Set` gives the ids that answers report.
+template <class Set>
+class PointQuery {
+public:
+    using Scalar = typename Set::Scalar;
+    static constexpr int dimension = Set::dimension;
+    using Probe = PointProbe<Scalar, dimension>;
+    using Candidate = PointCandidate<Scalar, dimension>;
+    using Found = Near<Scalar, dimension>;
+
+    template <class Index>
+    PointQuery(const Index& index, const Vec<Scalar, dimension>& p) : probe_(p), set_(index.primitives()) {}
+
+    const Probe& probe() const { return probe_; }
+
+protected:
+    Found found(const Candidate& c) const {
+        return {c.distance2, reported_id(set_, c.element, c.instance), c.element, c.point, c.instance};
+    }
+
+private:
+    Probe probe_;
+    const Set& set_;
+};
+
+}  // namespace hedgerow
