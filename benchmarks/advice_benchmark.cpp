@@ -32,7 +32,7 @@ void judge(const std::string& name, const P& primitives, std::vector<Score>& sco
     std::vector<std::string> left_out;
     const auto structures = usual_structures(P::dimension, PointSet<ViewOf<P>>, primitives.size(), left_out);
     MeasureOptions options;
-    options.asks = {Ask::closest_hit, Ask::nearest};
+    options.asks = {"closest-hit", "nearest"};
     // Take the advice from a short measurement.
     options.seconds = 0.1, options.seed = first_seed;
     const Comparison sample = measure(primitives, structures, options);

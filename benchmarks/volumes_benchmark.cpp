@@ -92,12 +92,13 @@ void table(const TriangleMesh<float>& mesh, double clock) {
         for (const auto& set : sets) row(name, index, set, built, clock);
     };
     measure("(default)", [&] { return build<Bvh>(mesh, serial_executor()); });
-    for (const auto& [name, volume] : volume_names) {
+    for (std::size_t kind = 0; kind < std::size(volume_names); ++kind) {
+        const auto volume = static_cast<Volume>(kind);
         // The box is the default BVH, above; kdop4 and kdop8 are for the plane.
         if (volume == Volume::box || volume == Volume::kdop4 || volume == Volume::kdop8) continue;
         VolumeBvhOptions options;
         options.volume = volume;
-        measure(std::string(name).c_str(),
+        measure(std::string(name_of(volume)).c_str(),
                 [&] { return build<VolumeBvh>(mesh, options, serial_executor()); });
     }
 }

@@ -72,9 +72,9 @@ StructureCost costing(std::string name, double build, double query, std::size_t 
                       double slowdown = 1) {
     StructureCost s;
     s.structure = std::move(name), s.build_seconds = build, s.bytes = bytes;
-    s.queries = {{Ask::closest_hit, "closest hit, coherent rays", 10, query * 0.5},
-                 {Ask::closest_hit, "closest hit, random rays", 10, query * 1.5},
-                 {Ask::nearest, "8 nearest", 10, 1 / query}};
+    s.queries = {{"closest-hit", "closest hit, coherent rays", 10, query * 0.5},
+                 {"closest-hit", "closest hit, random rays", 10, query * 1.5},
+                 {"nearest", "8 nearest", 10, 1 / query}};
     s.update.one = s.update.all = all, s.update.slowdown = slowdown;
     return s;
 }
@@ -90,7 +90,7 @@ const Comparison made_up{"made up",
                          true};
 
 TEST(Advice, RestsOnTheFigures) {
-    const auto all = advise(made_up, Ask::closest_hit);
+    const auto all = advise(made_up, "closest-hit");
     ASSERT_EQ(all.size(), 4u);
     // Each need ranks the structure with the least figure first.
     EXPECT_EQ(all[0].need, "a few queries");
@@ -106,12 +106,12 @@ TEST(Advice, RestsOnTheFigures) {
     // then.
     Comparison with_engine = made_up;
     with_engine.structures.push_back(costing("engine", 1, 4e-7, 20'000, 1));
-    EXPECT_EQ(advise(with_engine, Ask::closest_hit)[3].ranking[0].structure, "lean");
+    EXPECT_EQ(advise(with_engine, "closest-hit")[3].ranking[0].structure, "lean");
     EXPECT_NE(all[3].reason.find("absurdly slow: none (1,000 times)"), std::string::npos) << all[3].reason;
     // A structure is left out if it is absurdly slow for only one set of rays.
     with_engine.structures.push_back(costing("uneven", 1, 5e-7, 50, 1));
     with_engine.structures.back().queries[0].seconds = 30 * 2e-7;
-    EXPECT_EQ(advise(with_engine, Ask::closest_hit)[3].ranking[0].structure, "lean");
+    EXPECT_EQ(advise(with_engine, "closest-hit")[3].ranking[0].structure, "lean");
     EXPECT_NE(all[0].reason.find("that of best"), std::string::npos) << all[0].reason;
     EXPECT_NE(all[2].reason.find("anew"), std::string::npos) << all[2].reason;
     for (const auto& r : all) {
@@ -125,13 +125,12 @@ StructureCost counting(std::string name, std::size_t items, std::size_t leaves, 
                        double leaves_met, double tests) {
     StructureCost s;
     s.structure = std::move(name), s.nodes = leaves == 1 ? 0 : leaves, s.leaves = leaves, s.items = items;
-    s.queries = {
-        {Ask::closest_hit, "closest hit, coherent rays", 10, 1e-6, 0, nodes_met, leaves_met, tests, 0}};
+    s.queries = {{"closest-hit", "closest hit, coherent rays", 10, 1e-6, 0, nodes_met, leaves_met, tests, 0}};
     return s;
 }
 TEST(Advice, GivesAReasonFromTheCounts) {
     Comparison c{"made up", "triangles", 10'000, 3, {}, {}, 1, true};
-    const auto said = [&](const StructureCost& s) { return reason(s, c, Ask::closest_hit); };
+    const auto said = [&](const StructureCost& s) { return reason(s, c, "closest-hit"); };
     EXPECT_EQ(said(counting("brute-force", 10'000, 1, 0, 1, 10'000)),
               "10,000 tests a query of all 10,000 triangles");
     EXPECT_EQ(
@@ -147,7 +146,7 @@ TEST(Advice, GivesAReasonFromTheCounts) {
     c.structures = {counting("bvh", 10'000, 3'000, 20, 1.5, 4.5),
                     counting("grid", 30'000, 10'000, 9.9, 7, 1'568)};
     c.structures[1].queries[0].seconds = 4e-6;
-    const std::string why = advise(c, Ask::closest_hit)[1].reason;
+    const std::string why = advise(c, "closest-hit")[1].reason;
     EXPECT_NE(why.find("grid takes 4 times as long with 1,568 tests"), std::string::npos) << why;
 }
 TEST(Advice, RanksTheLeastSlowWhereEachStructureIsSlowForSomeRays) {
@@ -157,18 +156,18 @@ TEST(Advice, RanksTheLeastSlowWhereEachStructureIsSlowForSomeRays) {
         c.structures[i].queries[0].seconds = i == 0 ? 1 : 20;
         c.structures[i].queries[1].seconds = i == 0 ? 20 : 1;
     }
-    const auto memory = advise(c, Ask::closest_hit)[3];
+    const auto memory = advise(c, "closest-hit")[3];
     ASSERT_EQ(memory.ranking.size(), 2u);
     EXPECT_EQ(memory.ranking[0].structure, "other");
     EXPECT_NE(memory.rule.find("at most 20 times"), std::string::npos) << memory.rule;
 }
 TEST(Advice, IsForTheQueryThatIsAsked) {
-    EXPECT_EQ(advise(made_up, Ask::nearest)[1].ranking[0].structure, "none");
-    EXPECT_EQ(advise(made_up, Ask::closest_hit, {.few = 1})[0].ranking[0].structure, "none");
-    EXPECT_EQ(advise(made_up, Ask::closest_hit, {.slack = 1.1})[3].ranking[0].structure, "best");
-    EXPECT_TRUE(advise({}, Ask::nearest).empty());
-    EXPECT_EQ(usual_ask(made_up), Ask::closest_hit);
-    EXPECT_EQ(usual_ask({}), Ask::nearest);
+    EXPECT_EQ(advise(made_up, "nearest")[1].ranking[0].structure, "none");
+    EXPECT_EQ(advise(made_up, "closest-hit", {.few = 1})[0].ranking[0].structure, "none");
+    EXPECT_EQ(advise(made_up, "closest-hit", {.slack = 1.1})[3].ranking[0].structure, "best");
+    EXPECT_TRUE(advise({}, "nearest").empty());
+    EXPECT_EQ(usual_ask(made_up), "closest-hit");
+    EXPECT_EQ(usual_ask({}), "nearest");
 }
 
 TEST(Growth, FindsTheLawOfEachFigure) {
@@ -178,18 +177,18 @@ TEST(Growth, FindsTheLawOfEachFigure) {
         c.size = static_cast<std::size_t>(n);
         StructureCost s;
         s.structure = "s", s.build_seconds = 1e-9 * n * std::log2(n);
-        s.queries = {{Ask::closest_hit, "", 1, 1e-7 * std::cbrt(n), 0, 2 + std::log2(n)}};
+        s.queries = {{"closest-hit", "", 1, 1e-7 * std::cbrt(n), 0, 2 + std::log2(n)}};
         c.structures = {s};
         by_size.push_back(c);
     }
-    const auto all = growth_of(by_size, Ask::closest_hit);
+    const auto all = growth_of(by_size, "closest-hit");
     ASSERT_EQ(all.size(), 3u) << "it tested no primitive, so that figure has no law";
     EXPECT_EQ(all[0].fits.front().law, Law::n_log_n);
     for (const Fit& f : all[1].fits) {
         EXPECT_EQ(f.residual < 1e-9, f.law == Law::power || f.law == Law::root) << name_of(f.law);
     }
     EXPECT_EQ(all[2].fits.front().law, Law::logarithm);
-    EXPECT_TRUE(growth_of(std::span(by_size).first(2), Ask::closest_hit).empty());
+    EXPECT_TRUE(growth_of(std::span(by_size).first(2), "closest-hit").empty());
 }
 
 TEST(Quantities, HaveThreeDigitsAndAUnit) {

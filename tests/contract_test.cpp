@@ -40,7 +40,7 @@ void expect_same_bits(const P& set, const V& scattered) {
     const auto plain = build_any("bvh", set);
     const Questions questions(plain->bounds(), {plain->bounds().low, plain->bounds().center()}, 400);
     const auto expected = answers(*plain, questions);
-    for (const auto& name : matrix::structures_for<P>()) {
+    for (const auto& name : structures_for<P>()) {
         const auto index = build_any(name, scattered);
         EXPECT_EQ(index->validate(), "") << name;
         EXPECT_TRUE(answers(*index, questions) == expected) << name;
@@ -287,7 +287,7 @@ TYPED_TEST(Contract, TheCallersFloatingPointModeChangesNothing) {
         const Questions<T, 3> questions(build(mesh).bounds(), mesh.vertices, 160);
         // Flush to zero and denormals are zero; rounding up; all three.
         for (const unsigned mode : {0x8040u, 0x4000u, 0xC040u}) {
-            for (const auto& name : matrix::structures_for<TriangleMesh<T>>())
+            for (const auto& name : structures_for<TriangleMesh<T>>())
                 expect_no_effect(name, mesh, questions, mode);
             InModeExecutor threads(mode);
             const auto index = build(mesh, threads);

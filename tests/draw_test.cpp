@@ -7,6 +7,7 @@
 #include <hedgerow/io/image.h>
 #include <hedgerow/scenes/generate.h>
 
+#include "structure_names.h"
 #include "svg_elements.h"
 #include "tool.h"
 
@@ -22,8 +23,7 @@ std::size_t cells_of(const std::string& scene, const std::string& spec) {
 
 TEST_F(Draw, FlatScenesShowEveryCell) {
     for (const char* scene : {"gen:clusters2d:120", "gen:segments2d:80"})
-        for (const char* spec : {"quadtree:leaf_size=3", "kdtree", "grid", "two-level-grid", "bsp", "bvh",
-                                 "wide", "brute-force"}) {
+        for (const std::string& spec : structures_for<SegmentSet<float>>()) {
             SCOPED_TRACE(std::string(scene) + " " + spec);
             const auto r =
                 run(std::string("draw ") + scene + " --structure " + spec + " -o " + file("cells.svg"));
@@ -36,7 +36,7 @@ TEST_F(Draw, FlatScenesShowEveryCell) {
 }
 
 TEST_F(Draw, SlicesShowWhatThePlaneCuts) {
-    for (const char* spec : {"octree", "kdtree", "grid", "two-level-grid", "bsp", "bvh", "wide"}) {
+    for (const std::string& spec : structures_for<TriangleMesh<float>>()) {
         SCOPED_TRACE(spec);
         const auto r = run(std::string("draw gen:teapot:300 --slice z=0.4 --structure ") + spec + " -o " +
                            file("slice.svg"));
@@ -92,12 +92,11 @@ TEST_F(Draw, TwoBuildersShowWhatSiblingsShare) {
 
 TEST_F(Draw, ARaysTableIsItsTrace) {
     const std::string ray = " --ray=-0.2,0.31,1,0.35";
-    for (const char* spec : {"quadtree", "kdtree", "grid", "two-level-grid", "bsp", "bvh", "wide"}) {
+    for (const std::string& spec : structures_for<SegmentSet<float>>()) {
         SCOPED_TRACE(spec);
         const auto set = std::get<SegmentSet<float>>(generate<float>(parse_scene_spec("gen:segments2d:80")));
         const auto trace = build_any(spec, set)->trace({{-0.2f, 0.31f}, {1, 0.35f}});
-        const auto r =
-            run("draw gen:segments2d:80 --structure " + std::string(spec) + ray + " -o " + file("ray.svg"));
+        const auto r = run("draw gen:segments2d:80 --structure " + spec + ray + " -o " + file("ray.svg"));
         ASSERT_EQ(r.code, 0) << r.output;
         // The picture has a cell for each step of the trace, and the table a line.
         EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "cell visited"), trace.steps.size());
@@ -107,8 +106,8 @@ TEST_F(Draw, ARaysTableIsItsTrace) {
         ASSERT_TRUE(trace.hit);
         EXPECT_NE(r.output.find("hits primitive " + std::to_string(trace.hit->element)), std::string::npos);
         // The JSON has the counts of the trace.
-        const auto json = run("draw gen:segments2d:80 --json --structure " + std::string(spec) + ray +
-                              " -o " + file("ray.svg"));
+        const auto json =
+            run("draw gen:segments2d:80 --json --structure " + spec + ray + " -o " + file("ray.svg"));
         EXPECT_NE(json.output.find("\"primitives\": " + std::to_string(trace.visits.primitives)),
                   std::string::npos);
     }

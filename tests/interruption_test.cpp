@@ -7,6 +7,7 @@
 #include <hedgerow/scenes/generate.h>
 
 #include "io_support.h"
+#include "structure_names.h"
 
 namespace hedgerow {
 namespace {
@@ -40,26 +41,16 @@ private:
     std::atomic<std::uint64_t> splits_{0};
 };
 
-const char* const structures[] = {"bvh",
-                                  "bvh:builder=sweep",
-                                  "bvh:builder=equal-counts",
-                                  "bvh:builder=midpoint",
-                                  "bvh:builder=lbvh",
-                                  "bvh:builder=ploc",
-                                  "bvh:builder=agglomerative",
-                                  "bvh:builder=spatial-splits",
-                                  "bvh:reinsertion=3",
-                                  "bvh:volume=sphere",
-                                  "wide",
-                                  "wide:builder=fast",
-                                  "wide:builder=high",
-                                  "kdtree",
-                                  "kdtree:builder=binned",
-                                  "kdtree:builder=median",
-                                  "octree",
-                                  "bsp",
-                                  "grid",
-                                  "two-level-grid"};
+/// Every structure that is built (brute force is not) by every builder, and what a build may add to that.
+const std::vector<std::string>& structures() {
+    static const auto names = [] {
+        auto all = builders_for<TriangleMesh<float>>();
+        std::erase(all, "brute-force");
+        all.insert(all.end(), {"bvh:reinsertion=3", "bvh:volume=sphere"});
+        return all;
+    }();
+    return names;
+}
 // Primitives of the indexes that are built, and of the scenes and files that are written.
 constexpr std::size_t count = 12'000, written = 20'000;
 
@@ -70,7 +61,7 @@ const TriangleMesh<float>& mesh() {
 
 TEST(Interruption, TheTokenIsLookedAtOftenAndTheWorkIsReported) {
     for (Executor* const threads : {static_cast<Executor*>(&serial_executor()), &default_executor()})
-        for (const char* const structure : structures) {
+        for (const std::string& structure : structures()) {
             std::atomic<std::uint64_t> most{0}, total{0}, reports{0};
             const Progress progress{[&](std::uint64_t done, std::uint64_t all) {
                                         EXPECT_LE(done, all) << structure;
@@ -92,7 +83,7 @@ TEST(Interruption, TheTokenIsLookedAtOftenAndTheWorkIsReported) {
 }
 
 TEST(Interruption, WatchedBuildsAreTheSame) {
-    for (const char* const structure : structures) {
+    for (const std::string& structure : structures()) {
         WatchedExecutor watched(serial_executor(), {});
         const auto one = build_any(structure, mesh(), watched), other = build_any(structure, mesh());
         EXPECT_EQ(one->node_count(), other->node_count()) << structure;
@@ -103,7 +94,7 @@ TEST(Interruption, WatchedBuildsAreTheSame) {
 
 TEST(Interruption, ATokenRaisedAtAnySplitEndsTheBuild) {
     for (Executor* const threads : {static_cast<Executor*>(&serial_executor()), &default_executor()})
-        for (const char* const structure : structures) {
+        for (const std::string& structure : structures()) {
             std::atomic<bool> token{false};
             // Count the splits of a whole build.
             RaisingExecutor never(*threads, 0, token);

@@ -6,8 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include <hedgerow/any_index.h>
+#include <hedgerow/questions.h>
 #include <hedgerow/scenes/random.h>
+
+#include "structure_names.h"
 
 namespace hedgerow::matrix {
 
@@ -71,15 +73,6 @@ std::string named_for(std::string spec) {
     return spec;
 }
 
-/// The names of all structures that answer rays over sets of P. Their options are the defaults.
-template <class P>
-std::vector<std::string> structures_for() {
-    std::vector<std::string> names;
-    for (const auto& s : structure_list())
-        if (s.rays && s.holds(P::dimension, PointSet<ViewOf<P>>)) names.emplace_back(s.name);
-    return names;
-}
-
 /// `many` if HEDGEROW_LONG is set in the environment, which chooses the long suites; else `few`.
 inline std::size_t in_long_runs(std::size_t many, std::size_t few) {
     return std::getenv("HEDGEROW_LONG") != nullptr ? many : few;
@@ -131,106 +124,125 @@ Ray<T, D> ray_of(const Box<T, D>& box, const Points<T, D>& targets, std::uint64_
     return ray;
 }
 
-/// The answers of an index to some rays: closest hit and any hit of each ray, all hits of every eighth.
-template <class T, int D>
-struct RayAnswers {
-    std::vector<Hit<T>> closest;
-    std::unique_ptr<bool[]> any;
-    std::vector<std::vector<Hit<T>>> all;
-
-    RayAnswers(const AnyIndex<T, D>& index, std::span<const Ray<T, D>> rays)
-        : closest(rays.size()), any(new bool[rays.size()]), all((rays.size() + 7) / 8) {
-        default_executor().for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
-            const auto part = rays.subspan(begin, end - begin);
-            index.closest_hits(part, std::span(closest).subspan(begin, end - begin));
-            index.any_hits(part, {any.get() + begin, end - begin});
-            for (std::size_t i = begin; i < end; ++i)
-                if (i % 8 == 0) index.all_hits(rays[i], all[i / 8]);
-        });
-    }
-};
-
-template <class T, int D>
-void expect_same(const RayAnswers<T, D>& want, const RayAnswers<T, D>& got, std::uint64_t first_ray) {
-    for (std::size_t i = 0; i < want.closest.size(); ++i) {
-        ASSERT_EQ(want.closest[i], got.closest[i]) << "closest hit of ray " << first_ray + i << ": t "
-                                                   << want.closest[i].t << " and " << got.closest[i].t;
-        ASSERT_EQ(bool(want.closest[i]), got.any[i]) << "any hit of ray " << first_ray + i;
-    }
-    for (std::size_t i = 0; i < want.all.size(); ++i)
-        ASSERT_EQ(want.all[i], got.all[i]) << "all hits of ray " << first_ray + 8 * i;
-}
-
 template <class T, int D>
 using Indexes = std::vector<std::unique_ptr<AnyIndex<T, D>>>;
 
-/// Compares all other indexes with the first, on rays `begin` to `end` of the scene.
+/// Whether a question of the table takes many queries in one call.
+template <class Question, class Index>
+constexpr bool in_batches = requires(const Index& index, std::span<typename Question::Answer> answers) {
+    Question::ask_all(index, std::span<const typename Question::Given>(), answers);
+};
+
+/// The answers of an index to a question, for each that is given. `some` queries are one task.
+template <class Question, class Index>
+std::unique_ptr<typename Question::Answer[]> answers_of(const Index& index,
+                                                        std::span<const typename Question::Given> given,
+                                                        std::size_t some) {
+    std::unique_ptr<typename Question::Answer[]> answers(new typename Question::Answer[given.size()]);
+    default_executor().for_each_piece(given.size(), some, [&](std::size_t begin, std::size_t end) {
+        const std::size_t count = end - begin;
+        if constexpr (in_batches<Question, Index>) {
+            Question::ask_all(index, given.subspan(begin, count), std::span(answers.get() + begin, count));
+        } else {
+            Visits visits;
+            for (std::size_t i = begin; i < end; ++i) Question::ask(index, given[i], answers[i], visits);
+        }
+    });
+    return answers;
+}
+
+/// Compares the answers of all other indexes with those of the first. `first` is the number of the first
+/// query, and `stride` the distance to the next.
+template <class Question, class T, int D>
+void expect_equal_answers(const Indexes<T, D>& indexes, const std::vector<typename Question::Given>& given,
+                          std::size_t some, std::size_t first = 0, std::size_t stride = 1) {
+    constexpr bool of_rays = std::same_as<typename Question::Given, Ray<T, D>>;
+    const auto want = answers_of<Question>(*indexes[0], given, some);
+    for (std::size_t s = 1; s < indexes.size(); ++s) {
+        if (of_rays && !indexes[s]->answers_rays()) continue;
+        const auto got = answers_of<Question>(*indexes[s], given, some);
+        for (std::size_t i = 0; i < given.size(); ++i)
+            ASSERT_EQ(want[i], got[i])
+                << indexes[s]->structure() << ": " << Question::words << ", query " << first + i * stride;
+    }
+}
+
+/// Compares all other indexes with the first, on rays `begin` to `end` of the scene. Questions that are asked
+/// one by one get every eighth.
 template <class T, int D>
 void expect_equal_rays(const Indexes<T, D>& indexes, const Points<T, D>& targets, std::size_t begin,
                        std::size_t end) {
-    constexpr std::size_t at_once = 1 << 16;  // a multiple of 8, for RayAnswers
+    constexpr std::size_t at_once = 1 << 16;
     for (; begin < end; begin += at_once) {
-        std::vector<Ray<T, D>> rays(std::min(at_once, end - begin));
-        for (std::size_t i = 0; i < rays.size(); ++i)
+        std::vector<Ray<T, D>> rays(std::min(at_once, end - begin)), eighth;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
             rays[i] = ray_of(indexes[0]->bounds(), targets, begin + i);
-        const RayAnswers<T, D> want(*indexes[0], rays);
-        for (std::size_t s = 1; s < indexes.size(); ++s) {
-            if (!indexes[s]->answers_rays()) continue;
-            SCOPED_TRACE(indexes[s]->structure());
-            expect_same(want, RayAnswers<T, D>(*indexes[s], rays), begin);
-            if (testing::Test::HasFatalFailure()) return;
+            if (i % 8 == 0) eighth.push_back(rays[i]);
         }
-    }
-}
-
-/// The answers of an index to `count` points and boxes in and around its scene.
-template <class T, int D>
-struct RegionAnswers {
-    std::vector<Near<T, D>> closest;
-    std::vector<std::vector<Near<T, D>>> nearest, within;
-    std::vector<std::vector<PrimitiveId>> overlapping;
-
-    RegionAnswers(const AnyIndex<T, D>& index, std::size_t count)
-        : closest(count), nearest(count), within(count), overlapping(count) {
-        default_executor().for_each_piece(count, 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                Random random(9, i);
-                const auto p = point_in(index.bounds(), i % 2 == 0 ? 0.0 : 3.0, random);
-                index.closest_points({&p, 1}, {&closest[i], 1});
-                index.nearest(p, i % 20, nearest[i]);
-                // Six radii from twice the scene's diagonal down, each by a factor of 2^1.5 smaller. Then
-                // exactly the distance of the closest point.
-                const T extent = length(index.bounds().extent());
-                const T radius2 =
-                    i % 7 == 6 ? closest[i].distance2 : extent * extent * std::ldexp(T(4), -3 * int(i % 7));
-                hedgerow::within(index, p, radius2, within[i]);
-                Box<T, D> box;
-                for (int corner = 0; corner < 2; ++corner) box.expand(point_in(index.bounds(), 0.2, random));
-                index.overlapping(box, overlapping[i]);
+        for_each_question<T, D>([&]<class Question>(Question) {
+            if constexpr (std::same_as<typename Question::Given, Ray<T, D>>) {
+                constexpr bool all = in_batches<Question, AnyIndex<T, D>>;
+                if (!testing::Test::HasFatalFailure())
+                    expect_equal_answers<Question>(indexes, all ? rays : eighth, 256, begin, all ? 1 : 8);
             }
         });
-    }
-};
-
-template <class T, int D>
-void expect_same(const RegionAnswers<T, D>& want, const RegionAnswers<T, D>& got) {
-    for (std::size_t i = 0; i < want.closest.size(); ++i) {
-        ASSERT_EQ(want.closest[i], got.closest[i]) << "closest point of " << i;
-        ASSERT_EQ(want.nearest[i], got.nearest[i]) << "nearest of " << i;
-        ASSERT_EQ(want.within[i], got.within[i]) << "within a distance of " << i;
-        ASSERT_EQ(want.overlapping[i], got.overlapping[i]) << "overlap of " << i;
+        if (testing::Test::HasFatalFailure()) return;
+        // A ray hits something exactly if it has a closest hit.
+        const std::span some(rays.data(), std::min<std::size_t>(rays.size(), 1024));
+        const auto closest = answers_of<AskClosestHit<T, D>>(*indexes[0], some, 256);
+        const auto any = answers_of<AskAnyHit<T, D>>(*indexes[0], some, 256);
+        for (std::size_t i = 0; i < some.size(); ++i)
+            ASSERT_EQ(bool(closest[i]), any[i]) << "ray " << begin + i;
     }
 }
+
+/// `count` points and boxes in and around a scene, as questions take them.
+template <class T, int D>
+struct Regions {
+    std::vector<Vec<T, D>> points;
+    std::vector<Neighbours<T, D>> neighbours;  ///< 0 to 19 of a point
+    std::vector<Ball<T, D>> balls;
+    std::vector<Box<T, D>> boxes;
+
+    Regions(const AnyIndex<T, D>& index, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            Random random(9, i);
+            points.push_back(point_in(index.bounds(), i % 2 == 0 ? 0.0 : 3.0, random));
+            neighbours.push_back({points[i], i % 20});
+            boxes.emplace_back();
+            for (int corner = 0; corner < 2; ++corner) boxes[i].expand(point_in(index.bounds(), 0.2, random));
+        }
+        // Six radii from twice the scene's diagonal down, each by a factor of 2^1.5 smaller. Then exactly the
+        // distance of the closest point.
+        const auto closest = answers_of<AskClosestPoint<T, D>>(index, points, 16);
+        const T extent = length(index.bounds().extent());
+        for (std::size_t i = 0; i < count; ++i)
+            balls.push_back({points[i], i % 7 == 6 ? closest[i].distance2
+                                                   : extent * extent * std::ldexp(T(4), -3 * int(i % 7))});
+    }
+    template <class Given>
+    const std::vector<Given>& given() const {
+        if constexpr (std::same_as<Given, Vec<T, D>>)
+            return points;
+        else if constexpr (std::same_as<Given, Neighbours<T, D>>)
+            return neighbours;
+        else if constexpr (std::same_as<Given, Ball<T, D>>)
+            return balls;
+        else
+            return boxes;
+    }
+};
 
 /// Compares all other indexes with the first, on `count` points and boxes.
 template <class T, int D>
 void expect_equal_regions(const Indexes<T, D>& indexes, std::size_t count) {
-    const RegionAnswers<T, D> want(*indexes[0], count);
-    for (std::size_t s = 1; s < indexes.size(); ++s) {
-        SCOPED_TRACE(indexes[s]->structure());
-        expect_same(want, RegionAnswers<T, D>(*indexes[s], count));
-        if (testing::Test::HasFatalFailure()) return;
-    }
+    const Regions<T, D> regions(*indexes[0], count);
+    for_each_question<T, D>([&]<class Question>(Question) {
+        using Given = typename Question::Given;
+        if constexpr (!std::same_as<Given, Ray<T, D>>)
+            if (!testing::Test::HasFatalFailure())
+                expect_equal_answers<Question>(indexes, regions.template given<Given>(), 16);
+    });
 }
 
 /// Compares every structure over a set with brute force, on every query.

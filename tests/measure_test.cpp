@@ -41,7 +41,7 @@ TEST(Measure, CountsWhatIsVisited) {
         EXPECT_EQ(s.items, index->item_count());
         EXPECT_EQ(s.depth, index->depth());
         EXPECT_EQ(s.builds, 1);
-        ASSERT_EQ(s.queries.size(), 12u);
+        ASSERT_EQ(s.queries.size(), 13u);
         for (const auto& q : s.queries) {
             EXPECT_EQ(q.asked, 64u) << q.kind;
             EXPECT_GT(q.seconds, 0) << q.kind;
@@ -106,7 +106,7 @@ TriangleMesh<float> teapot_in_a_room() {
 TEST(Measure, LeavesAllSurfacesWithIncoherentRays) {
     const Strings structures = {"bvh"};
     MeasureOptions o = quick_options();
-    o.queries = 400, o.asks = {Ask::closest_hit};
+    o.queries = 400, o.asks = {"closest-hit"};
     const auto mesh = teapot_in_a_room();
     // A camera outside of the room sees the walls.
     const Comparison outside = measure(mesh, structures, o);
@@ -140,7 +140,7 @@ TEST(Measure, SpreadsIncoherentRaysByArea) {
     for (const Vec3f& p : ball.vertices) mesh.vertices.push_back(p);
     for (const auto& [a, b, c] : ball.triangles) mesh.triangles.push_back({3 + a, 3 + b, 3 + c});
     MeasureOptions o = quick_options();
-    o.queries = 400, o.asks = {Ask::closest_hit};
+    o.queries = 400, o.asks = {"closest-hit"};
     const Strings structures = {"bvh"};
     EXPECT_GT(measure(mesh, structures, o).rays[1].missed, 390u);
 }
@@ -151,14 +151,14 @@ TEST(Measure, TakesEveryKindOfPrimitives) {
         EXPECT_EQ(c.structures.size(), 2u);
         return c.structures.at(0).queries.size();
     };
-    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 12u);
-    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 12u);
-    EXPECT_EQ(kinds(points<float>(200), "octree"), 3u) << "rays pass between points";
-    EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 3u);
+    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 13u);
+    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 13u);
+    EXPECT_EQ(kinds(points<float>(200), "octree"), 4u) << "rays pass between points";
+    EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 4u);
 }
 TEST(Measure, AsksWhatIsSlowLess) {
     MeasureOptions o = quick_options();
-    o.queries = 10'000, o.seconds = 0.003, o.asks = {Ask::nearest}, o.updates = false;
+    o.queries = 10'000, o.seconds = 0.003, o.asks = {"nearest"}, o.updates = false;
     const Strings structures = {"brute-force", "kdtree"};
     const auto cloud = points<float>(50'000);
     const Comparison c = measure(cloud, structures, o);
@@ -169,17 +169,19 @@ TEST(Measure, AsksWhatIsSlowLess) {
 }
 TEST(Measure, BuildsWhereNoQuerySuitsThePrimitives) {
     MeasureOptions o = quick_options();
-    o.asks = {Ask::closest_hit};
-    EXPECT_FALSE((can_be_asked<PointCloud<float, 3>>(Ask::closest_hit)));
-    EXPECT_TRUE((can_be_asked<PointCloud<float, 3>>(Ask::nearest)));
-    EXPECT_TRUE(can_be_asked<SegmentSet<float>>(Ask::closest_hit));
+    o.asks = {"closest-hit"};
+    const auto of_points = question_names<PointCloud<float, 3>>();
+    EXPECT_EQ(std::count(of_points.begin(), of_points.end(), "closest-hit"), 0);
+    EXPECT_EQ(std::count(of_points.begin(), of_points.end(), "nearest"), 1);
+    const auto of_segments = question_names<SegmentSet<float>>();
+    EXPECT_EQ(std::count(of_segments.begin(), of_segments.end(), "closest-hit"), 1);
     const Strings structures = {"kdtree", "bvh"};
     const Comparison c = measure(points<float>(200), structures, o);
     EXPECT_TRUE(c.finished);
     ASSERT_EQ(c.structures.size(), 2u);
     EXPECT_TRUE(c.structures[1].queries.empty());
     EXPECT_EQ(c.structures[1].update.slowdown, 1);
-    EXPECT_EQ(advise(c, Ask::closest_hit).size(), 4u);
+    EXPECT_EQ(advise(c, "closest-hit").size(), 4u);
 }
 TEST(Measure, RefusesWhatIsNotThere) {
     const Strings structures = {"bvh"};
@@ -208,7 +210,9 @@ TEST(Measure, StopsWhenItIsTold) {
 TEST(Measure, StopsBetweenTheQueriesOfOneKind) {
     const auto cloud = points<float>(100);
     const auto index = build_any("brute-force", cloud);
-    Questions<float, 3> questions(Ask::nearest, "8 nearest", cloud.points);
+    std::vector<Neighbours<float, 3>> given;
+    for (const Vec3f& p : cloud.points) given.push_back({p, 8});
+    QuestionsOf<AskNearest<float, 3>, float, 3> questions("8 nearest", given);
     const std::atomic<bool> cancel{true};
     Visits visits;
     EXPECT_THROW(questions.answers(*index, visits, {{}, &cancel}), Cancelled);

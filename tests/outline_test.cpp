@@ -119,8 +119,7 @@ TYPED_TEST(Outline, LeavesOfPartitionsTileTheRoot) {
 
 TYPED_TEST(Outline, LimitsLeaveOutWhatIsDeepOrElsewhere) {
     const auto set = soup<TypeParam>(300);
-    for (const char* spec :
-         {"bvh", "wide", "kdtree", "bsp", "octree", "grid", "two-level-grid", "brute-force"}) {
+    for (const std::string& spec : structures_for<TriangleMesh<TypeParam>>()) {
         SCOPED_TRACE(spec);
         const auto index = build_any(spec, set);
         const auto all = index->outline();
@@ -190,7 +189,7 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
 TEST(Trace, IntervalsAreTheRaysPartsInTheCells) {
     const auto set = soup<float>(200);
     const Ray3f ray{{-0.5f, 0.4f, 0.45f}, {1, 0.1f, 0.05f}};
-    for (const char* spec : {"bvh", "wide", "kdtree", "bsp", "octree", "grid", "two-level-grid"}) {
+    for (const std::string& spec : structures_for<TriangleMesh<float>>()) {
         const auto index = build_any(spec, set);
         SCOPED_TRACE(spec);
         const auto trace = index->trace(ray);

@@ -134,8 +134,9 @@ void with_each_volume(const Points<T, D>& points, F f, double share = 1) {
     std::vector<Vec<double, D>> wide;
     Box<T, D> box;
     for (const auto& p : points) wide.push_back(Vec<double, D>(p)), box.expand(p);
-    int kinds = 0;
-    for (const auto& [name, kind] : volume_names) {
+    int kinds = 0, kinds_seen = 0;
+    for (const std::string_view name : volume_names) {
+        const auto kind = static_cast<Volume>(kinds_seen++);
         const bool of_space = kind == Volume::kdop6 || kind == Volume::kdop14 || kind == Volume::kdop18 ||
                               kind == Volume::kdop26 || kind == Volume::cylinder || kind == Volume::hull;
         const bool of_plane = kind == Volume::kdop4 || kind == Volume::kdop8;

@@ -201,7 +201,7 @@ TEST(Walkers, PassOverWhatLiesBehindTheHit) {
     }
     // Compare the visits of the closest hit with those of all hits.
     const Ray3f ray{{-1, 0.3f, 0.4f}, {1, 0, 0}};
-    for (const auto& name : matrix::structures_for<TriangleMesh<float>>()) {
+    for (const auto& name : structures_for<TriangleMesh<float>>()) {
         if (name == "brute-force") continue;
         SCOPED_TRACE(name);
         const auto index = build_any(name, row);

@@ -27,10 +27,6 @@ inline constexpr std::string_view modes[] = {"one", "batch"};
 constexpr std::string_view name_of(Mode m) {
     return modes[static_cast<std::size_t>(m)];
 }
-inline constexpr std::string_view builders[] = {"fast", "medium", "high"};
-constexpr std::string_view name_of(WideBuilder b) {
-    return builders[static_cast<std::size_t>(b)];
-}
 
 /// Least cycles that one visit takes for a single ray: the dependent steps from a node's address to the next
 /// node's. They are a load of the planes from the nearest cache into a wide register (7 cycles), a fused

@@ -57,7 +57,7 @@ EngineOptions options_of(const BenchArguments& a) {
     o.sets = list_of<RayKind>("--sets", a.sets, ray_kinds);
     o.questions = list_of<Question>("--questions", a.questions, questions);
     o.modes = list_of<Mode>("--modes", a.modes, modes);
-    o.builders = list_of<WideBuilder>("--builders", a.builders, builders);
+    o.builders = list_of<WideBuilder>("--builders", a.builders, wide_builder_names);
     if (o.sets == std::vector{RayKind::shadow} && o.questions == std::vector{Question::closest})
         throw UsageError("--sets shadow: shadow rays are asked for any hit; add --questions any");
     if (a.quick) o.rounds = 3, o.picture = 128, o.random = 1 << 14, o.sample = 2000;

@@ -7,6 +7,7 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/compare/measure.h>
+#include <hedgerow/questions.h>
 
 #include "compare_report.h"
 #include "verbs.h"
@@ -26,11 +27,6 @@ struct CompareArguments : Common {
     double seconds = 0.1;
 };
 
-compare::Ask ask_named(const std::string& name) {
-    return static_cast<compare::Ask>(
-        std::find(std::begin(compare::ask_names), std::end(compare::ask_names), name) - compare::ask_names);
-}
-
 compare::MeasureOptions measure_options(const CompareArguments& a, bool all) {
     compare::MeasureOptions o;
     o.queries = a.queries, o.seconds = a.seconds, o.seed = a.seed;
@@ -38,7 +34,7 @@ compare::MeasureOptions measure_options(const CompareArguments& a, bool all) {
     o.updates = all;
     if (a.counts) {
         o.rounds = 0;
-        if (!a.ask.empty()) o.asks = {ask_named(a.ask)};
+        if (!a.ask.empty()) o.asks = {a.ask};
     }
     return o;
 }
@@ -79,7 +75,7 @@ public:
         : a_(a), limit_(a.threads), executor_(a.threads == 1 ? serial_executor() : default_executor()) {
         report_.scene = a.scene;
         report_.timed = !a.counts;
-        if (!a.ask.empty()) report_.ask = ask_named(a.ask);
+        if (!a.ask.empty()) report_.ask = a.ask;
         for (const std::string& s : a.sweeps) report_.sweeps.push_back({compare::sweep_of(s), {}});
     }
 
@@ -156,7 +152,8 @@ private:
     /// Throws UsageError, before anything is measured, if --for names a query that P does not support.
     template <class P>
     void check_ask() const {
-        if (!a_.ask.empty() && !compare::can_be_asked<P>(report_.ask))
+        const auto names = question_names<P>();
+        if (!a_.ask.empty() && std::find(names.begin(), names.end(), a_.ask) == names.end())
             throw UsageError(fmt::format("--for {}: points cannot be asked that; try --for nearest", a_.ask));
     }
     void note(std::string text) {
@@ -277,9 +274,9 @@ Run add_compare(CLI::App& verb) {
     verb.add_flag("--scale", a->scale, "how costs grow with a generated scene, and which laws fit");
     verb.add_option("--sizes", a->sizes, "of --scale: FROM..TO or a list; 1000 to 64000 if not given")
         ->needs("--scale");
+    const auto names = question_names<TriangleMesh<float>>();
     verb.add_option("--for", a->ask, "the query that break-even, advice and growth are about")
-        ->check(CLI::IsMember(
-            std::vector<std::string>(std::begin(compare::ask_names), std::end(compare::ask_names))));
+        ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
     verb.add_flag("--full", a->full, "also a table for each kind of query, for changes and for break-even");
     verb.add_flag("--counts", a->counts, "counts alone: all queries are asked once, and nothing is timed");
     add_camera(verb, a->view);

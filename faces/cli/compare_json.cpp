@@ -13,7 +13,7 @@ using nlohmann::ordered_json;
 namespace {
 
 ordered_json json_of(const QueryCost& q, bool timed) {
-    ordered_json j = {{"ask", name_of(q.ask)}, {"kind", q.kind}, {"asked", q.asked}};
+    ordered_json j = {{"ask", q.ask}, {"kind", q.kind}, {"asked", q.asked}};
     if (timed) j.update({{"seconds", q.seconds}, {"spread", q.spread}});
     j.update(
         {{"nodes", q.nodes}, {"leaves", q.leaves}, {"primitives", q.primitives}, {"skipped", q.skipped}});
@@ -105,7 +105,7 @@ ordered_json growth_json(const CompareReport& r) {
 }  // namespace
 
 ordered_json json_of(const CompareReport& r) {
-    ordered_json j = {{"scene", r.scene}, {"notes", r.notes}, {"ask", name_of(r.ask)}};
+    ordered_json j = {{"scene", r.scene}, {"notes", r.notes}, {"ask", r.ask}};
     if (r.comparison) j.update(json_of(*r.comparison, r.timed));
     if (r.comparison && r.timed) {
         j["break_even"] = break_even_json(*r.comparison, r.ask);

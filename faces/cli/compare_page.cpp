@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <hedgerow/compare/break_even.h>
+#include <hedgerow/questions.h>
 
 #include "compare_report.h"
 #include "page.h"
@@ -23,12 +24,11 @@ namespace {
 /// at 1 is the best for that n.
 std::string total_plot(const Comparison& c, Ask ask) {
     constexpr double most = 30;
-    LinePlot plot{
-        fmt::format("a build and so many {} queries, times the least (up to {})", name_of(ask), most),
-        "queries",
-        Unit::number,
-        {},
-        {}};
+    LinePlot plot{fmt::format("a build and so many {} queries, times the least (up to {})", ask, most),
+                  "queries",
+                  Unit::number,
+                  {},
+                  {}};
     for (std::size_t i = 0; i < c.structures.size(); ++i)
         plot.series.push_back({c.structures[i].structure, i, {}});
     // Sample n from 1 to 10^8, eight times a decade. Points beyond `most` are left out.
@@ -81,12 +81,12 @@ std::string comparison_plots(const Comparison& c, Ask ask, bool timed) {
     if (timed)
         html += structures_plot(c, "to follow primitives that all moved", Unit::seconds,
                                 [](const auto& s) { return s.update.all; });
-    for (std::size_t i = 0; timed && i < std::size(ask_names); ++i)
-        html += kinds_plot(c, static_cast<Ask>(i), fmt::format("time a query: {}", ask_names[i]),
-                           Unit::seconds, &QueryCost::seconds);
-    html +=
-        kinds_plot(c, ask, fmt::format("nodes a query: {}", name_of(ask)), Unit::number, &QueryCost::nodes);
-    html += kinds_plot(c, ask, fmt::format("primitives tested a query: {}", name_of(ask)), Unit::number,
+    for (const Ask asked : question_names<TriangleMesh<float>>())
+        if (timed)
+            html += kinds_plot(c, asked, fmt::format("time a query: {}", asked), Unit::seconds,
+                               &QueryCost::seconds);
+    html += kinds_plot(c, ask, fmt::format("nodes a query: {}", ask), Unit::number, &QueryCost::nodes);
+    html += kinds_plot(c, ask, fmt::format("primitives tested a query: {}", ask), Unit::number,
                        &QueryCost::primitives);
     return html;
 }

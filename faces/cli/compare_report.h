@@ -17,9 +17,9 @@ namespace hedgerow::cli {
 
 struct CompareReport {
     std::string scene;
-    std::vector<std::string> notes;                ///< facts that a reader of the figures must know
-    compare::Ask ask = compare::Ask::closest_hit;  ///< the query of break-even, advice and growth
-    bool timed = true;                             ///< false: counts alone
+    std::vector<std::string> notes;    ///< facts that a reader of the figures must know
+    compare::Ask ask = "closest-hit";  ///< the query of break-even, advice and growth
+    bool timed = true;                 ///< false: counts alone
     std::optional<compare::Comparison> comparison;
     struct Swept {
         compare::Sweep sweep;

@@ -30,7 +30,7 @@ std::optional<Table> summary_of(const CompareReport& r) {
     const Comparison& c = *r.comparison;
     const std::string sets = c.rays.empty() ? "" : "the mean over its sets of rays";
     const std::string scale = r.timed ? "x: times the fastest" : "";
-    Table t{fmt::format("a {} query", name_of(r.ask)),
+    Table t{fmt::format("a {} query", r.ask),
             sets + (sets.empty() || scale.empty() ? "" : "; ") + scale,
             {"structure", "build", "memory", "time", "x", "nodes", "leaves", "primitives"},
             {}};

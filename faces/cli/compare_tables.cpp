@@ -101,7 +101,7 @@ Table break_even_table(const Comparison& c, Ask ask) {
         fmt::format(
             "for how many {} queries, with its build, the structure of the row costs less than that of the "
             "column",
-            name_of(ask)),
+            ask),
         {"structure"},
         {}};
     const auto cost = [&](const StructureCost& s) { return Cost{s.build_seconds, query_mean(s, ask)}; };
@@ -118,7 +118,7 @@ Table break_even_table(const Comparison& c, Ask ask) {
 
 Table sweep_table(const CompareReport::Swept& swept, Ask ask, bool timed) {
     Table t{fmt::format("{}: {}", swept.sweep.structure, swept.sweep.option),
-            fmt::format("a {} query, of rays the mean over their sets{}", name_of(ask),
+            fmt::format("a {} query, of rays the mean over their sets{}", ask,
                         timed ? "; x: times the least" : ""),
             {swept.sweep.option, "build", "x", "memory", "items/primitive", "time", "x", "nodes", "leaves",
              "primitives"},

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hedgerow/ask.h>
+#include <hedgerow/base/option.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
@@ -136,10 +137,6 @@ private:
     }
 };
 
-/// An option of a structure, for help and for messages.
-struct OptionInfo {
-    std::string_view name, values, standard, meaning;
-};
 struct StructureInfo {
     std::string_view name, description;
     std::vector<OptionInfo> options;

@@ -4,7 +4,8 @@
 
 #include <hedgerow/any_index.h>
 
-#include "structure_options.h"
+#include "option_reader.h"
+#include "structures.h"
 
 namespace hedgerow::detail {
 
@@ -110,32 +111,6 @@ private:
     Index<S, P> index_;
 };
 
-/// The name of an Orthtree, whose cells have 2^D children.
-constexpr std::string_view orthtree_name(int dimension) {
-    return dimension == 3 ? "octree" : "quadtree";
-}
-
-/// Internal name of a BVH of other volumes than boxes. It is another type than Bvh, but users know both as
-/// 'bvh'.
-inline constexpr std::string_view bvh_of_volumes = "bvh:volume";
-
-/// Calls f with each structure and its name. This is the one list of structures: the tool, the tests and the
-/// bindings know its names.
-template <int D, class F>
-void for_each_structure(F f) {
-    f.template operator()<BruteForce>("brute-force");
-    f.template operator()<Grid>("grid");
-    f.template operator()<TwoLevelGrid>("two-level-grid");
-    f.template operator()<HashGrid>("hash-grid");
-    f.template operator()<KdTree>("kdtree");
-    f.template operator()<PointKdTree>("point-kdtree");
-    f.template operator()<Orthtree>(orthtree_name(D));
-    f.template operator()<BspTree>("bsp");
-    f.template operator()<Bvh>("bvh");
-    f.template operator()<VolumeBvh>(bvh_of_volumes);
-    f.template operator()<WideBvh>("wide");
-}
-
 template <class View>
 std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over(std::string_view spec,
                                                                                  const View& primitives,
@@ -150,13 +125,13 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
     // Build the structure of that name.
     std::unique_ptr<AnyIndex<T, D>> built;
     std::vector<std::string_view> known;
-    for_each_structure<D>([&]<template <class, int> class S>(std::string_view name) {
+    for_each_structure<D>([&]<template <class, int> class S>(std::string_view name, std::string_view) {
         if (name != bvh_of_volumes) known.push_back(name);
         if (name != type) return;
         typename S<T, D>::Options options;
-        read_options(in, options, std::type_identity<S<T, D>>());
+        list_options<S<T, D>>(options, in);
         in.finish();
-        if constexpr (requires { S<T, D>::build(primitives, options, executor); })
+        if constexpr (Structure<S<T, D>, View>)
             built = std::make_unique<Holder<S<T, D>, View>>(
                 std::string(spec), Index<S<T, D>, View>(primitives, options, executor));
         else

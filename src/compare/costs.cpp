@@ -12,8 +12,8 @@ double query_mean(const StructureCost& structure, Ask ask, double QueryCost::*fi
 Ask usual_ask(const Comparison& comparison) {
     for (const StructureCost& s : comparison.structures)
         for (const QueryCost& q : s.queries)
-            if (q.ask == Ask::closest_hit) return Ask::closest_hit;
-    return Ask::nearest;
+            if (q.ask == "closest-hit") return q.ask;
+    return "nearest";
 }
 
 }  // namespace hedgerow::compare

@@ -61,7 +61,7 @@ public:
         ray_sets_ = std::move(all.ray_sets);
         seen_from_outside_ = scene.seen_from_outside();
         Visits ignored;
-        for (Set& q : questions_) answers_.push_back(q.answers(*oracle_, ignored, progress_));
+        for (const auto& q : questions_) answers_.push_back(q->answers(*oracle_, ignored, progress_));
     }
 
     Comparison run(std::span<const std::string> structures) {
@@ -149,12 +149,11 @@ private:
     /// Makes as many of the queries as there is time for, once, to check their answers and count their
     /// visits. Throws Disagreement where an answer differs from the default structure's, and Cancelled.
     Trial trial(const Any& index, std::size_t i) {
-        Set& all = questions_[i];
+        const Set& all = *questions_[i];
         const std::size_t step = o_.rounds > 0 ? step_for(index, all) : 1;
         Trial t;
         // Trials with time for all queries share one set of them.
-        t.questions = step == 1 ? std::shared_ptr<Set>(std::shared_ptr<void>(), &all)
-                                : std::make_shared<Set>(all.thinned(step));
+        t.questions = step == 1 ? questions_[i] : all.thinned(step);
         Visits visits;
         // Check the answers and count the visits.
         const auto answers = t.questions->answers(index, visits, progress_);
@@ -185,17 +184,17 @@ private:
         std::size_t asked = 1;
         for (;;) {
             progress_.look();
-            Set some = all.thinned((all.size() + asked - 1) / asked);
-            const double first = seconds_of([&] { some.put_to(index); });
+            const auto some = all.thinned((all.size() + asked - 1) / asked);
+            const double first = seconds_of([&] { some->put_to(index); });
             const double again =
-                first > share ? first : std::min(first, seconds_of([&] { some.put_to(index); }));
+                first > share ? first : std::min(first, seconds_of([&] { some->put_to(index); }));
             // Take four times as many queries while they need less than 1/16 of the share.
             if (again < share / 16 && asked * 4 <= all.size()) {
                 asked *= 4;
                 continue;
             }
             // Extrapolate to all queries.
-            const double whole = again / static_cast<double>(some.size()) * static_cast<double>(all.size());
+            const double whole = again / static_cast<double>(some->size()) * static_cast<double>(all.size());
             const auto step = static_cast<std::size_t>(std::ceil(whole / share));
             return std::clamp<std::size_t>(step, 1, all.size());
         }
@@ -299,7 +298,7 @@ private:
     const Progress& progress_;
     WatchedExecutor executor_;  // throws Cancelled
     std::unique_ptr<Any> oracle_;
-    std::vector<Set> questions_;
+    std::vector<std::shared_ptr<Set>> questions_;
     std::vector<RaySet> ray_sets_;
     double seen_from_outside_ = 1;
     std::vector<std::vector<std::uint64_t>> answers_;

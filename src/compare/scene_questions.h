@@ -17,40 +17,33 @@ public:
     using T = typename P::Scalar;
     static constexpr int D = P::dimension;
     using Set = Questions<T, D>;
+    using Rays = std::vector<Ray<T, D>>;
+    /// How many neighbours a question for the nearest asks for.
+    static constexpr std::size_t neighbours = 8;
 
     SceneQuestions(const P& primitives, const AnyIndex<T, D>& index, const MeasureOptions& options)
         : set_(view_of(primitives)), index_(index), box_(index.bounds()), o_(options) {}
 
     /// The queries, and the number of rays in each set that hit nothing.
     struct All {
-        std::vector<Set> questions;
+        std::vector<std::shared_ptr<Set>> questions;
         std::vector<RaySet> ray_sets;
     };
     All all() const {
         All found;
-        const auto add = [&](Ask ask, std::string kind, typename Set::List list) {
-            const bool wanted =
-                o_.asks.empty() || std::find(o_.asks.begin(), o_.asks.end(), ask) != o_.asks.end();
-            Set made(ask, std::move(kind), std::move(list));
-            if (wanted && made.size() > 0) found.questions.push_back(std::move(made));
-        };
-        // Add rays, unless the primitives are points.
-        if constexpr (can_be_asked<P>(Ask::closest_hit)) {
-            const std::pair<const char*, typename Set::Rays> sets[] = {
+        std::vector<std::pair<const char*, Rays>> sets;
+        if constexpr (!PointSet<ViewOf<P>>) {
+            sets = {
                 {"coherent", coherent_rays()}, {"incoherent", incoherent_rays()}, {"random", random_rays()}};
-            constexpr std::pair<Ask, const char*> asks[] = {
-                {Ask::closest_hit, "closest hit"}, {Ask::any_hit, "any hit"}, {Ask::all_hits, "all hits"}};
-            for (const auto& [ask, name] : asks)
-                for (const auto& [kind, rays] : sets)
-                    add(ask, std::string(name) + ", " + kind + " rays", rays);
             for (const auto& [kind, rays] : sets)
                 if (!rays.empty()) found.ray_sets.push_back({kind, rays.size(), missed(rays)});
         }
-        // Add points and boxes.
-        const auto points = random_points();
-        add(Ask::closest_point, "closest point", points);
-        add(Ask::nearest, std::to_string(Set::k) + " nearest", points);
-        add(Ask::overlap, "box overlap", boxes());
+        for_each_question<T, D>([&]<class Question>(Question) {
+            if constexpr (answered_by<Question, P>)
+                if (o_.asks.empty() ||
+                    std::find(o_.asks.begin(), o_.asks.end(), Question::name) != o_.asks.end())
+                    add<Question>(sets, found.questions);
+        });
         return found;
     }
     /// The share of the primitives that are visible from the eye of the coherent rays, estimated from a
@@ -61,7 +54,7 @@ public:
             if (box_.contains(eye)) return 1;
             constexpr std::size_t some = 2000;
             // Cast rays from the eye to random places on random primitives.
-            typename Set::Rays rays;
+            Rays rays;
             for (std::size_t i = 0; i < some; ++i) {
                 Random chance = random(of_sights, i);
                 const auto place = place_on(shape(chance.bits() % set_.size()), chance);
@@ -78,7 +71,30 @@ public:
     }
 
 private:
-    std::size_t missed(const typename Set::Rays& rays) const {
+    /// Adds the queries of a question, in kinds that differ by what is given: rays of each set, and points,
+    /// balls or boxes in the scene.
+    template <class Question>
+    void add(const std::vector<std::pair<const char*, Rays>>& sets,
+             std::vector<std::shared_ptr<Set>>& questions) const {
+        using Given = typename Question::Given;
+        const auto add_kind = [&](std::string kind, std::vector<Given> given) {
+            if (!given.empty())
+                questions.push_back(
+                    std::make_shared<QuestionsOf<Question, T, D>>(std::move(kind), std::move(given)));
+        };
+        const std::string words(Question::words);
+        if constexpr (std::same_as<Given, Ray<T, D>>)
+            for (const auto& [kind, rays] : sets) add_kind(words + ", " + kind + " rays", rays);
+        else if constexpr (std::same_as<Given, Vec<T, D>>)
+            add_kind(words, random_points());
+        else if constexpr (std::same_as<Given, Neighbours<T, D>>)
+            add_kind(std::to_string(neighbours) + " " + words, neighbourhoods());
+        else if constexpr (std::same_as<Given, Ball<T, D>>)
+            add_kind(words, balls());
+        else
+            add_kind(words, boxes());
+    }
+    std::size_t missed(const Rays& rays) const {
         std::vector<Hit<T>> hits(rays.size());
         index_.closest_hits(rays, hits);
         return static_cast<std::size_t>(
@@ -95,25 +111,37 @@ private:
             p[k] = box_.low[k] + static_cast<T>(share[k]) * (box_.high[k] - box_.low[k]);
         return p;
     }
-    typename Set::Points random_points() const {
-        typename Set::Points all;
+    std::vector<Vec<T, D>> random_points() const {
+        std::vector<Vec<T, D>> all;
         for (std::size_t i = 0; i < o_.queries; ++i) {
             Random chance = random(of_points, i);
             all.push_back(anywhere(chance));
         }
         return all;
     }
-    typename Set::Boxes boxes() const {
-        typename Set::Boxes all;
-        const T half = length(box_.extent()) / 200;
-        for (std::size_t i = 0; i < o_.queries; ++i) {
-            const Vec<T, D> middle = set_.bounds(random(of_places, i).bits() % set_.size()).center();
-            all.push_back({middle - Vec<T, D>::all(half), middle + Vec<T, D>::all(half)});
-        }
+    std::vector<Neighbours<T, D>> neighbourhoods() const {
+        std::vector<Neighbours<T, D>> all;
+        for (const auto& p : random_points()) all.push_back({p, neighbours});
         return all;
     }
-    typename Set::Rays random_rays() const {
-        typename Set::Rays all;
+    /// The middle of a random primitive's box.
+    Vec<T, D> middle(std::size_t i) const {
+        return set_.bounds(random(of_places, i).bits() % set_.size()).center();
+    }
+    T small() const { return length(box_.extent()) / 200; }
+    std::vector<Ball<T, D>> balls() const {
+        std::vector<Ball<T, D>> all;
+        for (std::size_t i = 0; i < o_.queries; ++i) all.push_back({middle(i), small() * small()});
+        return all;
+    }
+    std::vector<Box<T, D>> boxes() const {
+        std::vector<Box<T, D>> all;
+        const Vec<T, D> half = Vec<T, D>::all(small());
+        for (std::size_t i = 0; i < o_.queries; ++i) all.push_back({middle(i) - half, middle(i) + half});
+        return all;
+    }
+    Rays random_rays() const {
+        Rays all;
         for (std::size_t i = 0; i < o_.queries; ++i) {
             Random chance = random(of_rays, i);
             const Vec<T, D> from = anywhere(chance);
@@ -122,8 +150,8 @@ private:
         return all;
     }
     /// The rays of a square picture, row by row; in the plane a fan from one eye.
-    typename Set::Rays coherent_rays() const {
-        typename Set::Rays all;
+    Rays coherent_rays() const {
+        Rays all;
         if constexpr (D == 3) {
             const auto side = static_cast<int>(std::sqrt(static_cast<double>(o_.queries)));
             const RayMaker make(camera(), side, side);
@@ -145,8 +173,8 @@ private:
         return o_.camera.value_or(automatic_camera(Box3f{Vec3f(box_.low), Vec3f(box_.high)}));
     }
     /// Rays that leave random places on all surfaces, cosine-distributed about the normal.
-    typename Set::Rays incoherent_rays() const {
-        typename Set::Rays all;
+    Rays incoherent_rays() const {
+        Rays all;
         const auto size_of_box = static_cast<double>(max_component(box_.extent()));
         if (!(size_of_box > 0)) return all;
         const SurfaceSamples samples([this](std::size_t i) { return shape(i); }, set_.size(), size_of_box);

@@ -23,13 +23,11 @@ inline std::string any_options(const StructureInfo& structure, Random& random) {
         // Change one option in four.
         if (random.bits() % 4 != 0) continue;
         std::string value;
-        const std::string_view values = option.values;
-        // Draw from the values that the list of structures names, or from those of the option below.
-        if (values.find('|') != std::string_view::npos) {
-            const auto count = static_cast<std::uint64_t>(std::count(values.begin(), values.end(), '|')) + 1;
-            std::string_view rest = values;
-            for (auto skip = random.bits() % count; skip > 0; --skip) rest.remove_prefix(rest.find('|') + 1);
-            value = rest.substr(0, rest.find('|'));
+        // Draw from the choices that the option has, or from the numbers below.
+        if (!option.choices.empty()) {
+            value = option.choices[random.bits() % option.choices.size()];
+        } else if (option.name == "width") {
+            value = one_of("4", "8", "16");
         } else if (option.name == "resolution") {
             value = one_of("1", "2", "3", "7", "16", "33");
         } else if (option.name == "max_depth") {

@@ -8,19 +8,14 @@
 
 namespace hedgerow::compare {
 
-/// Kinds of query.
-enum class Ask { closest_hit, any_hit, all_hits, closest_point, nearest, overlap };
-inline constexpr std::string_view ask_names[] = {"closest-hit",   "any-hit", "all-hits",
-                                                 "closest-point", "nearest", "overlap"};
-constexpr std::string_view name_of(Ask ask) {
-    return ask_names[static_cast<std::size_t>(ask)];
-}
+/// The kind of a query: a name in the table of questions (questions.h), as "closest-hit".
+using Ask = std::string_view;
 
 /// The cost of one kind of query in one structure. Counts are means a query. They are the same on every
 /// machine if all queries were measured; a slow structure may have measured a sample whose size depends on
 /// the machine.
 struct QueryCost {
-    Ask ask = Ask::closest_hit;
+    Ask ask;
     std::string kind;       ///< "closest hit, random rays"
     std::size_t asked = 0;  ///< number of queries that were measured
     double seconds = 0;     ///< seconds a query, the median of the rounds

@@ -35,12 +35,6 @@ struct MeasureOptions {
     std::optional<Camera> camera;
 };
 
-/// Whether a set answers queries of this kind. Points do not answer rays, which pass between them.
-template <class P>
-constexpr bool can_be_asked(Ask ask) {
-    return ask >= Ask::closest_point || !PointSet<ViewOf<P>>;
-}
-
 /// Thrown if two structures gave different answers, which is a fault of the library.
 class Disagreement : public std::runtime_error {
 public:
@@ -62,8 +56,8 @@ public:
 ///
 /// Coherent rays are those of a picture. Incoherent rays start at random places on all surfaces, spread
 /// evenly by area, and leave the front of triangles, cosine-distributed about the normal. Random rays go from
-/// one random point of the scene's box through another. Points are random in that box. Boxes are centred at
-/// random primitives and 1/100 of its diagonal wide. Moving primitives are bent by up to a tenth of the
+/// one random point of the scene's box through another. Points are random in that box. Boxes and
+/// balls are centred at random primitives and 1/100 of its diagonal wide. Moving primitives are bent by up to a tenth of the
 /// scene.
 ///
 /// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T>, T float or double.

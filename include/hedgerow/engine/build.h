@@ -1,6 +1,8 @@
 /// Options of wide BVHs, and the function that builds one.
 #pragma once
 
+#include <string_view>
+
 #include <hedgerow/engine/wide_tree.h>
 #include <hedgerow/structures/bvh/build_tree.h>
 
@@ -9,6 +11,10 @@ namespace hedgerow {
 /// The builder of the binary tree that a wide tree is collapsed from, fastest first: linear (LBVH), binned
 /// SAH, and binned SAH improved by reinsertion.
 enum class WideBuilder { fast, medium, high };
+inline constexpr std::string_view wide_builder_names[] = {"fast", "medium", "high"};
+constexpr std::string_view name_of(WideBuilder builder) {
+    return wide_builder_names[static_cast<std::size_t>(builder)];
+}
 inline constexpr WideBuilder wide_builders[] = {WideBuilder::fast, WideBuilder::medium, WideBuilder::high};
 
 struct WideOptions {
@@ -25,6 +31,19 @@ struct WideOptions {
     /// In bytes; 0 for no budget. A build that may take more is refused before it allocates (budget.h has
     /// the bound).
     double budget = 0;
+
+    /// Lists the options (option.h).
+    template <class Option>
+    void list(Option& option) {
+        option("builder", builder, wide_builder_names,
+               "of the binary tree that it is collapsed from: lbvh, binned, binned and improved");
+        option("width", width, 0, 16, "children a node: 4, 8 or 16; 0: what this processor is best at");
+        option("reinsertion", reinsertion, 0, 100, "most passes of the builder 'high'");
+        option("traversal_cost", traversal_cost, 0, 1e6, "of an inner node of the binary tree, for the SAH");
+        option("intersection_cost", intersection_cost, 1e-6, 1e6, "of a primitive, for the SAH");
+        option("max_leaf_size", max_leaf_size, 1, wide_leaf_size, "larger nodes are always split");
+        option("budget", budget, 0, 1e15, "bytes; a build that may take more is refused; 0: none is");
+    }
 };
 
 /// The options with a width chosen in place of 0. Throws UsageError for an option out of its range.

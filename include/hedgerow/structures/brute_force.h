@@ -16,6 +16,12 @@ class BruteForce {
 public:
     struct Options {
         bool box = false;
+
+        /// Lists the options (option.h).
+        template <class Option>
+        void list(Option& option) {
+            option("box", box, "test one box around all primitives first");
+        }
     };
     /// Each primitive is in `items` once.
     static constexpr auto packed_order = PackedOrder::of_ids;

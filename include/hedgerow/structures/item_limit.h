@@ -9,6 +9,9 @@
 
 namespace hedgerow {
 
+/// The largest limit that an option gives, which limits nothing.
+inline constexpr double most_items_per_primitive = 1e9;
+
 /// The most items for `count` primitives. From 2^31 items a primitive on there is no limit, and the result is
 /// 2^63. Throws UsageError for less than one item a primitive.
 inline std::uint64_t most_items(double items_per_primitive, std::size_t count) {

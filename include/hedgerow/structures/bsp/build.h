@@ -4,6 +4,7 @@
 #include <hedgerow/structures/bsp/bsp_node.h>
 #include <hedgerow/structures/cells.h>
 #include <hedgerow/structures/cut_tree.h>
+#include <hedgerow/structures/item_limit.h>
 
 namespace hedgerow {
 
@@ -15,7 +16,18 @@ struct BspCosts {
     double intersection_cost = 1;
     /// The fraction by which the tests below a plane cost less if the plane cuts off empty space.
     double empty_bonus = 0.2;
+
+    /// Lists the options (option.h).
+    template <class Option>
+    void list(Option& option) {
+        option("traversal_cost", traversal_cost, 0, 1e6, "of an inner node across an axis, for the SAH");
+        option("plane_cost", plane_cost, 0, 1e6, "of an inner node with any other plane, for the SAH");
+        option("intersection_cost", intersection_cost, 1e-6, 1e6, "of a primitive, for the SAH");
+        option("empty_bonus", empty_bonus, 0, 0.99, "how much less a plane costs that cuts off empty space");
+    }
 };
+/// The most levels of any tree.
+inline constexpr int bsp_max_depth = 64;
 
 struct BspOptions {
     BspCosts costs = {};
@@ -32,9 +44,19 @@ struct BspOptions {
     std::uint32_t samples = 32;
     /// Skips most repeated tests of a primitive within a query. Off only to measure its effect.
     bool mailbox = true;
+
+    /// Lists the options (option.h).
+    template <class Option>
+    void list(Option& option) {
+        option("leaf_size", leaf_size, 0, 1u << 20, "cells of no more primitives are leaves");
+        option("max_depth", max_depth, 0, bsp_max_depth, "most levels; 0: 8 + 1.3 log2(n)");
+        option("samples", samples, 1, 1u << 20, "in larger cells, so many primitives suggest planes");
+        option("items_per_primitive", items_per_primitive, 1, most_items_per_primitive,
+               "with more items a primitive cells are not divided");
+        costs.list(option);
+        option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+    }
 };
-/// The most levels of any tree.
-inline constexpr int bsp_max_depth = 64;
 
 /// Builds the tree over the references. `margin` is the scene's cell_margin as a double, which BspTree::build
 /// enlarges for T = double. Throws UsageError for fewer than one item a primitive, and InputError for too

@@ -46,8 +46,10 @@ struct SahOptions {
     double intersection_cost = 1;
     /// The most primitives of a leaf. That many or fewer become a leaf where it is cheaper.
     std::uint32_t max_leaf_size = 8;
-    /// The most bins of the binned builder: a node of n primitives uses min(bins, 4 + n/20).
+    /// The most bins of the binned builder, 2 to most_bins: a node of n primitives uses
+    /// min(bins, 4 + n/20).
     int bins = 32;
+    static constexpr int most_bins = 64;
 
     double leaf_cost(std::uint32_t count, double area) const { return intersection_cost * count * area; }
     /// Whether `count` primitives are a leaf whatever the boxes below: to test them all costs no more than to

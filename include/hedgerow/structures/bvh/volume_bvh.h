@@ -10,6 +10,17 @@ namespace hedgerow {
 
 struct VolumeBvhOptions : BvhOptions {
     Volume volume = Volume::obb;
+
+    /// Lists the options (option.h). Walks are always ordered and culled.
+    template <class Option>
+    void list(Option& option) {
+        list_volume(option, volume);
+        list_of_build(option);
+    }
+    template <class Option>
+    static void list_volume(Option& option, Volume& volume) {
+        option("volume", volume, volume_names, "what nodes are bounded by; each dimension has some of these");
+    }
 };
 
 /// The tree is built with boxes, by any builder of the Bvh. Around each child another volume is then fitted

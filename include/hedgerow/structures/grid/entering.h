@@ -15,6 +15,7 @@ namespace hedgerow {
 /// `box`: a primitive is inserted in every cell that its box reaches. `exact`: only in cells that the
 /// primitive itself meets. The saving of `exact` shows on large triangles that lie askew to the axes.
 enum class GridInsert { exact, box };
+inline constexpr std::string_view grid_insert_names[] = {"exact", "box"};
 
 /// Finds the cells that a primitive is inserted in: those within the lattice's pad of it.
 template <PrimitiveSet P>

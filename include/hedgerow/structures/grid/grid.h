@@ -29,6 +29,19 @@ public:
         double items_per_primitive = 32;
         /// Bytes that a build may take. A build that would take more throws InputError.
         double budget = 8e9;
+
+        /// Lists the options (option.h).
+        template <class Option>
+        void list(Option& option) {
+            cells.list<D>(option);
+            option("insert", insert, grid_insert_names,
+                   "into which cells: all that the primitive meets, or all that its box meets");
+            option("items_per_primitive", items_per_primitive, 1, most_items_per_primitive,
+                   "with more items a primitive there are fewer cells");
+            option("budget", budget, 1e3, 1e15, "bytes; a build that would take more is refused");
+            option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+            option("skip_empty", skip_empty, "rays pass over a block of empty cells in one step");
+        }
     };
     static constexpr auto packed_order = PackedOrder::of_ids;
     static constexpr bool exclusive() { return false; }

@@ -1,6 +1,8 @@
 /// How many cells a grid has.
 #pragma once
 
+#include <string_view>
+
 #include <hedgerow/geometry/lattice.h>
 
 namespace hedgerow {
@@ -26,12 +28,23 @@ struct SpannedAxes {
 /// density of 1 gives about as many cells as primitives. `roots`: 3·∛n along each axis (in the plane 3·√n),
 /// whatever the scene's shape.
 enum class GridHeuristic { density, roots };
+inline constexpr std::string_view grid_heuristic_names[] = {"density", "roots"};
 
 struct GridResolution {
     GridHeuristic heuristic = GridHeuristic::density;
     double density = 4;
     /// Cells on the longest axis, set by hand. 0: by the heuristic.
     int resolution = 0;
+
+    /// Lists the options (option.h) of a grid in D dimensions.
+    template <int D, class Option>
+    void list(Option& option) {
+        option("density", density, 1e-9, 1e6, "cells a primitive");
+        option("heuristic", heuristic, grid_heuristic_names,
+               "density: as many cells; roots: 3 cube roots of n along each axis");
+        option("resolution", resolution, 0, Lattice<D>::most_cells,
+               "cells on the longest axis; 0: by the heuristic");
+    }
 
     /// The lattice over the box of `count` primitives. Along an axis in which the box is flat there is one
     /// cell.

@@ -13,6 +13,13 @@ struct HashGridOptions {
     /// about that radius. 0: chosen so that the occupied extent has half as many cells as points. A cell is
     /// at least a 2^29th of the extent.
     double cell = 0;
+
+    /// Lists the options (option.h).
+    template <class Option>
+    void list(Option& option) {
+        option("cell", cell, 0, 1e300,
+               "length of a cell's side; 0: half as many cells as points in their extent");
+    }
 };
 
 /// Points by the cell that contains them. A hash table leads from a cell to its points (Teschner,

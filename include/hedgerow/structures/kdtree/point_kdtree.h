@@ -17,7 +17,10 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class PointKdTree {
 public:
-    struct Options {};
+    struct Options {
+        template <class Option>
+        void list(Option&) {}
+    };
     static constexpr auto packed_order = PackedOrder::of_leaves;
     static constexpr bool exclusive() { return true; }
     static constexpr int max_depth = 33;

@@ -44,6 +44,16 @@ public:
         double items_per_primitive = 32;
         /// Skips most repeated tests of a primitive within a query.
         bool mailbox = true;
+
+        /// Lists the options (option.h).
+        template <class Option>
+        void list(Option& option) {
+            option("leaf_size", leaf_size, 1, 1u << 20, "cells of no more primitives are leaves");
+            option("max_depth", max_depth, 0, deepest_option, "how often the first cell may be halved");
+            option("items_per_primitive", items_per_primitive, 1, most_items_per_primitive,
+                   "with more items a primitive cells are not divided");
+            option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+        }
     };
     static constexpr auto packed_order = PackedOrder::of_ids;
     static constexpr bool exclusive() { return false; }

@@ -13,8 +13,6 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class BinnedSplitter : public ReferenceSplitter<T, D> {
 public:
-    static constexpr int max_bins = 64;
-
     BinnedSplitter(ReferenceList<T, D> references, const SahOptions& options)
         : ReferenceSplitter<T, D>(std::move(references)), options_(options) {}
 
@@ -80,10 +78,10 @@ protected:
     };
 
     struct Bins {
-        Bin of[D][max_bins];
+        Bin of[D][SahOptions::most_bins];
     };
     Binning fill(Bins& bins, const Range<T, D>& range) {
-        const Binning binning(range, std::clamp(options_.bins, 2, max_bins));
+        const Binning binning(range, std::clamp(options_.bins, 2, SahOptions::most_bins));
         for (auto& axis : bins.of) std::fill_n(axis, binning.count, Bin::none());
         for (std::uint32_t i = range.first; i < range.last; ++i) {
             const auto& r = this->references_[i];
@@ -129,7 +127,7 @@ protected:
 private:
     static void sweep(const Bin* bins, int count, std::uint32_t total, int axis, Best& best) {
         // Compute the cost of the right side of each border, from the last border to the first.
-        double right_cost[max_bins];
+        double right_cost[SahOptions::most_bins];
         auto box = LaneBox<T>::none();
         std::uint32_t right = 0;
         for (int b = count - 1; b > 0; --b) {

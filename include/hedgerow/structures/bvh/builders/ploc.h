@@ -10,6 +10,7 @@
 /// brings nothing beyond 10 (docs/design/003-builders.md).
 #pragma once
 
+#include <hedgerow/structures/bvh/builders/build.h>
 #include <hedgerow/structures/bvh/builders/joined.h>
 
 namespace hedgerow {
@@ -17,11 +18,9 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 class Ploc {
 public:
-    static constexpr int max_radius = 128;
-
     Ploc(std::span<const Reference<T, D>> references, int radius, Executor& executor)
         : executor_(executor),
-          radius_(static_cast<std::size_t>(std::clamp(radius, 1, max_radius))),
+          radius_(static_cast<std::size_t>(std::clamp(radius, 1, BvhOptions::most_search_radius))),
           tree_(references, executor),
           count_(references.size()),
           clusters_(count_),

@@ -5,6 +5,7 @@
 
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/geometry/calipers.h>
+#include <hedgerow/geometry/distance.h>
 #include <hedgerow/geometry/eigen.h>
 
 namespace hedgerow {

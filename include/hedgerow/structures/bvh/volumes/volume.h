@@ -15,12 +15,11 @@ namespace hedgerow {
 /// the same box in the study structure, to compare the other kinds with. Hulls and cylinders are for space;
 /// kdop4 and kdop8 are for the plane, the other k-DOPs for space.
 enum class Volume { box, sphere, obb, kdop4, kdop6, kdop8, kdop14, kdop18, kdop26, cylinder, hull };
-inline constexpr std::pair<std::string_view, Volume> volume_names[] = {
-    {"box", Volume::box},       {"sphere", Volume::sphere},     {"obb", Volume::obb},
-    {"kdop4", Volume::kdop4},   {"kdop6", Volume::kdop6},       {"kdop8", Volume::kdop8},
-    {"kdop14", Volume::kdop14}, {"kdop18", Volume::kdop18},     {"kdop26", Volume::kdop26},
-    {"hull", Volume::hull},     {"cylinder", Volume::cylinder},
-};
+inline constexpr std::string_view volume_names[] = {
+    "box", "sphere", "obb", "kdop4", "kdop6", "kdop8", "kdop14", "kdop18", "kdop26", "cylinder", "hull"};
+constexpr std::string_view name_of(Volume volume) {
+    return volume_names[static_cast<std::size_t>(volume)];
+}
 
 /// The volumes of a tree, all of one kind, which is `kind`.
 template <class V, int D, Volume of_kind>
@@ -100,8 +99,7 @@ AnyVolumeList<T, D> list_of(Volume kind) {
     bool found = false;
     // Collect the names of all kinds of this dimension, and make the list of the kind asked for.
     const auto look = [&]<class List>(std::type_identity<List>) {
-        for (const auto& [name, known] : volume_names)
-            if (known == List::kind) there_are += (there_are.empty() ? "" : ", ") + std::string(name);
+        there_are += (there_are.empty() ? "" : ", ") + std::string(name_of(List::kind));
         if (List::kind == kind) lists.template emplace<List>(), found = true;
     };
     [&]<class... List>(std::type_identity<std::variant<List...>>) {
@@ -109,11 +107,8 @@ AnyVolumeList<T, D> list_of(Volume kind) {
     }(std::type_identity<AnyVolumeList<T, D>>());
     // Name the wrong kind and the right ones.
     if (!found)
-        for (const auto& [name, known] : volume_names)
-            if (known == kind)
-                throw UsageError("in " + std::string(D == 3 ? "space" : "the plane") +
-                                 " no nodes are bounded by '" + std::string(name) + "' volumes: use one of " +
-                                 there_are);
+        throw UsageError("in " + std::string(D == 3 ? "space" : "the plane") + " no nodes are bounded by '" +
+                         std::string(name_of(kind)) + "' volumes: use one of " + there_are);
     return lists;
 }
 

@@ -2,7 +2,7 @@
 /// bins. O(n) a level.
 #pragma once
 
-#include <hedgerow/structures/kdtree/builders/costs.h>
+#include <hedgerow/structures/kdtree/builders/build.h>
 
 namespace hedgerow {
 
@@ -13,10 +13,9 @@ class KdBinnedPlanes {
 public:
     using Cell = KdCell<T, D>;
     struct Lists {};
-    static constexpr int most_bins = 256;
 
     KdBinnedPlanes(const KdCosts& costs, std::uint32_t leaf_size, int bins)
-        : costs_(costs), leaf_size_(leaf_size), bins_(bins) {}
+        : costs_(costs), leaf_size_(leaf_size), bins_(std::clamp(bins, 2, kd_most_bins)) {}
 
     Lists begin(const Cell&, Executor&) const { return {}; }
     void divide(const Lists&, const std::vector<KdPlaces>&, const Cell&, const Cell&, Lists&, Lists&) const {}
@@ -34,7 +33,7 @@ private:
         const T low = cell.box.low[axis], width = cell.box.high[axis] - low;
         const T scale = T(bins_) / width;
         if (!(width > 0) || !(scale <= std::numeric_limits<T>::max())) return;
-        std::array<std::uint32_t, most_bins> begins{}, ends{};
+        std::array<std::uint32_t, kd_most_bins> begins{}, ends{};
         // A coordinate is counted in a bin before a border exactly if it lies on that side of the border. So
         // the bin is found by comparison with the borders, and the rounding of `scale` does not matter.
         const auto border = [&](int b) { return low + product(width, T(b) / T(bins_)); };

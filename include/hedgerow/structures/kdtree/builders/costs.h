@@ -13,6 +13,14 @@ struct KdCosts {
     double intersection_cost = 1;
     /// The fraction by which the tests below a plane cost less if the plane cuts off empty space.
     double empty_bonus = 0.2;
+
+    /// Lists the options (option.h).
+    template <class Option>
+    void list(Option& option) {
+        option("traversal_cost", traversal_cost, 0, 1e6, "of an inner node, for the SAH");
+        option("intersection_cost", intersection_cost, 1e-6, 1e6, "of a primitive, for the SAH");
+        option("empty_bonus", empty_bonus, 0, 0.99, "how much less a plane costs that cuts off empty space");
+    }
 };
 
 /// The plane of least cost so far.

@@ -1,0 +1,55 @@
+/// The one list of structures: the tool, the tests and the bindings know its names.
+#pragma once
+
+#include <string_view>
+#include <type_traits>
+
+#include <hedgerow/all.h>
+
+namespace hedgerow::detail {
+
+/// The name of an Orthtree, whose cells have 2^D children.
+constexpr std::string_view orthtree_name(int dimension) {
+    return dimension == 3 ? "octree" : "quadtree";
+}
+
+/// Internal name of a BVH of other volumes than boxes. It is another type than Bvh, but users know both as
+/// 'bvh'.
+inline constexpr std::string_view bvh_of_volumes = "bvh:volume";
+
+/// Calls f with each structure, its name and its description.
+template <int D, class F>
+void for_each_structure(F f) {
+    f.template operator()<BruteForce>("brute-force", "no structure: every primitive is tested");
+    f.template operator()<Grid>("grid", "uniform grid");
+    f.template operator()<TwoLevelGrid>("two-level-grid",
+                                        "a coarse grid, of which each crowded cell is a grid of its own");
+    f.template operator()<HashGrid>("hash-grid",
+                                    "cells of one size, found by hashing: the neighbours of points");
+    f.template operator()<KdTree>("kdtree", "kd-tree: space cut by axis-aligned planes");
+    f.template operator()<PointKdTree>(
+        "point-kdtree", "kd-tree over points, which are themselves the inner nodes; axes in turn");
+    f.template operator()<Orthtree>(orthtree_name(D), D == 3
+                                                          ? "cells cut into eight equal ones, in space"
+                                                          : "cells cut into four equal ones, in the plane");
+    f.template operator()<BspTree>("bsp",
+                                   "BSP tree: space cut by planes across the axes and along the geometry");
+    f.template operator()<Bvh>("bvh", "binary bounding volume hierarchy");
+    f.template operator()<VolumeBvh>(bvh_of_volumes, "");
+    f.template operator()<WideBvh>(
+        "wide",
+        "wide bounding volume hierarchy: 4 to 16 children a node, tested at once (the engine; the default)");
+}
+
+/// Lists the options of a structure (base/option.h) as users know them: a 'bvh' has a volume too, which is
+/// the box.
+template <class S, class Option>
+void list_options(typename S::Options& options, Option& option) {
+    if constexpr (std::same_as<typename S::Options, BvhOptions>) {
+        Volume box = Volume::box;
+        VolumeBvhOptions::list_volume(option, box);
+    }
+    options.list(option);
+}
+
+}  // namespace hedgerow::detail
