@@ -8,15 +8,14 @@
 
 #include <hedgerow/ask.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/compare/advice.h>
-#include <hedgerow/compare/lists.h>
-#include <hedgerow/compare/measure.h>
+#include <hedgerow/measure/advice.h>
+#include <hedgerow/measure/compare.h>
+#include <hedgerow/measure/lists.h>
+#include <hedgerow/measure/machine.h>
 #include <hedgerow/scenes/generate.h>
 
-#include "measure/machine.h"
-
 using namespace hedgerow;
-using namespace hedgerow::compare;
+using namespace hedgerow::measure;
 
 namespace {
 
@@ -35,10 +34,10 @@ void judge(const std::string& name, const P& primitives, std::vector<Score>& sco
     options.asks = {"closest-hit", "nearest"};
     // Take the advice from a short measurement.
     options.seconds = 0.1, options.seed = first_seed;
-    const Comparison sample = measure(primitives, structures, options);
+    const Comparison sample = compare(primitives, structures, options);
     // Take the truth from a longer measurement with other queries.
     options.seconds = 0.5, options.seed = other_seed;
-    const Comparison truth = measure(primitives, structures, options);
+    const Comparison truth = compare(primitives, structures, options);
     const Ask ask = usual_ask(sample);
     const auto advised = advise(sample, ask), measured = advise(truth, ask);
     // Compare the advised structure with the best one, need by need.
@@ -67,7 +66,7 @@ int main(int count, char** arguments) {
                  "gen:teapot:40000",   "gen:spheres:20000",    "gen:points:30000",
                  "gen:points2d:30000", "gen:clusters2d:30000", "gen:segments2d:20000"};
     std::printf("%s, %s, one thread; x: the advised one's figure as a multiple of the best one's\n\n",
-                benchmark::processor().c_str(), benchmark::compiler().c_str());
+                measure::processor().c_str(), measure::compiler().c_str());
     std::printf(
         "| scene                      | for               | advised                  | best                  "
         "   | x     |\n");

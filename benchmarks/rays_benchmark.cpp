@@ -2,15 +2,16 @@
 ///
 ///   rays_benchmark [SCENE ...]     a mesh file or gen:NAME[:SIZE]; default: gen:teapot-in-stadium
 #include <hedgerow/ask.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/measure/ray_sets.h>
 #include <hedgerow/structures/bvh/bvh.h>
 
-#include "measure/contest.h"
-#include "measure/machine.h"
-#include "measure/ray_sets.h"
-#include "peers/peer.h"
+#include "peers/peers.h"
+#include "scene.h"
 
 using namespace hedgerow;
-using namespace hedgerow::benchmark;
+using namespace hedgerow::measure;
 
 namespace {
 

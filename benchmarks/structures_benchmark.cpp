@@ -6,16 +6,17 @@
 #include <unordered_set>
 
 #include <hedgerow/any_index.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/measure/ray_sets.h>
 #include <hedgerow/structures/grid/grid.h>
 #include <hedgerow/structures/kdtree/kdtree.h>
 
-#include "measure/contest.h"
-#include "measure/machine.h"
-#include "measure/ray_sets.h"
-#include "peers/peer.h"
+#include "peers/peers.h"
+#include "scene.h"
 
 using namespace hedgerow;
-using namespace hedgerow::benchmark;
+using namespace hedgerow::measure;
 
 namespace {
 

@@ -3,15 +3,16 @@
 ///
 ///   traversal_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:200000
 #include <hedgerow/any_index.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/measure/ray_sets.h>
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/structures/bvh/bvh.h>
 
-#include "measure/contest.h"
-#include "measure/machine.h"
-#include "measure/ray_sets.h"
+#include "scene.h"
 
 using namespace hedgerow;
-using namespace hedgerow::benchmark;
+using namespace hedgerow::measure;
 
 namespace {
 
@@ -26,16 +27,10 @@ void variant(const char* spec, const TriangleMesh<float>& mesh, const RaySet& se
     Visits all;
     for (const auto& v : visits) all += v;
     // Time the queries without counts.
-    std::vector<double> times;
-    for (int r = 0; r < repeats; ++r) {
-        const double start = seconds();
-        index->closest_hits(set.rays, hits);
-        times.push_back(seconds() - start);
-    }
+    const double time = median_seconds(repeats, [&] { index->closest_hits(set.rays, hits); });
     const double n = double(set.rays.size());
     std::printf("| %-28s | %-8s | %8.2f | %8.2f | %8.2f | %9.0f |\n", spec, set.name.c_str(),
-                double(all.nodes) / n, double(all.leaves) / n, double(all.primitives) / n,
-                median(times) / n * 1e9);
+                double(all.nodes) / n, double(all.leaves) / n, double(all.primitives) / n, time / n * 1e9);
 }
 
 /// Uniformly random lines through the ball around the scene's box: chords between independent uniform points

@@ -5,14 +5,15 @@
 ///   volumes_benchmark [SCENE ...]     default: gen:teapot-in-stadium gen:soup:100000
 ///   gen:hairball:20000; a mesh file is a scene
 #include <hedgerow/ask.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/measure/ray_sets.h>
 #include <hedgerow/structures/bvh/volume_bvh.h>
 
-#include "measure/contest.h"
-#include "measure/machine.h"
-#include "measure/ray_sets.h"
+#include "scene.h"
 
 using namespace hedgerow;
-using namespace hedgerow::benchmark;
+using namespace hedgerow::measure;
 
 namespace {
 
@@ -28,10 +29,8 @@ double test_seconds(const Index& index, const std::vector<Ray3f>& rays) {
     // Take up to 1000 rays, scattered over the set.
     for (std::size_t i = 0; i < std::min<std::size_t>(rays.size(), 1000); ++i)
         probes.emplace_back(rays[i * 7919 % rays.size()], index.bounds());
-    std::vector<double> times;
     std::size_t entered = 0, tests = 0;
-    for (int r = 0; r < repeats; ++r) {
-        const double start = seconds();
+    const double time = median_seconds(repeats, [&] {
         tests = 0;
         // Test only 64 nodes, so that they stay in the cache and memory is not measured.
         for (std::size_t k = 0; k < 64; ++k) {
@@ -42,11 +41,10 @@ double test_seconds(const Index& index, const std::vector<Ray3f>& rays) {
                 tests += 2;
             }
         }
-        times.push_back(seconds() - start);
-    }
+    });
     // Use the count, so that the compiler keeps all tests.
     asm volatile("" : : "r"(entered));
-    return median(times) / static_cast<double>(tests);
+    return time / static_cast<double>(tests);
 }
 
 template <class Index>
@@ -55,14 +53,11 @@ void row(const char* name, const Index& index, const RaySet& set, double built, 
     Visits visits;
     for (const auto& ray : set.rays) closest_hit(index, ray, KeepAll{}, visits);
     // Time the queries without counts.
-    std::vector<double> times;
     std::size_t hits = 0;
-    for (int r = 0; r < repeats; ++r) {
-        const double start = seconds();
+    const double time = median_seconds(repeats, [&] {
         hits = 0;
         for (const auto& ray : set.rays) hits += closest_hit(index, ray).has_value();
-        times.push_back(seconds() - start);
-    }
+    });
     const double n = static_cast<double>(set.rays.size());
     // Print the node bytes without the items of the leaves.
     const double items = static_cast<double>(index.size()) * sizeof(PrimitiveId);
@@ -72,7 +67,7 @@ void row(const char* name, const Index& index, const RaySet& set, double built, 
                 set.name.c_str(), built * 1e3, (bytes - items) / inner,
                 bytes / static_cast<double>(index.size()), test_seconds(index, set.rays) * clock * 1e9,
                 2 * static_cast<double>(visits.nodes) / n, static_cast<double>(visits.primitives) / n,
-                median(times) / n * 1e9, static_cast<double>(hits) / n * 100);
+                time / n * 1e9, static_cast<double>(hits) / n * 100);
 }
 
 void table(const TriangleMesh<float>& mesh, double clock) {
@@ -86,9 +81,9 @@ void table(const TriangleMesh<float>& mesh, double clock) {
         "---|-------"
         "|\n");
     const auto measure = [&](const char* name, auto build_index) {
-        const double start = seconds();
+        const double start = now(Clock::wall);
         const auto index = build_index();
-        const double built = seconds() - start;
+        const double built = now(Clock::wall) - start;
         for (const auto& set : sets) row(name, index, set, built, clock);
     };
     measure("(default)", [&] { return build<Bvh>(mesh, serial_executor()); });

@@ -1,4 +1,4 @@
-# Each component (core, any, io, tool) has its own install component and export file, so that
+# Each component (core, any, measure, io, tool) has its own install component and export file, so that
 # `cmake --install BUILD --component core` alone is a working package.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -49,11 +49,13 @@ endif()
 hedgerow_pkg_config(core "" ${core_packages})
 install(DIRECTORY include/hedgerow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT core
         FILES_MATCHING PATTERN "*.h"
-        PATTERN include/hedgerow/compare EXCLUDE PATTERN include/hedgerow/io EXCLUDE
+        PATTERN include/hedgerow/measure EXCLUDE PATTERN include/hedgerow/io EXCLUDE
         PATTERN include/hedgerow/scenes EXCLUDE)
 hedgerow_install(any)
 hedgerow_pkg_config(any hedgerow-core)
-hedgerow_install_headers(any compare)
+hedgerow_install(measure)
+hedgerow_pkg_config(measure hedgerow-any)
+hedgerow_install_headers(measure measure)
 if(HEDGEROW_IO)
   hedgerow_install(io)
   set(io_packages zlib libpng)
@@ -71,7 +73,7 @@ configure_package_config_file(cmake/hedgerow-config.cmake.in hedgerow-config.cma
                               INSTALL_DESTINATION ${hedgerow_package_dir})
 # Before 1.0 a minor version may break what is built on it.
 write_basic_package_version_file(hedgerow-config-version.cmake COMPATIBILITY SameMinorVersion)
-foreach(component core any io tool)
+foreach(component core any measure io tool)
   # With every component: each may be the only one that is installed.
   install(FILES ${PROJECT_BINARY_DIR}/hedgerow-config.cmake ${PROJECT_BINARY_DIR}/hedgerow-config-version.cmake
           DESTINATION ${hedgerow_package_dir} COMPONENT ${component})

@@ -1,21 +1,21 @@
 /// Comparing structures on figures made up: break-even points, laws of growth, advice, lists of structures
 /// and sizes.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include <gtest/gtest.h>
+
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/compare/advice.h>
-#include <hedgerow/compare/break_even.h>
-#include <hedgerow/compare/growth.h>
-#include <hedgerow/compare/lists.h>
-#include <hedgerow/compare/quantity.h>
-#include <hedgerow/compare/questions.h>
-#include <hedgerow/compare/reason.h>
+#include <hedgerow/measure/advice.h>
+#include <hedgerow/measure/break_even.h>
+#include <hedgerow/measure/growth.h>
+#include <hedgerow/measure/lists.h>
+#include <hedgerow/measure/quantity.h>
+#include <hedgerow/measure/questions.h>
+#include <hedgerow/measure/reason.h>
 
-namespace hedgerow::compare {
+namespace hedgerow::measure {
 namespace {
 
 using When = BreakEven::When;
@@ -285,4 +285,4 @@ TEST(Fingerprint, TellsAnswersApart) {
 }
 
 }  // namespace
-}  // namespace hedgerow::compare
+}  // namespace hedgerow::measure

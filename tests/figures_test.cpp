@@ -24,7 +24,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <hedgerow/compare/quantity.h>
+#include <hedgerow/measure/quantity.h>
 
 #include "tool.h"
 
@@ -333,7 +333,7 @@ private:
             ++figures_;
             const std::string is = f.name == "memory" ? parts[i] : m.str();
             const std::string should =
-                f.name == "memory" ? compare::bytes_text(*value) : written_as(is, *value);
+                f.name == "memory" ? measure::bytes_text(*value) : written_as(is, *value);
             EXPECT_TRUE(is == should || std::getenv("HEDGEROW_REWRITE"))
                 << name_ << ":" << line << ": " << f.set << " " << f.name << " of "
                 << (f.structure.empty() ? structure : f.structure) << " is " << is << " and should be "

@@ -126,7 +126,7 @@ TEST(HostileRays, ByEveryStructure) {
 /// An index over one set, and an instance of it for each transform.
 template <template <class, int> class Inner, class P>
 struct Placements {
-    decltype(build<Inner>(std::declval<const P&>())) index;
+    IndexOf<Inner, P> index;
     InstanceSet<decltype(index)> instances;
 
     Placements(const P& set, const std::vector<Transform<P::dimension>>& transforms)

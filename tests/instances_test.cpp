@@ -73,7 +73,7 @@ void expect_same(const Answers<T, D>& want, const Answers<T, D>& got) {
 /// A scene: some indexes of one structure, and the instances that place them again and again.
 template <template <class, int> class Inner, class P>
 struct Scene {
-    using I = decltype(build<Inner>(std::declval<const P&>()));
+    using I = IndexOf<Inner, P>;
     std::vector<I> indexes;
     std::vector<Instance<I>> instances;
 

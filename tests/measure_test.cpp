@@ -1,16 +1,16 @@
 /// Measuring what structures cost, judged by counts: no time is. And the changes that any index offers.
-#include <gtest/gtest.h>
-
 #include <atomic>
+
+#include <gtest/gtest.h>
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/compare/advice.h>
-#include <hedgerow/compare/measure.h>
-#include <hedgerow/compare/questions.h>
+#include <hedgerow/measure/advice.h>
+#include <hedgerow/measure/compare.h>
+#include <hedgerow/measure/questions.h>
 #include <hedgerow/scenes/generate.h>
 
-namespace hedgerow::compare {
+namespace hedgerow::measure {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -29,7 +29,7 @@ const StructureCost& named(const Comparison& c, std::string_view name) {
 TEST(Measure, CountsWhatIsVisited) {
     const auto mesh = teapot<float>(600);
     const Strings structures = {"brute-force", "bvh", "octree", "grid"};
-    const Comparison c = measure(mesh, structures, quick_options());
+    const Comparison c = compare(mesh, structures, quick_options());
     EXPECT_TRUE(c.finished);
     EXPECT_EQ(c.primitive, "triangles");
     EXPECT_EQ(c.size, mesh.size());
@@ -67,7 +67,7 @@ TEST(Measure, CountsWhatIsVisited) {
     }
 
     // A second measurement has the same counts.
-    const Comparison again = measure(mesh, structures, quick_options());
+    const Comparison again = compare(mesh, structures, quick_options());
     for (std::size_t i = 0; i < c.structures.size(); ++i)
         for (std::size_t k = 0; k < 12; ++k) {
             EXPECT_EQ(c.structures[i].queries[k].nodes, again.structures[i].queries[k].nodes);
@@ -79,8 +79,8 @@ TEST(Measure, CountsWithoutTimesWhenThereAreNoRounds) {
     const Strings structures = {"brute-force", "bvh", "octree"};
     MeasureOptions counts = quick_options();
     counts.rounds = 0, counts.seconds = 1e-9;
-    const Comparison timed = measure(mesh, structures, quick_options()),
-                     c = measure(mesh, structures, counts);
+    const Comparison timed = compare(mesh, structures, quick_options()),
+                     c = compare(mesh, structures, counts);
     EXPECT_TRUE(c.finished);
     ASSERT_EQ(c.structures.size(), 3u);
     for (const StructureCost& s : c.structures) EXPECT_EQ(s.build_seconds, 0);
@@ -109,7 +109,7 @@ TEST(Measure, LeavesAllSurfacesWithIncoherentRays) {
     o.queries = 400, o.asks = {"closest-hit"};
     const auto mesh = teapot_in_a_room();
     // A camera outside of the room sees the walls.
-    const Comparison outside = measure(mesh, structures, o);
+    const Comparison outside = compare(mesh, structures, o);
     const auto& queries = outside.structures[0].queries;
     ASSERT_EQ(queries.size(), 3u);
     ASSERT_EQ(outside.rays.size(), 3u);
@@ -121,16 +121,16 @@ TEST(Measure, LeavesAllSurfacesWithIncoherentRays) {
 
     // A camera inside changes the coherent rays and not the incoherent ones.
     o.camera = Camera{{-7, -7, 2}, {0, 0, 1.5f}, {0, 0, 1}, 40};
-    const Comparison inside = measure(mesh, structures, o);
+    const Comparison inside = compare(mesh, structures, o);
     EXPECT_EQ(inside.seen_from_outside, 1);
     EXPECT_EQ(inside.rays[0].missed, 0u);
     EXPECT_GT(inside.structures[0].queries[0].nodes, queries[0].nodes);
     EXPECT_EQ(inside.structures[0].queries[1].nodes, queries[1].nodes)
         << "places do not depend on the camera";
 
-    EXPECT_GT(measure(teapot<float>(2000), structures, o).seen_from_outside, 0.2)
+    EXPECT_GT(compare(teapot<float>(2000), structures, o).seen_from_outside, 0.2)
         << "a thing that is all outside";
-    EXPECT_GT(measure(soup<float>(2000), structures, o).rays[1].missed, 20u);
+    EXPECT_GT(compare(soup<float>(2000), structures, o).rays[1].missed, 20u);
 }
 TEST(Measure, SpreadsIncoherentRaysByArea) {
     // One large triangle faces away from a thousand small ones. Nearly all incoherent rays leave it and hit
@@ -142,12 +142,12 @@ TEST(Measure, SpreadsIncoherentRaysByArea) {
     MeasureOptions o = quick_options();
     o.queries = 400, o.asks = {"closest-hit"};
     const Strings structures = {"bvh"};
-    EXPECT_GT(measure(mesh, structures, o).rays[1].missed, 390u);
+    EXPECT_GT(compare(mesh, structures, o).rays[1].missed, 390u);
 }
 TEST(Measure, TakesEveryKindOfPrimitives) {
     const auto kinds = [](const auto& set, const char* tree) {
         const Strings structures = {"kdtree", tree};
-        const Comparison c = measure(set, structures, quick_options());
+        const Comparison c = compare(set, structures, quick_options());
         EXPECT_EQ(c.structures.size(), 2u);
         return c.structures.at(0).queries.size();
     };
@@ -161,7 +161,7 @@ TEST(Measure, AsksWhatIsSlowLess) {
     o.queries = 10'000, o.seconds = 0.003, o.asks = {"nearest"}, o.updates = false;
     const Strings structures = {"brute-force", "kdtree"};
     const auto cloud = points<float>(50'000);
-    const Comparison c = measure(cloud, structures, o);
+    const Comparison c = compare(cloud, structures, o);
     const QueryCost& q = c.structures[0].queries.at(0);
     EXPECT_GE(q.asked, 1u);
     EXPECT_LT(q.asked, 10'000u);
@@ -176,7 +176,7 @@ TEST(Measure, BuildsWhereNoQuerySuitsThePrimitives) {
     const auto of_segments = question_names<SegmentSet<float>>();
     EXPECT_EQ(std::count(of_segments.begin(), of_segments.end(), "closest-hit"), 1);
     const Strings structures = {"kdtree", "bvh"};
-    const Comparison c = measure(points<float>(200), structures, o);
+    const Comparison c = compare(points<float>(200), structures, o);
     EXPECT_TRUE(c.finished);
     ASSERT_EQ(c.structures.size(), 2u);
     EXPECT_TRUE(c.structures[1].queries.empty());
@@ -185,9 +185,9 @@ TEST(Measure, BuildsWhereNoQuerySuitsThePrimitives) {
 }
 TEST(Measure, RefusesWhatIsNotThere) {
     const Strings structures = {"bvh"};
-    EXPECT_THROW(measure(TriangleMesh<float>{}, structures), InputError);
+    EXPECT_THROW(compare(TriangleMesh<float>{}, structures), InputError);
     const Strings unknown = {"bvhh"};
-    EXPECT_THROW(measure(points<float>(10), unknown), InputError);
+    EXPECT_THROW(compare(points<float>(10), unknown), InputError);
 }
 TEST(Measure, StopsWhenItIsTold) {
     std::atomic<bool> cancel{false};
@@ -196,14 +196,14 @@ TEST(Measure, StopsWhenItIsTold) {
     progress.report = [&](std::uint64_t done, std::uint64_t) { cancel = done >= 1; };
     const Strings structures = {"bvh", "kdtree", "grid"};
     const Comparison c =
-        measure(points<float>(1000), structures, quick_options(), serial_executor(), progress);
+        compare(points<float>(1000), structures, quick_options(), serial_executor(), progress);
     EXPECT_FALSE(c.finished);
     EXPECT_LT(c.structures.size(), 3u);
 
     cancel = false;
     MeasureOptions counts = quick_options();
     counts.rounds = 0;
-    EXPECT_EQ(measure(points<float>(1000), structures, counts, serial_executor(), progress).structures.size(),
+    EXPECT_EQ(compare(points<float>(1000), structures, counts, serial_executor(), progress).structures.size(),
               1u)
         << "its counts are whole";
 }
@@ -256,4 +256,4 @@ TEST(AnyIndexChanges, AreOfferedWhereTheStructureHasThem) {
 }
 
 }  // namespace
-}  // namespace hedgerow::compare
+}  // namespace hedgerow::measure

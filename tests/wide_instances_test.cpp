@@ -13,8 +13,8 @@ using namespace hedgerow::matrix;
 namespace {
 
 using Mesh = TriangleMesh<float>;
-using Wide = decltype(build<WideBvh>(std::declval<const Mesh&>()));
-using Brute = decltype(build<BruteForce>(std::declval<const Mesh&>()));
+using Wide = IndexOf<WideBvh, Mesh>;
+using Brute = IndexOf<BruteForce, Mesh>;
 
 /// Meshes and the transforms of their instances. Instance i has mesh i modulo the number of meshes.
 struct Scene {

@@ -12,9 +12,9 @@
 #include <xmmintrin.h>
 #endif
 
-#include <hedgerow/compare/clock.h>
+#include <hedgerow/measure/clock.h>
 
-namespace hedgerow::benchmark {
+namespace hedgerow::measure {
 
 namespace {
 
@@ -96,7 +96,7 @@ public:
         // Measure the time and the bytes of the build alone.
         const ssize_t before = memory_.now;
         memory_.most = before;
-        build_seconds = compare::seconds_of([&] { rtcCommitScene(scene_); }, compare::Clock::process);
+        build_seconds = measure::seconds_of([&] { rtcCommitScene(scene_); }, measure::Clock::process);
         bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.now - before));
         most_bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.most - before));
     }
@@ -215,4 +215,4 @@ std::unique_ptr<Peer> embree() {
     return std::make_unique<Embree>();
 }
 
-}  // namespace hedgerow::benchmark
+}  // namespace hedgerow::measure

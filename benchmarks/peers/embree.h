@@ -1,10 +1,10 @@
 /// Embree 3 as a peer, if it was found (HEDGEROW_HAS_EMBREE).
 #pragma once
 
-#include "peer.h"
+#include <hedgerow/measure/peer.h>
 
-namespace hedgerow::benchmark {
+namespace hedgerow::measure {
 
 std::unique_ptr<Peer> embree();
 
-}  // namespace hedgerow::benchmark
+}  // namespace hedgerow::measure

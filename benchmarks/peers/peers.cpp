@@ -1,10 +1,10 @@
-#include <algorithm>
+#include "peers.h"
 
-#include <hedgerow/compare/measure.h>
-
+#ifdef HEDGEROW_HAS_EMBREE
 #include "embree.h"
+#endif
 
-namespace hedgerow::benchmark {
+namespace hedgerow::measure {
 
 std::vector<std::unique_ptr<Peer>> peers() {
     std::vector<std::unique_ptr<Peer>> all;
@@ -14,26 +14,4 @@ std::vector<std::unique_ptr<Peer>> peers() {
     return all;
 }
 
-PeerBuild build_named(const Peer& peer, std::string_view name) {
-    const auto all = peer.builds();
-    return *std::find_if(all.begin(), all.end(), [&](const PeerBuild& b) { return b.name == name; });
-}
-
-PeerBuild build_like(const Peer& peer, WideBuilder builder) {
-    const auto all = peer.builds();
-    const auto like = [&](WideBuilder wanted) {
-        return std::find_if(all.begin(), all.end(),
-                            [&](const PeerBuild& b) { return !b.robust && b.like == wanted; });
-    };
-    const auto found = like(builder);
-    return found != all.end() ? *found : *like(WideBuilder::medium);
-}
-
-double build_seconds(const Peer& peer, const TriangleMesh<float>& mesh, int repeats) {
-    std::vector<double> times;
-    for (int r = 0; r < repeats; ++r)
-        times.push_back(peer.build(mesh, build_like(peer, WideBuilder::medium), {})->build_seconds);
-    return compare::median(times);
-}
-
-}  // namespace hedgerow::benchmark
+}  // namespace hedgerow::measure

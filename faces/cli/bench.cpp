@@ -8,14 +8,15 @@
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/spelling.h>
+#include <hedgerow/measure/machine.h>
 
 #include "bench_report.h"
-#include "measure/machine.h"
+#include "peers/peers.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
 
-using namespace benchmark;
+using namespace measure;
 
 namespace {
 
@@ -144,7 +145,7 @@ int bench(const BenchArguments& a) {
     const EngineOptions options = options_of(a);
     // Load all scenes, and find the peers.
     const auto scenes = load_all(a);
-    const auto peers = benchmark::peers();
+    const auto peers = measure::peers();
     BenchReport report = report_for(options, peers);
     // Measure one scene after the other until interrupted.
     {

@@ -6,8 +6,8 @@
 
 namespace hedgerow::cli {
 
-using namespace benchmark;
-using benchmark::name_of;
+using namespace measure;
+using measure::name_of;
 using nlohmann::ordered_json;
 
 namespace {

@@ -3,17 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/compare/quantity.h>
+#include <hedgerow/measure/quantity.h>
 
 #include "bench_report.h"
-#include "page.h"
-#include "plot.h"
-#include "xml.h"
+#include "report/page.h"
+#include "report/plot.h"
+#include "report/xml.h"
 
 namespace hedgerow::cli {
 
-using namespace benchmark;
-using benchmark::name_of;
+using namespace measure;
+using measure::name_of;
 
 namespace {
 
@@ -46,7 +46,7 @@ BarPlot::Panel panel_of(const BenchReport& r, RayKind set, Question question) {
     BarPlot::Panel panel{fmt::format("{} rays, {}", name_of(set), asked), {}};
     for (const SceneCosts& scene : r.scenes) {
         BarPlot::Group group{short_name(scene),
-                             compare::number_text(static_cast<double>(scene.triangles)) + " triangles",
+                             measure::number_text(static_cast<double>(scene.triangles)) + " triangles",
                              {0, 0, 0, 0}};
         for (const Row& row : scene.rows) {
             if (row.set != set || row.question != question) continue;

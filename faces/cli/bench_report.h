@@ -6,8 +6,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "measure/engine.h"
-#include "table.h"
+#include <hedgerow/measure/engine.h>
+
+#include "report/table.h"
 
 namespace hedgerow::cli {
 
@@ -17,18 +18,18 @@ struct BenchReport {
     double gigahertz = 0;  ///< clock rate while one thread computes
     int width = 0;         ///< children a node
     unsigned threads = 1;
-    benchmark::EngineOptions options;
+    measure::EngineOptions options;
     struct PeerFacts {
         std::string name, version;
         std::vector<std::string> builds;
     };
     std::vector<PeerFacts> peers;
-    std::vector<benchmark::SceneCosts> scenes;
+    std::vector<measure::SceneCosts> scenes;
     std::vector<std::string> notes;  ///< facts that a reader of the figures must know
     bool finished = true;
 
     /// Cycles per visit of our fastest tree, as a multiple of the least that is possible (floor_of).
-    double times_floor(const benchmark::Row& row) const;
+    double times_floor(const measure::Row& row) const;
 };
 
 /// One line about the machine, the build and the peers: "AMD EPYC, 2 cores, ...".
@@ -41,7 +42,7 @@ std::string page_of(const BenchReport& report);
 std::string chart_of(const BenchReport& report);
 
 /// Names of rows, as "primary, closest, one", and of the peers' rates, as "Embree medium".
-std::string name_of(const benchmark::Row& row);
-std::string name_of(const benchmark::TheirRate& rate);
+std::string name_of(const measure::Row& row);
+std::string name_of(const measure::TheirRate& rate);
 
 }  // namespace hedgerow::cli

@@ -3,15 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/compare/quantity.h>
+#include <hedgerow/measure/quantity.h>
 
 #include "bench_report.h"
 #include "kernel_use.h"
 
 namespace hedgerow::cli {
 
-using namespace benchmark;
-using benchmark::name_of;
+using namespace measure;
+using measure::name_of;
 
 namespace {
 
@@ -28,7 +28,7 @@ std::string share_text(double share) {
 Table builds_table(const BenchReport& r, const SceneCosts& s) {
     Table t{s.name + ": builds",
             fmt::format("{} triangles; B: bytes a triangle; x: our time to theirs, where less is better",
-                        compare::number_text(static_cast<double>(s.triangles))),
+                        measure::number_text(static_cast<double>(s.triangles))),
             {"builder", "time", "B"},
             {}};
     if (r.threads > 1) {
@@ -41,15 +41,15 @@ Table builds_table(const BenchReport& r, const SceneCosts& s) {
     const auto n = static_cast<double>(s.triangles);
     const auto bytes = [&](std::size_t all) { return fmt::format("{:.1f}", static_cast<double>(all) / n); };
     for (const OurBuild& b : s.builds) {
-        t.rows.push_back({std::string(name_of(b.builder)), compare::seconds_text(b.seconds), bytes(b.bytes)});
+        t.rows.push_back({std::string(name_of(b.builder)), measure::seconds_text(b.seconds), bytes(b.bytes)});
         auto& row = t.rows.back();
         if (r.threads > 1) {
-            row.push_back(compare::seconds_text(b.on_threads));
+            row.push_back(measure::seconds_text(b.on_threads));
             row.push_back(ratio_text(b.scaling));
         }
         if (const TheirBuild* const them = s.against(b)) {
             row.push_back(them->peer + " " + them->how.name);
-            row.push_back(compare::seconds_text(them->seconds));
+            row.push_back(measure::seconds_text(them->seconds));
             row.push_back(bytes(them->bytes));
             row.push_back(ratio_text(s.ratio(b)));
         }

@@ -6,7 +6,7 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/compare/measure.h>
+#include <hedgerow/measure/compare.h>
 #include <hedgerow/questions.h>
 
 #include "compare_report.h"
@@ -27,8 +27,8 @@ struct CompareArguments : Common {
     double seconds = 0.1;
 };
 
-compare::MeasureOptions measure_options(const CompareArguments& a, bool all) {
-    compare::MeasureOptions o;
+measure::MeasureOptions measure_options(const CompareArguments& a, bool all) {
+    measure::MeasureOptions o;
     o.queries = a.queries, o.seconds = a.seconds, o.seed = a.seed;
     o.camera = camera_for(generated_name(a));
     o.updates = all;
@@ -76,7 +76,7 @@ public:
         report_.scene = a.scene;
         report_.timed = !a.counts;
         if (!a.ask.empty()) report_.ask = a.ask;
-        for (const std::string& s : a.sweeps) report_.sweeps.push_back({compare::sweep_of(s), {}});
+        for (const std::string& s : a.sweeps) report_.sweeps.push_back({measure::sweep_of(s), {}});
     }
 
     template <class P>
@@ -107,14 +107,14 @@ public:
     std::vector<std::string> structures_for(std::size_t size) {
         if (a_.structures.empty()) {
             std::vector<std::string> left_out;
-            auto usual = compare::usual_structures(P::dimension, PointSet<ViewOf<P>>, size, left_out);
+            auto usual = measure::usual_structures(P::dimension, PointSet<ViewOf<P>>, size, left_out);
             for (const auto& s : left_out)
                 note(fmt::format(
                     "{} is left out: it takes long to build over {} primitives; name it in --structures", s,
                     size));
             return usual;
         }
-        auto structures = compare::structures_of(a_.structures);
+        auto structures = measure::structures_of(a_.structures);
         if (std::find(structures.begin(), structures.end(), "brute-force") == structures.end())
             structures.insert(structures.begin(), "brute-force");
         return structures;
@@ -137,7 +137,7 @@ public:
                 a_.threads == 1   ? "one thread"
                 : a_.threads == 0 ? "all cores"
                                   : fmt::format("{} threads", a_.threads),
-                compare::MeasureOptions().rounds));
+                measure::MeasureOptions().rounds));
             note(fmt::format(
                 "{} queries of each kind; where 'asked' (--full) is less, it was a sample of them, evenly "
                 "taken, that fits into {} s",
@@ -161,19 +161,19 @@ private:
             report_.notes.push_back(std::move(text));
     }
     template <class P>
-    compare::Comparison measured(const P& primitives, const std::vector<std::string>& structures, bool all,
+    measure::Comparison measured(const P& primitives, const std::vector<std::string>& structures, bool all,
                                  const std::string& what) {
         auto options = measure_options(a_, all);
         if (const auto placed = placed_camera(a_, primitives)) options.camera = placed;
         ProgressLine line(what, a_.quiet);
-        compare::Comparison c;
+        measure::Comparison c;
         try {
-            c = compare::measure(primitives, structures, options, executor_, line.progress());
+            c = measure::compare(primitives, structures, options, executor_, line.progress());
         } catch (const Cancelled&) {  // comparisons measured before are still shown
             c.finished = false;
         }
         c.scene = a_.scene;
-        if (a_.ask.empty() && !c.structures.empty()) report_.ask = compare::usual_ask(c);
+        if (a_.ask.empty() && !c.structures.empty()) report_.ask = measure::usual_ask(c);
         for (auto& text : ray_notes(c)) note(std::move(text));
         return c;
     }
@@ -192,7 +192,7 @@ void run_scale(const CompareArguments& a, Comparing& comparing) {
     // Without --sizes measure from 1000 to the scene's SIZE (at least 8000), or to 64,000 if it has none.
     const std::string standard =
         fmt::format("1000..{}", std::max<std::uint64_t>(8000, spec.size.value_or(64'000)));
-    const auto sizes = compare::sizes_of(a.sizes.empty() ? standard : a.sizes);
+    const auto sizes = measure::sizes_of(a.sizes.empty() ? standard : a.sizes);
     if (sizes.size() < 3)
         throw UsageError("--sizes " + a.sizes + ": growth needs at least three sizes, as 1k,4k,16k");
     // Generate and measure a scene of each size, the smallest first.

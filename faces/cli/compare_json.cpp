@@ -1,13 +1,13 @@
 /// The results of `compare` as JSON: seconds, bytes and counts, not rounded.
 #include <nlohmann/json.hpp>
 
-#include <hedgerow/compare/break_even.h>
+#include <hedgerow/measure/break_even.h>
 
 #include "compare_report.h"
 
 namespace hedgerow::cli {
 
-using namespace compare;
+using namespace measure;
 using nlohmann::ordered_json;
 
 namespace {
@@ -49,7 +49,8 @@ ordered_json json_of(const Comparison& c, bool timed) {
     ordered_json structures = ordered_json::array();
     for (const auto& s : c.structures) structures.push_back(json_of(s, timed));
     ordered_json rays = ordered_json::array();
-    for (const RaySet& r : c.rays) rays.push_back({{"kind", r.kind}, {"rays", r.rays}, {"missed", r.missed}});
+    for (const RaySetSize& r : c.rays)
+        rays.push_back({{"kind", r.kind}, {"rays", r.rays}, {"missed", r.missed}});
     return {{"primitive", c.primitive}, {"size", c.size}, {"dimension", c.dimension},
             {"finished", c.finished},   {"rays", rays},   {"seen_from_outside", c.seen_from_outside},
             {"structures", structures}};

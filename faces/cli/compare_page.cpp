@@ -6,17 +6,17 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/compare/break_even.h>
+#include <hedgerow/measure/break_even.h>
 #include <hedgerow/questions.h>
 
 #include "compare_report.h"
-#include "page.h"
-#include "plot.h"
-#include "xml.h"
+#include "report/page.h"
+#include "report/plot.h"
+#include "report/xml.h"
 
 namespace hedgerow::cli {
 
-using namespace compare;
+using namespace measure;
 
 namespace {
 

@@ -7,26 +7,26 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <hedgerow/compare/advice.h>
-#include <hedgerow/compare/growth.h>
-#include <hedgerow/compare/lists.h>
+#include <hedgerow/measure/advice.h>
+#include <hedgerow/measure/growth.h>
+#include <hedgerow/measure/lists.h>
 
-#include "table.h"
+#include "report/table.h"
 
 namespace hedgerow::cli {
 
 struct CompareReport {
     std::string scene;
     std::vector<std::string> notes;    ///< facts that a reader of the figures must know
-    compare::Ask ask = "closest-hit";  ///< the query of break-even, advice and growth
+    measure::Ask ask = "closest-hit";  ///< the query of break-even, advice and growth
     bool timed = true;                 ///< false: counts alone
-    std::optional<compare::Comparison> comparison;
+    std::optional<measure::Comparison> comparison;
     struct Swept {
-        compare::Sweep sweep;
-        compare::Comparison comparison;
+        measure::Sweep sweep;
+        measure::Comparison comparison;
     };
     std::vector<Swept> sweeps;
-    std::vector<compare::Comparison> by_size;
+    std::vector<measure::Comparison> by_size;
 };
 
 /// All results as tables, for the terminal and for the page.
@@ -36,7 +36,7 @@ std::vector<std::string> advice_lines(const CompareReport& report);
 /// One table with a row for each structure. Nothing if only sweeps or growth were measured.
 std::optional<Table> summary_of(const CompareReport& report);
 /// Notes about the rays that a reader of the figures must know.
-std::vector<std::string> ray_notes(const compare::Comparison& comparison);
+std::vector<std::string> ray_notes(const measure::Comparison& comparison);
 
 nlohmann::ordered_json json_of(const CompareReport& report);
 /// An HTML page with plots, which needs no other file.

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/compare/quantity.h>
+#include <hedgerow/measure/quantity.h>
 
 #include "compare_report.h"
 
 namespace hedgerow::cli {
 
-using namespace compare;
+using namespace measure;
 
 std::vector<std::string> advice_lines(const CompareReport& r) {
     std::vector<std::string> lines;
@@ -53,7 +53,7 @@ std::vector<std::string> ray_notes(const Comparison& c) {
     std::vector<std::string> notes;
     if (!c.rays.empty()) {
         std::string text = "rays that meet nothing:";
-        for (const RaySet& s : c.rays)
+        for (const RaySetSize& s : c.rays)
             text += fmt::format("{} {:.3g}% of the {} ones", &s == &c.rays.front() ? "" : ",",
                                 100 * double(s.missed) / double(s.rays), s.kind);
         notes.push_back(text);

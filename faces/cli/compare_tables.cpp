@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/compare/break_even.h>
-#include <hedgerow/compare/quantity.h>
+#include <hedgerow/measure/break_even.h>
+#include <hedgerow/measure/quantity.h>
 
 #include "compare_report.h"
 
 namespace hedgerow::cli {
 
-using namespace compare;
+using namespace measure;
 
 namespace {
 

@@ -19,7 +19,7 @@
 namespace hedgerow::cli {
 
 struct DrawArguments : Common {
-    std::string structure = "bvh", slice, heat;
+    std::string structure = "wide", slice, heat;
     std::vector<std::string> beside;
     ViewArguments view;
     std::vector<double> ray;

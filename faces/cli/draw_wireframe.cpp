@@ -12,7 +12,7 @@
 #include <hedgerow/render/wireframe.h>
 
 #include "draw.h"
-#include "svg.h"
+#include "report/svg.h"
 
 namespace hedgerow::cli {
 

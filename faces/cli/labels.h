@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "svg.h"
+#include "report/svg.h"
 
 namespace hedgerow::cli {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pictures.h"
-#include "svg.h"
+#include "report/svg.h"
 
 namespace hedgerow::cli {
 

@@ -1,5 +1,5 @@
 #include "ray_drawing.h"
-#include "xml.h"
+#include "report/xml.h"
 
 namespace hedgerow::cli {
 

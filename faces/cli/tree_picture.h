@@ -11,7 +11,7 @@
 #include <hedgerow/walks/outline.h>
 
 #include "flat.h"
-#include "svg.h"
+#include "report/svg.h"
 
 namespace hedgerow::cli {
 

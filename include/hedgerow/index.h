@@ -256,6 +256,16 @@ private:
     Packed leaves_;
 };
 
+/// The type of `build<S>(primitives)` for primitives of type P, to be written where there is no `auto`:
+///
+///   IndexOf<KdTree, SphereSet<float, 3>> spheres;
+///   MeshIndex<float> mesh;
+template <template <class, int> class S, class P>
+using IndexOf = Index<S<typename P::Scalar, P::dimension>, ViewOf<P>>;
+/// The index of triangles that `build(mesh)` returns, and that files hold (io/index_file.h).
+template <std::floating_point T>
+using MeshIndex = Index<WideBvh<T, 3>, TriangleMeshView<T>>;
+
 /// Builds a structure over primitives: `build<KdTree>(mesh, {.leaf_size = 2})`. An lvalue or a view is
 /// borrowed: its arrays must outlive the index. An rvalue of a set that owns its arrays is moved into the
 /// index. Large sets are built on all cores unless an executor is given (Threads). Throws InputError for
@@ -266,15 +276,14 @@ auto build(P&& primitives,
                             std::remove_cvref_t<P>::dimension>::Options& options = {},
            Threads threads = {}) {
     using Set = std::remove_cvref_t<P>;
-    using Structure = S<typename Set::Scalar, Set::dimension>;
-    using View = ViewOf<Set>;
+    using Built = IndexOf<S, Set>;
     Executor& executor = threads.over(primitives.size());
-    if constexpr (std::is_lvalue_reference_v<P> || std::is_same_v<View, Set>) {
-        return Index<Structure, View>(view_of(primitives), options, executor);
+    if constexpr (std::is_lvalue_reference_v<P> || std::is_same_v<ViewOf<Set>, Set>) {
+        return Built(view_of(primitives), options, executor);
     } else {
         auto owner = std::make_shared<const Set>(std::forward<P>(primitives));
         auto view = view_of(*owner);
-        return Index<Structure, View>(std::move(view), options, executor, std::move(owner));
+        return Built(std::move(view), options, executor, std::move(owner));
     }
 }
 /// Builds a structure with its default options, over an executor: `build<KdTree>(mesh, default_executor())`.

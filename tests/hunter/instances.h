@@ -56,7 +56,7 @@ public:
     std::string validate() const { return outer_.validate(); }
 
 private:
-    using InnerIndex = decltype(build<Inner>(std::declval<const TriangleMesh<T>&>()));
+    using InnerIndex = IndexOf<Inner, TriangleMesh<T>>;
     using Set = InstanceSet<InnerIndex>;
 
     static Set placed(const InnerIndex& inner, const std::vector<Transform<3>>& places) {
@@ -68,7 +68,7 @@ private:
     TriangleMesh<T> mesh_;
     InnerIndex inner_;
     Set set_;
-    decltype(build<Outer>(std::declval<const Set&>())) outer_;
+    IndexOf<Outer, Set> outer_;
 };
 
 /// Whether an index of instances is valid and answers a query like brute force over brute force.

@@ -9,10 +9,6 @@
 
 namespace hedgerow {
 
-/// The index that can be saved: triangles in the engine, as `build(mesh)` makes it.
-template <std::floating_point T>
-using MeshIndex = Index<WideBvh<T, 3>, TriangleMeshView<T>>;
-
 /// Which parts of a file are checked before its index is used.
 enum class Verify {
     /// The header and the file's length, in microseconds. The rest is read when queries touch it. For files

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <concepts>
 #include <optional>
 
 #include <hedgerow/structures/references.h>
@@ -91,16 +92,24 @@ struct GrowingCutTree {
     }
 };
 
-/// Grows a tree top down. `Cutter` has a type `Cell` with `size()` and `for_each_id(f)`, and functions
-/// `choose(cell, depth) -> std::optional<plane>` (none: the cell becomes a leaf) and `cut(cell, plane) ->
-/// std::pair<Cell, Cell>`. The tree is the same for any number of threads.
+/// What divides the cells of a tree of planes. A cell has a size, the number of its primitives, and calls
+/// f(id) for each of them by `for_each_id(f)`. `choose` returns the plane to cut a cell by, or nothing if the
+/// cell becomes a leaf. `cut` returns the cells on the plane's low and high sides.
+template <class C>
+concept CellCutter = requires(const C& c, typename C::Cell& cell, int depth) {
+    { cell.size() } -> std::convertible_to<std::uint32_t>;
+    cell.for_each_id([](PrimitiveId) {});
+    { c.cut(cell, *c.choose(cell, depth)) } -> std::same_as<std::pair<typename C::Cell, typename C::Cell>>;
+};
+
+/// Grows a tree from the root down. The tree is the same for any number of threads.
 ///
 /// A tree that would have more items than the limit is abandoned and grown again with rations. A cell's
 /// ration is the number of items that its subtree may have. The two sides of a cell share its ration in
 /// proportion to their primitives, and a cell whose sides together have more primitives than its ration
 /// becomes a leaf. So a tree within the limit is the tree that would grow without one, and any other tree
 /// takes at most about twice the time that its items explain.
-template <class Node, class Cutter>
+template <class Node, CellCutter Cutter>
 class CutTreeGrowth {
 public:
     using Cell = typename Cutter::Cell;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <concepts>
 
 #include <hedgerow/structures/bvh/build_tree.h>
 
@@ -30,17 +31,28 @@ struct Range {
     }
 };
 
-/// Builds a tree from the root down. `Splitter` has `references()`; the `root()` over them; `split(range,
-/// left, right) -> bool`; and `halve(range, left, right)`, which splits by count and always succeeds. A
-/// `split` that returns true has arranged the references so that `left` comes before `right`. One that
-/// returns false makes a leaf, or halves where a leaf would be too large. A splitter whose ranges have room
-/// also has `share_room`. A subtree over a capacity of n owns 2n − 1 places in the list of nodes, so the tree
-/// is the same however many threads build it. A small subtree is built by one thread, and fills its places
-/// without gaps.
-template <std::floating_point T, int D, class Splitter>
+/// What divides the nodes of a tree that is built from the root down.
+///
+/// - `references` lists the references, and `root` is the range over all of them.
+/// - `split` returns true if it has arranged the references of a range so that `left` comes before `right`.
+///   Where it returns false, the range becomes a leaf, or is halved if a leaf would be too large.
+/// - `halve` splits by count, and always succeeds.
+/// - A splitter whose ranges have room also has `share_room(range, left, right)`.
+template <class S, class T, int D>
+concept Splitter = requires(S& s, const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
+    { s.references()[0] } -> std::convertible_to<const Reference<T, D>&>;
+    { s.root() } -> std::same_as<Range<T, D>>;
+    { s.split(range, left, right) } -> std::same_as<bool>;
+    s.halve(range, left, right);
+};
+
+/// Builds a tree from the root down. A subtree over a capacity of n owns 2n − 1 places in the list of nodes,
+/// so the tree is the same however many threads build it. A small subtree is built by one thread, and fills
+/// its places without gaps.
+template <std::floating_point T, int D, Splitter<T, D> S>
 class TopDown {
 public:
-    TopDown(Splitter& splitter, std::uint32_t max_leaf_size, Executor& executor)
+    TopDown(S& splitter, std::uint32_t max_leaf_size, Executor& executor)
         : splitter_(splitter), max_leaf_size_(max_leaf_size), executor_(executor) {}
 
     BuildTree<T, D> build() {
@@ -120,7 +132,7 @@ private:
         node.first = first;
     }
 
-    Splitter& splitter_;
+    S& splitter_;
     std::uint32_t max_leaf_size_;
     Executor& executor_;
     BuildTree<T, D> tree_;

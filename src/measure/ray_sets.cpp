@@ -1,0 +1,89 @@
+#include <hedgerow/measure/ray_sets.h>
+
+#include <hedgerow/ask.h>
+#include <hedgerow/scenes/random.h>
+
+namespace hedgerow::measure {
+
+namespace {
+
+Vec3f eye_of(const Box3f& box) {
+    return box.center() + Vec3f(0.3f, 0.5f, 1.f) * (0.85f * length(box.extent()));
+}
+
+/// Calls f(i, origin, normal) for each ray i that hits. `origin` is where its next ray starts: off the
+/// surface, on the side of ray i. The normal points to that side.
+template <class F>
+void for_each_hit(const TriangleMesh<float>& mesh, const std::vector<Ray3f>& rays,
+                  const std::vector<Hit<float>>& hits, F f) {
+    const auto view = mesh.view();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i]) continue;
+        Vec3f n = normalized(view.normal(hits[i].element));
+        if (dot(n, rays[i].direction) > 0) n = -n;
+        f(i, offset_origin(rays[i], hits[i].t, view.triangle(hits[i].element), n), n);
+    }
+}
+
+}  // namespace
+
+std::vector<Ray3f> primary_rays(const Box3f& box, int size) {
+    const Vec3f eye = eye_of(box);
+    const Vec3f forward = normalized(box.center() - eye);
+    const Vec3f right = normalized(cross(forward, Vec3f(0, 1, 0)));
+    const Vec3f up = cross(right, forward);
+    std::vector<Ray3f> rays;
+    for (int ty = 0; ty < size; ty += 16)
+        for (int tx = 0; tx < size; tx += 16)
+            for (int y = ty; y < ty + 16; ++y)
+                for (int x = tx; x < tx + 16; ++x) {
+                    const float u = (float(x) + 0.5f) / float(size) - 0.5f,
+                                v = 0.5f - (float(y) + 0.5f) / float(size);
+                    rays.push_back({eye, normalized(forward + right * u + up * v)});
+                }
+    return rays;
+}
+
+std::vector<Ray3f> diffuse_rays(const TriangleMesh<float>& mesh, const std::vector<Ray3f>& rays,
+                                const std::vector<Hit<float>>& hits, std::uint64_t seed) {
+    std::vector<Ray3f> result;
+    for_each_hit(mesh, rays, hits, [&](std::size_t i, const Vec3f& from, const Vec3f& n) {
+        Random random(7 + 16 * seed, i);
+        const Vec3f d(random.direction<3>());
+        result.push_back({from, normalized(n + d * 0.999f)});
+    });
+    return result;
+}
+
+std::vector<Ray3f> shadow_rays(const TriangleMesh<float>& mesh, const Box3f& box,
+                               const std::vector<Ray3f>& rays, const std::vector<Hit<float>>& hits) {
+    const Vec3f light = eye_of(box) + Vec3f(0.6f, 0.8f, -0.3f) * length(box.extent());
+    std::vector<Ray3f> result;
+    for_each_hit(mesh, rays, hits, [&](std::size_t, const Vec3f& from, const Vec3f&) {
+        Ray3f ray{from, light - from};
+        ray.t_max = 1;
+        result.push_back(ray);
+    });
+    return result;
+}
+
+std::vector<Ray3f> random_rays(const Box3f& box, std::size_t n, std::uint64_t seed) {
+    std::vector<Ray3f> rays;
+    for (std::size_t i = 0; i < n; ++i) {
+        Random random(11 + 16 * seed, i);
+        rays.push_back(random_ray(box, random));
+    }
+    return rays;
+}
+
+std::vector<RaySet> ray_sets(const TriangleMesh<float>& mesh, const Box3f& box, int size, std::size_t n) {
+    const auto index = build(mesh);
+    auto primary = primary_rays(box, size);
+    std::vector<Hit<float>> hits(primary.size());
+    closest_hits(index, std::span<const Ray3f>(primary), std::span<Hit<float>>(hits));
+    auto diffuse = diffuse_rays(mesh, primary, hits);
+    return {
+        {"primary", std::move(primary)}, {"diffuse", std::move(diffuse)}, {"random", random_rays(box, n)}};
+}
+
+}  // namespace hedgerow::measure
