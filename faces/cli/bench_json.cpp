@@ -12,10 +12,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-double mrays(double seconds_a_ray) {
-    return 1e-6 / seconds_a_ray;
-}
-
 ordered_json json_of(const OurRate& r, Mode mode, const BenchReport& report) {
     const double cycles = r.cycles_a_visit(report.gigahertz);
     ordered_json j = {{"builder", name_of(r.builder)},

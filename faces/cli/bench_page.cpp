@@ -27,10 +27,6 @@ std::string short_name(const SceneCosts& scene) {
     return name.substr(0, name.find(generated ? ':' : '.'));
 }
 
-double mrays(double seconds) {
-    return 1e-6 / seconds;
-}
-
 /// The highest rate, in million rays a second, of the peers' trees that are not robust, in calls of
 /// `calls_of` rays. 0 if there is none.
 double fastest(const Row& row, int calls_of) {

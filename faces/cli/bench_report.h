@@ -32,6 +32,11 @@ struct BenchReport {
     double times_floor(const measure::Row& row) const;
 };
 
+/// Million rays a second.
+constexpr double mrays(double seconds_a_ray) {
+    return 1e-6 / seconds_a_ray;
+}
+
 /// One line about the machine, the build and the peers: "AMD EPYC, 2 cores, ...".
 std::string machine_of(const BenchReport& report);
 std::vector<Table> tables_of(const BenchReport& report);

@@ -115,14 +115,14 @@ Image wireframe(std::vector<OutlineCell<3>> cells, const std::vector<std::string
     draw_level_legend(image, title, levels);
     return image;
 }
-constexpr int gap = 4;  // pixels between pictures
+constexpr int between_pictures = 4;  // pixels between pictures
 
 /// Joins pictures of one size into one, two in a row.
 Image joined(const std::vector<Image>& parts) {
     const int columns = parts.size() > 1 ? 2 : 1,
               rows = (static_cast<int>(parts.size()) + columns - 1) / columns;
-    const int wide = parts[0].width + gap, high = parts[0].height + gap;
-    Image all(columns * wide - gap, rows * high - gap, {255, 255, 255});
+    const int wide = parts[0].width + between_pictures, high = parts[0].height + between_pictures;
+    Image all(columns * wide - between_pictures, rows * high - between_pictures, {255, 255, 255});
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const int left = static_cast<int>(i) % columns * wide, top = static_cast<int>(i) / columns * high;
         for (int y = 0; y < parts[i].height; ++y)
@@ -141,8 +141,8 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     options.samples = 4, options.seed = a.seed;
     // Divide the picture among the structures.
     const auto specs = structures_of(a);
-    if (specs.size() > 1) options.width = std::max(1, (options.width - gap) / 2);
-    if (specs.size() > 2) options.height = std::max(1, (options.height - gap) / 2);
+    if (specs.size() > 1) options.width = std::max(1, (options.width - between_pictures) / 2);
+    if (specs.size() > 2) options.height = std::max(1, (options.height - between_pictures) / 2);
     // Render the background, which all structures share.
     const auto seen_index = build_shown(a, "bvh", seen);
     const Upright upright = upright_of(a.view, a, set);

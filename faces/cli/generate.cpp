@@ -18,15 +18,15 @@ namespace hedgerow::cli {
 namespace {
 
 template <class T>
-void save(const Common& c, const TriangleMesh<T>& mesh, const Progress& progress) {
+void save_scene(const Common& c, const TriangleMesh<T>& mesh, const Progress& progress) {
     save_mesh(c.output, mesh, progress);
 }
 template <class T, int D>
-void save(const Common& c, const PointCloud<T, D>& cloud, const Progress& progress) {
+void save_scene(const Common& c, const PointCloud<T, D>& cloud, const Progress& progress) {
     save_points(c.output, cloud, progress);
 }
 template <class Other>
-void save(const Common& c, const Other&, const Progress&) {
+void save_scene(const Common& c, const Other&, const Progress&) {
     throw InputError(c.scene + ": no file format here holds these primitives");
 }
 
@@ -61,7 +61,7 @@ int save_scene(const Common& c) {
         const Scene<T> scene = load<T>(c);
         {
             ProgressLine line("saving " + c.output, c.quiet, "elements");
-            std::visit([&](const auto& set) { save(c, set, line.progress()); }, scene);
+            std::visit([&](const auto& set) { save_scene(c, set, line.progress()); }, scene);
         }
         if (c.json)
             print_json({{"output", c.output}});

@@ -8,7 +8,7 @@ namespace hedgerow::cli {
 
 namespace {
 
-constexpr const char* style =
+constexpr const char* style_sheet =
     R"(body { font: 15px/1.45 sans-serif; color: #222; max-width: 1000px; margin: 2em auto; padding: 0 1em }
 h1 { font-size: 1.5em } h2 { font-size: 1.2em; margin-top: 2em }
 table { border-collapse: collapse; font-size: 13px } div.wide { overflow-x: auto; margin: 1em 0 }
@@ -24,7 +24,7 @@ std::string page_opened(const std::string& title) {
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head><meta "
         "charset=\"utf-8\"/>\n"
         "<title>{0}</title>\n<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n",
-        escaped(title), style);
+        escaped(title), style_sheet);
 }
 std::string page_closed() {
     return "</body>\n</html>\n";

@@ -40,7 +40,7 @@ std::vector<double> spread(const std::vector<double>& places, double gap, double
 std::string svg_of(const LinePlot& plot) {
     // Scale the axes to the points.
     const double height = std::max(340.0, 80 + 15.0 * static_cast<double>(plot.series.size()));
-    const double right = width - name_width, bottom = height - 40;
+    const double right = plot_width - name_width, bottom = height - 40;
     LogAxis x(left_edge, right), y(bottom, top_edge);
     for (const Series& s : plot.series)
         for (const auto& [at, value] : s.points)
@@ -53,7 +53,7 @@ std::string svg_of(const LinePlot& plot) {
     // half the place of a name.
     const auto reaches_right = [&](double at) { return at > right - (right - left_edge) / 6; };
     // Draw the axes, with ticks or with the names on x.
-    std::string svg = opened(plot.title, width, height);
+    std::string svg = opened(plot.title, plot_width, height);
     for (const double v : y.ticks()) {
         svg += line(left_edge, y.at(v), right, y.at(v));
         svg += text(left_edge - 6, y.at(v) + 4, "end", tick_text(v, plot.y_unit));
@@ -114,10 +114,10 @@ std::string svg_of(const DotPlot& plot) {
     const double top = top_edge + (plot.series.size() > 1 ? 20 : 0), left = name_width;
     const double bottom = top + row_height * static_cast<double>(plot.rows.size()), height = bottom + 26;
     // Scale the axis to the values.
-    LogAxis x(left, width - 60);
+    LogAxis x(left, plot_width - 60);
     for (const auto& row : plot.rows)
         for (const double v : row.values) x.include(v);
-    std::string svg = opened(plot.title, width, height);
+    std::string svg = opened(plot.title, plot_width, height);
     // Draw a legend if a row has several values, and the ticks.
     double at = left;
     for (std::size_t i = 0; plot.series.size() > 1 && i < plot.series.size(); ++i) {

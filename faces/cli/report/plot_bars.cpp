@@ -41,7 +41,7 @@ class Bars {
 public:
     explicit Bars(const BarPlot& plot) : plot_(plot) {
         for (const auto& panel : plot.panels) groups_ = std::max(groups_, panel.groups.size());
-        wide_ = std::max(width, left + 16 + 104 * static_cast<double>(groups_));
+        wide_ = std::max(plot_width, left + 16 + 104 * static_cast<double>(groups_));
         group_ =
             std::min(220.0, (wide_ - left - 16) / static_cast<double>(std::max<std::size_t>(1, groups_)));
     }
@@ -127,14 +127,14 @@ std::string svg_of(const BarPlot& plot) {
 
 std::string svg_of(const PointPlot& plot) {
     constexpr double height = 420;
-    const double right = width - name_width, bottom = height - 40, top = top_edge + 8;
+    const double right = plot_width - name_width, bottom = height - 40, top = top_edge + 8;
     // Scale the axes to the points and levels.
     LogAxis x(left_edge, right), y(bottom, top);
     for (const auto& s : plot.series)
         for (const auto& p : s.points) x.include(p.x), y.include(p.y);
     for (const auto& l : plot.levels) y.include(l.y);
     // Draw the axes.
-    std::string svg = opened(plot.title, width, height);
+    std::string svg = opened(plot.title, plot_width, height);
     for (const double v : y.ticks()) {
         svg += line(left_edge, y.at(v), right, y.at(v));
         svg += text(left_edge - 6, y.at(v) + 4, "end", tick_text(v, Unit::number));

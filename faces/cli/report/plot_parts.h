@@ -11,7 +11,7 @@
 
 namespace hedgerow::cli::plot_parts {
 
-inline constexpr double width = 860, name_width = 210, left_edge = 64, top_edge = 34;
+inline constexpr double plot_width = 860, name_width = 210, left_edge = 64, top_edge = 34;
 
 /// Ten colours that colour-blind people can distinguish too (after Okabe and Ito 2008). They repeat from the
 /// eleventh series on, whose lines are dashed.
