@@ -285,7 +285,7 @@ TEST_F(Draw, HeightShowsATreeFromItsLeaves) {
 }
 
 TEST_F(Draw, ASliceOfManyTrianglesMakesASmallFile) {
-    ASSERT_EQ(run("draw gen:terrain:200k --quiet --slice z=0.5 -o " + file("s.svg")).code, 0);
+    ASSERT_EQ(run("draw gen:terrain:200k --quiet --structure bvh --slice z=0.5 -o " + file("s.svg")).code, 0);
     const auto svg = bytes_of(file("s.svg"));
     EXPECT_LT(svg.size(), 400'000u);
     EXPECT_GT(elements_with_class(svg, "cell"), 3u);

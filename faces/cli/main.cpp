@@ -56,7 +56,7 @@ constexpr Verb verbs[] = {
     {"draw",
      "Examples:\n  hedgerow draw gen:clusters2d:300 --structure quadtree:leaf_size=4 -o cells.svg\n"
      "  hedgerow draw gen:teapot --slice y=0.5 --structure kdtree -o slice.svg\n"
-     "  hedgerow draw gen:teapot --depth 6 -o boxes.png\n"
+     "  hedgerow draw gen:teapot --depth 2 -o boxes.png\n"
      "  hedgerow draw gen:segments2d:80 --ray=-0.1,0.3,1,0.3 --frames -o steps.html\n"
      "  hedgerow draw gen:segments2d:80 --structure bvh:builder=midpoint --beside bvh:builder=sweep -o "
      "two.svg\n"
