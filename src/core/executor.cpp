@@ -55,16 +55,23 @@ public:
     template <class F>
     auto task(F f) {
         return [this, f](const auto&... arguments) {
-            acquired(&before_);
-            {
-                const Working here;
-                f(arguments...);
-            }
-            released(&after_);
+            const Task task(*this);
+            const Working here;
+            f(arguments...);
         };
     }
 
 private:
+    /// A task that runs. It ends where its function throws, too.
+    class Task {
+    public:
+        explicit Task(Handover& handover) : handover_(handover) { acquired(&handover.before_); }
+        ~Task() { released(&handover_.after_); }
+        Task(const Task&) = delete;
+
+    private:
+        Handover& handover_;
+    };
     static void acquired([[maybe_unused]] char* what) {
 #if HEDGEROW_TSAN
         __tsan_acquire(what);
