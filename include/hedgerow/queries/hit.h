@@ -56,6 +56,8 @@ struct CullBackFaces {
         return dot(Vec3d(mesh.normal(h.element)), Vec3d(direction)) < 0;
     }
 };
+template <class View, class T>
+CullBackFaces(View, Vec<T, 3>) -> CullBackFaces<View>;
 /// Keeps elements whose mask has a bit in common with `wanted`.
 struct Masked {
     Strided<std::uint32_t> masks;
