@@ -29,6 +29,19 @@ TEST(Found, RaysFromFarAwayVisitACellOfAGridOnce) {
     EXPECT_TRUE(as_brute_force("grid:resolution=20", shapes, ray));
 }
 
+// ---- An oriented box around a needle, whose axes were not at right angles
+
+TEST(Found, Round1120270x13273) {
+    const std::vector<Triangle<double, 3>> shapes = {
+        {{-0x1.999999999999ap+0, -0x1.8p+0, -0x1.6666666666666p-1},
+         {-0x1.9999999999994p+0, -0x1.8000000000002p+0, -0x1.6666666666669p-1},
+         {-0x1.995fffffffffap+0, -0x1.7fa0000000002p+0, -0x1.66e6666666669p-1}},
+        {{0, 0, 0}, {0, 0, 0}, {-2, -0x1.6p+0, -1}},
+    };
+    const Vec<double, 3> question = {-0x1.cp+0, -0x1.6p+0, -1};
+    EXPECT_TRUE(as_brute_force("bvh:volume=obb,overlap=0.1,intersection_cost=4", shapes, question));
+}
+
 // ---- Box overlaps, from the time before they were exact (docs/design/013-exact-overlaps.md)
 
 TEST(Found, Round1x7) {

@@ -141,7 +141,9 @@ inline Rows<3> spanning_axes(const Points<3>& points) {
     };
     const Vec3d c = far_across(a), d = far_across(c), across = cross(along, d - c);
     if (!(length2(across) > 0x1p-80)) return coordinate_axes<3>();  // all lie on a line
-    const Vec3d normal = normalized(across);
+    // Where the points nearly lie on a line, `across` is a small difference, and its rounding error may point
+    // along the axis: take that part out again.
+    const Vec3d leaning = normalized(across), normal = normalized(leaning - along * dot(leaning, along));
     return {along, cross(normal, along), normal};
 }
 
