@@ -127,12 +127,6 @@ Ray<T, D> ray_of(const Box<T, D>& box, const Points<T, D>& targets, std::uint64_
 template <class T, int D>
 using Indexes = std::vector<std::unique_ptr<AnyIndex<T, D>>>;
 
-/// Whether a question of the table takes many queries in one call.
-template <class Question, class Index>
-constexpr bool in_batches = requires(const Index& index, std::span<typename Question::Answer> answers) {
-    Question::ask_all(index, std::span<const typename Question::Given>(), answers);
-};
-
 /// The answers of an index to a question, for each that is given. `some` queries are one task.
 template <class Question, class Index>
 std::unique_ptr<typename Question::Answer[]> answers_of(const Index& index,
@@ -141,7 +135,7 @@ std::unique_ptr<typename Question::Answer[]> answers_of(const Index& index,
     std::unique_ptr<typename Question::Answer[]> answers(new typename Question::Answer[given.size()]);
     default_executor().for_each_piece(given.size(), some, [&](std::size_t begin, std::size_t end) {
         const std::size_t count = end - begin;
-        if constexpr (in_batches<Question, Index>) {
+        if constexpr (AsksMany<Question>) {
             Question::ask_all(index, given.subspan(begin, count), std::span(answers.get() + begin, count));
         } else {
             Visits visits;
@@ -181,7 +175,7 @@ void expect_equal_rays(const Indexes<T, D>& indexes, const Points<T, D>& targets
         }
         for_each_question<T, D>([&]<class Question>(Question) {
             if constexpr (std::same_as<typename Question::Given, Ray<T, D>>) {
-                constexpr bool all = in_batches<Question, AnyIndex<T, D>>;
+                constexpr bool all = AsksMany<Question>;
                 if (!testing::Test::HasFatalFailure())
                     expect_equal_answers<Question>(indexes, all ? rays : eighth, 256, begin, all ? 1 : 8);
             }

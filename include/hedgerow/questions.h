@@ -1,5 +1,5 @@
-/// The table of questions: all that an AnyIndex can be asked. Comparisons, tests and the hunter go through
-/// it, so a question in the table is measured on every structure and compared with brute force.
+/// The table of questions: all that an AnyIndex can be asked. Comparisons and the matrix of tests go
+/// through it, so a question in the table is measured on every structure and compared with brute force.
 #pragma once
 
 #include <span>
@@ -23,8 +23,8 @@ struct Neighbours {
 };
 
 /// A question: its name; the words for it in a sentence; what is given to it, and what it answers, in memory
-/// that the next answer may use again. `ask` asks an index once; `ask_all`, where there is one, many times in
-/// one call. Visits are added to those given, if any.
+/// that the next answer may use again. A question has either `ask`, which asks an index once, or `ask_all`,
+/// which asks many times in one call. Visits are added to those given, if any.
 template <std::floating_point T, int D>
 struct AskClosestHit {
     static constexpr std::string_view name = "closest-hit", words = "closest hit";
@@ -91,6 +91,12 @@ struct AskOverlap {
     static void ask(const AnyIndex<T, D>& index, const Given& box, Answer& found, Visits& visits) {
         index.template answer<Overlapping<AnyIndex<T, D>>>(visits, box, found);
     }
+};
+
+/// Whether one call asks many times.
+template <class Question>
+concept AsksMany = requires {
+    &Question::ask_all;
 };
 
 /// Calls f with each question.

@@ -74,7 +74,9 @@ public:
     using Answer = typename Question::Answer;
 
     QuestionsOf(std::string kind, std::vector<Given> given)
-        : kind_(std::move(kind)), given_(std::move(given)), answers_(new Answer[in_batches ? size() : 1]) {}
+        : kind_(std::move(kind)),
+          given_(std::move(given)),
+          answers_(new Answer[AsksMany<Question> ? size() : 1]) {}
 
     Ask ask() const override { return Question::name; }
     const std::string& kind() const override { return kind_; }
@@ -107,18 +109,12 @@ public:
     }
 
 private:
-    /// Whether one call answers many queries. Other questions answer lists, and reuse one.
-    static constexpr bool in_batches =
-        requires(const AnyIndex<T, D>& index, std::span<const Given> given, std::span<Answer> answers) {
-        Question::ask_all(index, given, answers);
-    };
-
     /// Calls f(answer) for each of `count` queries, in order from number `first` on. `visits` has one element
     /// for each of these queries, or none.
     template <class F>
     void each_answer(const AnyIndex<T, D>& index, std::size_t first, std::size_t count,
                      std::span<Visits> visits, F f) {
-        if constexpr (in_batches) {
+        if constexpr (AsksMany<Question>) {
             const std::span<Answer> found(answers_.get() + first, count);
             Question::ask_all(index, std::span<const Given>(given_).subspan(first, count), found, visits);
             for (const Answer& answer : found) f(answer);
@@ -133,7 +129,7 @@ private:
 
     std::string kind_;
     std::vector<Given> given_;
-    std::unique_ptr<Answer[]> answers_;
+    std::unique_ptr<Answer[]> answers_;  // one, which is reused, where a question is asked one by one
 };
 
 }  // namespace hedgerow::measure

@@ -2,11 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <string_view>
 
 #include <hedgerow/walks/query.h>
 #include <hedgerow/walks/visits.h>
 
 namespace hedgerow {
+
+/// What the option `mailbox` of a structure means.
+inline constexpr std::string_view mailbox_meaning =
+    "test a primitive once a query, in however many cells it is";
 
 /// Primitives with a mailbox for one query: the ids of 64 that were tested, the last four of each of 16
 /// classes (Amanatides and Woo 1987, but hashed, and in the ray instead of in the primitives, so that queries

@@ -5,6 +5,7 @@
 #include <hedgerow/structures/cells.h>
 #include <hedgerow/structures/cut_tree.h>
 #include <hedgerow/structures/item_limit.h>
+#include <hedgerow/walks/mailbox.h>
 
 namespace hedgerow {
 
@@ -54,7 +55,7 @@ struct BspOptions {
         option("items_per_primitive", items_per_primitive, 1, most_items_per_primitive,
                "with more items a primitive cells are not divided");
         costs.list(option);
-        option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+        option("mailbox", mailbox, mailbox_meaning);
     }
 };
 

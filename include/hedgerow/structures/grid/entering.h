@@ -9,6 +9,7 @@
 #include <hedgerow/structures/grid/cell_rows.h>
 #include <hedgerow/structures/grid/resolution.h>
 #include <hedgerow/structures/item_limit.h>
+#include <hedgerow/walks/mailbox.h>
 
 namespace hedgerow {
 
@@ -16,6 +17,17 @@ namespace hedgerow {
 /// primitive itself meets. The saving of `exact` shows on large triangles that lie askew to the axes.
 enum class GridInsert { exact, box };
 inline constexpr std::string_view grid_insert_names[] = {"exact", "box"};
+
+/// Lists the options (option.h) of a grid that say how primitives are inserted.
+template <class Options, class Option>
+void list_entering(Options& o, Option& option) {
+    option("insert", o.insert, grid_insert_names,
+           "into which cells: all that the primitive meets, or all that its box meets");
+    option("items_per_primitive", o.items_per_primitive, 1, most_items_per_primitive,
+           "with more items a primitive there are fewer cells");
+    option("budget", o.budget, 1e3, 1e15, "bytes; a build that would take more is refused");
+    option("mailbox", o.mailbox, mailbox_meaning);
+}
 
 /// Finds the cells that a primitive is inserted in: those within the lattice's pad of it.
 template <PrimitiveSet P>

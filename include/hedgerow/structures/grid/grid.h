@@ -34,12 +34,7 @@ public:
         template <class Option>
         void list(Option& option) {
             cells.list<D>(option);
-            option("insert", insert, grid_insert_names,
-                   "into which cells: all that the primitive meets, or all that its box meets");
-            option("items_per_primitive", items_per_primitive, 1, most_items_per_primitive,
-                   "with more items a primitive there are fewer cells");
-            option("budget", budget, 1e3, 1e15, "bytes; a build that would take more is refused");
-            option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+            list_entering(*this, option);
             option("skip_empty", skip_empty, "rays pass over a block of empty cells in one step");
         }
     };

@@ -41,7 +41,7 @@ struct GridResolution {
     void list(Option& option) {
         option("density", density, 1e-9, 1e6, "cells a primitive");
         option("heuristic", heuristic, grid_heuristic_names,
-               "density: as many cells; roots: 3 cube roots of n along each axis");
+               "density: so many cells a primitive; roots: 3 cube roots of n along each axis");
         option("resolution", resolution, 0, Lattice<D>::most_cells,
                "cells on the longest axis; 0: by the heuristic");
     }

@@ -38,12 +38,7 @@ public:
         void list(Option& option) {
             cells.list<D>(option);
             option("inner_density", inner_density, 1e-9, 1e6, "cells a primitive, of the second level");
-            option("insert", insert, grid_insert_names,
-                   "into which cells: all that the primitive meets, or all that its box meets");
-            option("items_per_primitive", items_per_primitive, 1, most_items_per_primitive,
-                   "with more items a primitive there are fewer cells");
-            option("budget", budget, 1e3, 1e15, "bytes; a build that would take more is refused");
-            option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+            list_entering(*this, option);
         }
     };
     static constexpr auto packed_order = PackedOrder::of_ids;

@@ -52,7 +52,7 @@ public:
             option("max_depth", max_depth, 0, deepest_option, "how often the first cell may be halved");
             option("items_per_primitive", items_per_primitive, 1, most_items_per_primitive,
                    "with more items a primitive cells are not divided");
-            option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+            option("mailbox", mailbox, mailbox_meaning);
         }
     };
     static constexpr auto packed_order = PackedOrder::of_ids;

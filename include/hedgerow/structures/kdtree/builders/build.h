@@ -5,6 +5,7 @@
 
 #include <hedgerow/structures/item_limit.h>
 #include <hedgerow/structures/kdtree/builders/costs.h>
+#include <hedgerow/walks/mailbox.h>
 
 namespace hedgerow {
 
@@ -42,7 +43,7 @@ struct KdOptions {
         option("items_per_primitive", items_per_primitive, 0, most_items_per_primitive,
                "with more items a primitive cells are not divided; 0: 16 where costs decide, else 64");
         costs.list(option);
-        option("mailbox", mailbox, "test a primitive once a query, in however many cells it is");
+        option("mailbox", mailbox, mailbox_meaning);
     }
 };
 
