@@ -122,7 +122,7 @@ private:
                     else
                         return hn::Sub(corner[k][c], ray(origin[k]));
                 };
-                const Corners<F> corners(from_origin, ray(shear[0]), ray(shear[1]));
+                const ShearedCorners<F> corners(from_origin, ray(shear[0]), ray(shear[1]));
                 if constexpr (!from_one_origin) reach_of(corners.z, near, far);
                 M kept =
                     hn::And(corners.around(f), hn::And(hn::Le(near, ray(s_limit)), hn::Ge(far, ray(s_low))));
@@ -154,8 +154,8 @@ private:
             const auto o = common_origin ? hn::Set(e, origin[k][0]) : hn::GatherIndex(e, origin[k], ray);
             return hn::Sub(picked(block.corner[axis[k]][c], triangle), o);
         };
-        const Corners<E> corners(from_origin, hn::GatherIndex(e, shear[0], ray),
-                                 hn::GatherIndex(e, shear[1], ray));
+        const ShearedCorners<E> corners(from_origin, hn::GatherIndex(e, shear[0], ray),
+                                        hn::GatherIndex(e, shear[1], ray));
         alignas(64) float along[pair_lanes];
         hn::Store(hn::GatherIndex(e, z, ray), e, along);
         const auto direction_z = [&](auto d, int i) {
@@ -262,17 +262,17 @@ private:
         }
         return hn::Le(entry, exit);
     }
-    HWY_INLINE Corners<F> corners_of(const float (&corner)[3][3][8], int i, int at) const {
+    HWY_INLINE ShearedCorners<F> corners_of(const float (&corner)[3][3][8], int i, int at) const {
         const auto from_origin = [&](int k, int c) {
             const V x = hn::Set(f, corner[k][c][i]);
             return common_origin ? x : hn::Sub(x, hn::Load(f, origin[k] + at));
         };
-        return Corners<F>(from_origin, hn::Load(f, shear[0] + at), hn::Load(f, shear[1] + at));
+        return ShearedCorners<F>(from_origin, hn::Load(f, shear[0] + at), hn::Load(f, shear[1] + at));
     }
     /// Tests a triangle exactly against the candidates (a bit each) among the rays from `at` on. It becomes
     /// the hit of the rays that it hits nearer than before (or as near, with a lower number). True if there
     /// are any.
-    HWY_INLINE bool meet(const WideScene& scene, const Corners<F>& corners, std::uint32_t id, int at,
+    HWY_INLINE bool meet(const WideScene& scene, const ShearedCorners<F>& corners, std::uint32_t id, int at,
                          unsigned candidates) {
         Meetings m;
         const auto direction_z = [&](auto d, int from) {

@@ -99,13 +99,13 @@ HWY_INLINE const std::uint32_t* children_of(const std::byte* node) {
 // Corners of triangles in the sheared space of a ray. The lanes are triangles as one ray sees them, one
 // triangle as several rays see it, or pairs of a triangle and a ray.
 template <class F>
-struct Corners {
+struct ShearedCorners {
     using V = hn::Vec<F>;
     V x[3], y[3], z[3];
 
     // `from_origin(k, c)` is corner c minus the ray's origin, along the ray's axis k.
     template <class FromOrigin>
-    HWY_INLINE Corners(FromOrigin from_origin, V shear_x, V shear_y) {
+    HWY_INLINE ShearedCorners(FromOrigin from_origin, V shear_x, V shear_y) {
         for (int c = 0; c < 3; ++c) {
             z[c] = from_origin(2, c);
             x[c] = hn::Sub(from_origin(0, c), hn::Mul(shear_x, z[c]));
@@ -159,7 +159,7 @@ HWY_INLINE unsigned meet_exactly_in(D d, const V (&x)[3], const V (&y)[3], const
 // The candidates that are met, tested as many at once as a vector has doubles. `direction_z(d, i)` is the
 // direction's z in the lanes from i on.
 template <class F, class DirectionZ>
-HWY_INLINE unsigned meet_exactly_among(F f, const Corners<F>& corners, unsigned candidates,
+HWY_INLINE unsigned meet_exactly_among(F f, const ShearedCorners<F>& corners, unsigned candidates,
                                        DirectionZ direction_z, Meetings& m) {
     constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
     constexpr hn::CappedTag<double, lanes> d;
@@ -221,7 +221,7 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keep
         const auto from_origin = [&](int k, int c) {
             return hn::Sub(hn::Load(f, rows + ray.row[k] + 8 * c + at), hn::Set(f, ray.origin[k]));
         };
-        const Corners<F> corners(from_origin, hn::Set(f, ray.shear[0]), hn::Set(f, ray.shear[1]));
+        const ShearedCorners<F> corners(from_origin, hn::Set(f, ray.shear[0]), hn::Set(f, ray.shear[1]));
         unsigned candidates = bits_of(
             f, corners.may_meet(f, hn::Set(f, ray.z), hn::Set(f, ray.s_low), hn::Set(f, ray.s_limit)));
         if (candidates == 0) continue;

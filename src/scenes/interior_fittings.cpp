@@ -7,13 +7,13 @@ namespace hedgerow::detail {
 namespace {
 
 /// A moulding whose profile in (y, z) runs along x.
-void moulding(Model& m, const Place& p, const std::vector<Vec2d>& profile, double length) {
+void moulding(Model& m, const Pose& p, const std::vector<Vec2d>& profile, double length) {
     m.loft(p, {}, Axis::x, {profile, false}, {{1, 0}, {1, length}});
 }
 
 }  // namespace
 
-void casing(Model& m, const Place& p, const Vec2d& size) {
+void casing(Model& m, const Pose& p, const Vec2d& size) {
     const double width = 0.08;
     const std::vector<Vec2d> profile = m.curve({{0, 0},
                                                 {0, 0.012},
@@ -36,8 +36,8 @@ void casing(Model& m, const Place& p, const Vec2d& size) {
     m.loft(p, {0, 0, size[1]}, Axis::x, above, {{1, 0}, {1, size[0]}});
 }
 
-void door(Model& m, const Place& p, const Vec2d& size, const Vec2d& ajar) {
-    const Place leaf = p({0.005, -0.03, 0.004}, ajar);
+void door(Model& m, const Pose& p, const Vec2d& size, const Vec2d& ajar) {
+    const Pose leaf = p({0.005, -0.03, 0.004}, ajar);
     const double width = size[0] - 0.01, height = size[1] - 0.006, thick = 0.04;
     // The leaf, and two panels on each of its faces.
     m.box(leaf, {0, -thick, 0}, {width, 0, height});
@@ -52,7 +52,7 @@ void door(Model& m, const Place& p, const Vec2d& size, const Vec2d& ajar) {
         }
     // A knob on each face.
     for (const double out : {1.0, -1.0}) {
-        const Place side = leaf({width - 0.06, out > 0 ? 0 : -thick, 1.02}, out > 0 ? east : west);
+        const Pose side = leaf({width - 0.06, out > 0 ? 0 : -thick, 1.02}, out > 0 ? east : west);
         m.loft(side, {}, Axis::y, m.disc(0.025),
                m.curve({{0, 0.002},
                         {1, 0.002},
@@ -65,7 +65,7 @@ void door(Model& m, const Place& p, const Vec2d& size, const Vec2d& ajar) {
     }
 }
 
-void window(Model& m, const Place& p, const Vec2d& size) {
+void window(Model& m, const Pose& p, const Vec2d& size) {
     const double frame = 0.06, bar = 0.015;
     m.box(p, {0, -0.03, 0}, {size[0], 0.03, frame});
     m.box(p, {0, -0.03, size[1] - frame}, {size[0], 0.03, size[1]});
@@ -79,7 +79,7 @@ void window(Model& m, const Place& p, const Vec2d& size) {
            {{0, 0}, {1, 0}, {1, size[0] + 0.12}, {0, size[0] + 0.12}});
 }
 
-void curtain(Model& m, const Place& p, double width, double height) {
+void curtain(Model& m, const Pose& p, double width, double height) {
     // Folds as deep as a hand, wider towards the floor.
     const int folds = 9;
     const double fold = width / folds;
@@ -97,7 +97,7 @@ void curtain(Model& m, const Place& p, double width, double height) {
     m.bar(p, {-0.1, 0, height + 0.025}, Axis::x, m.disc(0.012), width + 0.1);
 }
 
-void blind(Model& m, const Place& p, const Vec2d& size) {
+void blind(Model& m, const Pose& p, const Vec2d& size) {
     const double spacing = 0.022;
     const int slats = static_cast<int>(size[1] / spacing);
     const std::vector<Vec2d> slat = m.curve({{0.011, -0.007}, {0.001, 0.004}, {-0.011, 0.007}});
@@ -108,7 +108,7 @@ void blind(Model& m, const Place& p, const Vec2d& size) {
     m.box(p, {0, -0.02, size[1]}, {size[0], 0.02, size[1] + 0.03});
 }
 
-void radiator(Model& m, const Place& p, double width) {
+void radiator(Model& m, const Pose& p, double width) {
     const int columns = static_cast<int>(width / 0.05);
     for (int i = 0; i < columns; ++i)
         for (const double y : {0.05, 0.11})
@@ -118,7 +118,7 @@ void radiator(Model& m, const Place& p, double width) {
     m.bar(p, {-width / 2 + 0.02, 0.08, 0}, Axis::z, m.disc(0.008), 0.15);
 }
 
-void skirting(Model& m, const Place& p, double length) {
+void skirting(Model& m, const Pose& p, double length) {
     moulding(m, p,
              m.curve({{0.016, 0},
                       {0.016, 0.08},
@@ -130,7 +130,7 @@ void skirting(Model& m, const Place& p, double length) {
                       {0, 0.11}}),
              length);
 }
-void cornice(Model& m, const Place& p, double length, double height) {
+void cornice(Model& m, const Pose& p, double length, double height) {
     const double h = height;
     moulding(m, p,
              m.curve({{0, h - 0.14},
@@ -148,7 +148,7 @@ void cornice(Model& m, const Place& p, double length, double height) {
              length);
 }
 
-void floorboards(Model& m, const Place& p, const Vec2d& size, Random random) {
+void floorboards(Model& m, const Pose& p, const Vec2d& size, Random random) {
     const double pitch = 0.09, gap = 0.002, top = 0.012;
     const int rows = static_cast<int>(size[1] / pitch);
     for (int i = 0; i < rows; ++i) {
@@ -169,7 +169,7 @@ void floorboards(Model& m, const Place& p, const Vec2d& size, Random random) {
     }
 }
 
-void tiles(Model& m, const Place& p, int columns, int rows) {
+void tiles(Model& m, const Pose& p, int columns, int rows) {
     const double pitch = 0.1, half = (pitch - 0.003) / 2;
     for (int i = 0; i < columns; ++i)
         for (int k = 0; k < rows; ++k)

@@ -47,7 +47,7 @@ constexpr Hole holes[] = {
 
 /// A hole as an opening in the wall that begins at `wall`. Nothing if the hole is further than `reach` from
 /// the wall's line, or beyond an end of the wall.
-std::optional<Opening> seen_from(const Place& wall, double wall_length, double reach, const Hole& hole) {
+std::optional<Opening> seen_from(const Pose& wall, double wall_length, double reach, const Hole& hole) {
     double x[2], across = 0;
     for (int i = 0; i < 2; ++i) {
         const Vec2d d = (i == 0 ? hole.from : hole.to) - Vec2d(wall.at[0], wall.at[1]);
@@ -61,7 +61,7 @@ std::optional<Opening> seen_from(const Place& wall, double wall_length, double r
 
 /// A wall of a room as seen from inside: its left end, and how long it is. The room is where y > 0.
 struct Side {
-    Place place;
+    Pose pose;
     double length;
 };
 struct Room {
@@ -104,14 +104,14 @@ public:
     void dressings();
 
 private:
-    void wall(const Place& p, double wall_length, double thickness, bool with_ends);
+    void wall(const Pose& p, double wall_length, double thickness, bool with_ends);
     void dining_table();
-    void shelves(const Place& p, double shelf_width, int count);
+    void shelves(const Pose& p, double shelf_width, int count);
 
-    std::vector<std::pair<Place, std::pair<double, int>>> bookcases_;
+    std::vector<std::pair<Pose, std::pair<double, int>>> bookcases_;
 };
 
-void Furnishing::wall(const Place& p, double wall_length, double thickness, bool with_ends) {
+void Furnishing::wall(const Pose& p, double wall_length, double thickness, bool with_ends) {
     std::vector<Opening> all;
     for (const Hole& h : holes)
         if (auto o = seen_from(p, wall_length, 0.01, h)) {
@@ -142,26 +142,26 @@ void Furnishing::openings() {
         bool hung = false;
         for (const Room& r : rooms)
             for (const Side& s : r.sides()) {
-                const auto o = seen_from(s.place, s.length, 0.25, h);
+                const auto o = seen_from(s.pose, s.length, 0.25, h);
                 if (!o) continue;
                 const Vec2d size = o->high - o->low;
                 if (!h.is_door())
-                    add([=](Model& m) { window(m, s.place({o->low[0], -0.15, h.bottom}, east), size); });
+                    add([=](Model& m) { window(m, s.pose({o->low[0], -0.15, h.bottom}, east), size); });
                 if (h.has_leaf && !std::exchange(hung, true))
                     add([=](Model& m, Random random) {
                         const Vec2d ajar = normalized(Vec2d(random.uniform(), 1));
-                        door(m, s.place({o->low[0], 0, 0}, east), size, ajar);
+                        door(m, s.pose({o->low[0], 0, 0}, east), size, ajar);
                     });
             }
     }
 }
 
-void Furnishing::shelves(const Place& p, double shelf_width, int count) {
+void Furnishing::shelves(const Pose& p, double shelf_width, int count) {
     bookcases_.push_back({p, {shelf_width, count}});
     add([=](Model& m) { bookcase(m, p, shelf_width, count); });
 }
 void Furnishing::dining_table() {
-    const Place t{{6.6, 2.3, 0}, north};
+    const Pose t{{6.6, 2.3, 0}, north};
     add([=](Model& m) { table(m, t, {2.2, 0.95, 0.74}); });
     for (const double side : {-1.0, 1.0})
         for (int i = -1; i <= 1; ++i) {
@@ -214,18 +214,18 @@ void Furnishing::furniture() {
 void Furnishing::mouldings() {
     for (const Room& r : rooms)
         for (const Side& s : r.sides()) {
-            add([=](Model& m) { cornice(m, s.place, s.length, height); });
+            add([=](Model& m) { cornice(m, s.pose, s.length, height); });
             double from = 0;
             std::vector<Opening> doors;
             for (const Hole& h : holes)
-                if (const auto o = seen_from(s.place, s.length, 0.25, h); o && h.is_door()) {
-                    add([=](Model& m) { casing(m, s.place({o->low[0], 0, 0}, east), o->high - o->low); });
+                if (const auto o = seen_from(s.pose, s.length, 0.25, h); o && h.is_door()) {
+                    add([=](Model& m) { casing(m, s.pose({o->low[0], 0, 0}, east), o->high - o->low); });
                     doors.push_back(*o);
                 }
             std::sort(doors.begin(), doors.end(),
                       [](const auto& a, const auto& b) { return a.low[0] < b.low[0]; });
             const auto run = [&](double to) {
-                if (to > from) add([=](Model& m) { skirting(m, s.place({from, 0, 0}, east), to - from); });
+                if (to > from) add([=](Model& m) { skirting(m, s.pose({from, 0, 0}, east), to - from); });
             };
             for (const Opening& d : doors) run(d.low[0] - 0.08), from = d.high[0] + 0.08;
             run(s.length);
@@ -271,16 +271,16 @@ void Furnishing::dressings() {
     for (const Room& r : rooms)
         for (const Side& s : r.sides())
             for (const Hole& h : holes) {
-                const auto o = seen_from(s.place, s.length, 0.25, h);
+                const auto o = seen_from(s.pose, s.length, 0.25, h);
                 if (!o || h.is_door()) continue;
                 const double from = o->low[0], to = o->high[0];
                 const Vec2d size(to - from, h.top - h.bottom);
-                add([=](Model& m) { radiator(m, s.place({(from + to) / 2, 0, 0}, east), size[0] - 0.2); });
+                add([=](Model& m) { radiator(m, s.pose({(from + to) / 2, 0, 0}, east), size[0] - 0.2); });
                 if (h.bottom > 1 || r.low == study.low)
-                    add([=](Model& m) { blind(m, s.place({from, -0.06, h.bottom}, east), size); });
+                    add([=](Model& m) { blind(m, s.pose({from, -0.06, h.bottom}, east), size); });
                 else
                     for (const double x : {from - 0.3, to - 0.05})
-                        add([=](Model& m) { curtain(m, s.place({x, 0.2, 0.03}, east), 0.4, 2.45); });
+                        add([=](Model& m) { curtain(m, s.pose({x, 0.2, 0.03}, east), 0.4, 2.45); });
             }
     for (const auto& [x, y] : {std::pair(4.3, 1.0), {7.7, 0.5}, {0.5, 8.1}, {5.4, 5.1}})
         add([x = x, y = y](Model& m, Random r) { plant(m, {{x, y, 0}}, 90, r); });

@@ -5,7 +5,7 @@ namespace hedgerow::detail {
 namespace {
 
 /// A cushion, rounded above, below and at its corners.
-void cushion(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
+void cushion(Model& m, const Pose& p, const Vec3d& foot, const Vec3d& size) {
     const double h = size[2];
     m.loft(p, foot, Axis::z,
            m.rounded(size[0] / 2, size[1] / 2, 0.3 * (size[0] < size[1] ? size[0] : size[1])),
@@ -20,13 +20,13 @@ void cushion(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
 }
 
 /// A board whose edges are bevelled by 2 mm.
-void board(Model& m, const Place& p, const Vec3d& foot, const Vec3d& size) {
+void board(Model& m, const Pose& p, const Vec3d& foot, const Vec3d& size) {
     const double a = size[0] / 2, b = size[1] / 2, edge = 0.002, inner = 1 - edge / (a < b ? b : a);
     m.loft(p, foot, Axis::z, rectangle(a, b),
            {{0, 0}, {inner, 0}, {1, edge}, {1, size[2] - edge}, {inner, size[2]}, {0, size[2]}});
 }
 
-void turned_leg(Model& m, const Place& p, const Vec3d& foot, double radius, double height) {
+void turned_leg(Model& m, const Pose& p, const Vec3d& foot, double radius, double height) {
     const double h = height;
     m.loft(p, foot, Axis::z, m.disc(radius),
            m.curve({{0, 0},
@@ -50,7 +50,7 @@ void turned_leg(Model& m, const Place& p, const Vec3d& foot, double radius, doub
 
 }  // namespace
 
-void table(Model& m, const Place& p, const Vec3d& size) {
+void table(Model& m, const Pose& p, const Vec3d& size) {
     const double x = size[0] / 2, y = size[1] / 2, z = size[2], top = 0.03, leg = 0.035, inset = 0.06;
     m.loft(p, {0, 0, z - top}, Axis::z, m.rounded(x, y, 0.04),
            m.curve({{0, 0},
@@ -69,7 +69,7 @@ void table(Model& m, const Place& p, const Vec3d& size) {
     }
 }
 
-void chair(Model& m, const Place& p) {
+void chair(Model& m, const Pose& p) {
     const double side = 0.2, seat = 0.45;
     cushion(m, p, {0, 0, seat}, {0.42, 0.42, 0.05});
     for (const double sx : {-1.0, 1.0}) {
@@ -85,7 +85,7 @@ void chair(Model& m, const Place& p) {
            m.curve({{0, 0}, {0.8, 0}, {1, 0.02}, {1, 0.42}, {0.8, 0.44}, {0, 0.44}}));
 }
 
-void sofa(Model& m, const Place& p, double width) {
+void sofa(Model& m, const Pose& p, double width) {
     const double depth = 0.9, arm = 0.16;
     const int seats = width > 1.7 ? 3 : 2;
     const double seat = (width - 2 * arm) / seats;
@@ -104,7 +104,7 @@ void sofa(Model& m, const Place& p, double width) {
     cushion(m, p({0.28 * width, 0.4, 0.45}, {0.8, -0.6}), {}, {0.38, 0.12, 0.36});
 }
 
-void bookcase(Model& m, const Place& p, double width, int shelves) {
+void bookcase(Model& m, const Pose& p, double width, int shelves) {
     const double depth = 0.28, side = 0.02, height = 0.32 * shelves + 0.1;
     for (const double s : {-1.0, 1.0})
         board(m, p, {s * (width - side) / 2, depth / 2, 0}, {side, depth, height});
@@ -113,7 +113,7 @@ void bookcase(Model& m, const Place& p, double width, int shelves) {
     m.box(p, {-width / 2 + side, 0, 0.06}, {width / 2 - side, 0.005, height});
 }
 
-void bed(Model& m, const Place& p) {
+void bed(Model& m, const Pose& p) {
     const double width = 1.6, length = 2.05;
     // Sides, legs and pillows.
     for (const double side : {-1.0, 1.0}) {
@@ -135,7 +135,7 @@ void bed(Model& m, const Place& p) {
     m.loft(p, {0, 0.95, 0.505}, Axis::y, {across, false}, {{1, 0}, {1, 0.3}, {1, 0.7}, {1, 1.05}});
 }
 
-void cupboard(Model& m, const Place& p, const Vec3d& size, int doors) {
+void cupboard(Model& m, const Pose& p, const Vec3d& size, int doors) {
     const double plinth = 0.08, leaf = 0.02, gap = 0.002;
     const double width = size[0] / doors, height = size[2] - plinth;
     // The body and the plinth.

@@ -54,8 +54,8 @@ std::vector<Vec2d> Model::curve(const std::vector<Vec2d>& controls) const {
     return points;
 }
 
-std::uint32_t Model::vertex(const Place& place, const Vec3d& p) {
-    mesh.vertices.push_back(place(p));
+std::uint32_t Model::vertex(const Pose& pose, const Vec3d& p) {
+    mesh.vertices.push_back(pose(p));
     return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
 }
 void Model::quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
@@ -63,20 +63,20 @@ void Model::quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_
     mesh.triangles.push_back({a, c, d});
 }
 
-void Model::box(const Place& place, const Vec3d& low, const Vec3d& high) {
+void Model::box(const Pose& pose, const Vec3d& low, const Vec3d& high) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (int i = 0; i < 8; ++i)
-        vertex(place, {i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]});
+        vertex(pose, {i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]});
     constexpr std::uint32_t sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     for (const auto& s : sides) quad(first + s[0], first + s[1], first + s[2], first + s[3]);
 }
-void Model::block(const Place& place, const Vec3d& foot, const Vec3d& size) {
+void Model::block(const Pose& pose, const Vec3d& foot, const Vec3d& size) {
     const Vec3d half(size[0] / 2, size[1] / 2, 0);
-    box(place, foot - half, foot + half + Vec3d(0, 0, size[2]));
+    box(pose, foot - half, foot + half + Vec3d(0, 0, size[2]));
 }
 
-void Model::loft(const Place& place, const Vec3d& base, Axis axis, const Outline& outline,
+void Model::loft(const Pose& pose, const Vec3d& base, Axis axis, const Outline& outline,
                  const Section& section) {
     const auto n = static_cast<std::uint32_t>(outline.points.size());
     const std::uint32_t sides = outline.closed ? n : n - 1;
@@ -87,7 +87,7 @@ void Model::loft(const Place& place, const Vec3d& base, Axis axis, const Outline
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         // Add the row's vertices: a single one if the outline is a point.
         for (std::uint32_t i = 0; i < (point ? 1 : n); ++i)
-            vertex(place, base + on_axis(axis, outline.points[i] * scale, along));
+            vertex(pose, base + on_axis(axis, outline.points[i] * scale, along));
         // Join the row to the one before.
         for (std::uint32_t i = 0; row > 0 && i < sides; ++i) {
             const std::uint32_t next = i + 1 < n ? i + 1 : 0;
@@ -101,11 +101,11 @@ void Model::loft(const Place& place, const Vec3d& base, Axis axis, const Outline
         last = first;
     }
 }
-void Model::bar(const Place& place, const Vec3d& base, Axis axis, const Outline& outline, double length) {
-    loft(place, base, axis, outline, {{0, 0}, {1, 0}, {1, length}, {0, length}});
+void Model::bar(const Pose& pose, const Vec3d& base, Axis axis, const Outline& outline, double length) {
+    loft(pose, base, axis, outline, {{0, 0}, {1, 0}, {1, length}, {0, length}});
 }
 
-void Model::leaf(const Place& place, const std::vector<Vec2d>& curve, double width) {
+void Model::leaf(const Pose& pose, const std::vector<Vec2d>& curve, double width) {
     std::uint32_t left = 0, right = 0;
     const auto n = static_cast<double>(curve.size() - 1);
     for (std::size_t i = 0; i < curve.size(); ++i) {
@@ -114,17 +114,17 @@ void Model::leaf(const Place& place, const std::vector<Vec2d>& curve, double wid
         const double half = width / 2 * (1 - t) * (1 + 2 * t);
         const Vec3d at(curve[i][0], 0, curve[i][1]);
         if (i + 1 == curve.size()) {
-            mesh.triangles.push_back({left, right, vertex(place, at)});
+            mesh.triangles.push_back({left, right, vertex(pose, at)});
             break;
         }
-        const std::uint32_t l = vertex(place, at + Vec3d(0, half, 0)),
-                            r = vertex(place, at - Vec3d(0, half, 0));
+        const std::uint32_t l = vertex(pose, at + Vec3d(0, half, 0)),
+                            r = vertex(pose, at - Vec3d(0, half, 0));
         if (i > 0) quad(left, right, r, l);
         left = l, right = r;
     }
 }
 
-void Model::wall(const Place& place, double length, double height, double thickness,
+void Model::wall(const Pose& pose, double length, double height, double thickness,
                  const std::vector<Opening>& openings, bool with_ends) {
     // Divide the wall by a lattice through the sides of all openings.
     std::vector<double> x = {0, length}, z = {0, height};
@@ -146,7 +146,7 @@ void Model::wall(const Place& place, double length, double height, double thickn
     // A corner of the lattice on the front (y < 0) or the back.
     const auto corner = [&](std::size_t i, std::size_t k, std::size_t back) {
         std::uint32_t& id = known[(i * z.size() + k) * 2 + back];
-        if (id == none) id = vertex(place, {x[i], back ? thickness / 2 : -thickness / 2, z[k]});
+        if (id == none) id = vertex(pose, {x[i], back ? thickness / 2 : -thickness / 2, z[k]});
         return id;
     };
     // Add the front and the back of each solid cell, and its sides that border on no solid cell.

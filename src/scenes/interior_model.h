@@ -9,8 +9,8 @@
 
 namespace hedgerow::detail {
 
-/// The place of a thing: its origin, and the direction of its x axis in the plan (length 1). z stays up.
-struct Place {
+/// Where a thing stands: its origin, and the direction of its x axis in the plan (length 1). z stays up.
+struct Pose {
     Vec3d at;
     Vec2d along{1, 0};
 
@@ -18,9 +18,9 @@ struct Place {
         return at + Vec3d(product(along[0], p[0]) - product(along[1], p[1]),
                           product(along[1], p[0]) + product(along[0], p[1]), p[2]);
     }
-    /// A place relative to this one: moved by p, then turned.
-    Place operator()(const Vec3d& p, const Vec2d& turn) const {
-        const Vec3d a = Place{{}, along}({turn[0], turn[1], 0});
+    /// A pose relative to this one: moved by p, then turned.
+    Pose operator()(const Vec3d& p, const Vec2d& turn) const {
+        const Vec3d a = Pose{{}, along}({turn[0], turn[1], 0});
         return {(*this)(p), {a[0], a[1]}};
     }
 };
@@ -63,24 +63,24 @@ public:
     std::vector<Vec2d> curve(const std::vector<Vec2d>& controls) const;
 
     /// Twelve triangles.
-    void box(const Place& place, const Vec3d& low, const Vec3d& high);
+    void box(const Pose& pose, const Vec3d& low, const Vec3d& high);
     /// A box whose base has its middle at `foot`.
-    void block(const Place& place, const Vec3d& foot, const Vec3d& size);
+    void block(const Pose& pose, const Vec3d& foot, const Vec3d& size);
     /// Moves the outline along the axis through `base`, scaled as the section says. If the section runs up
     /// the axis, the outside is to the right of the outline, seen from the tip of the axis.
-    void loft(const Place& place, const Vec3d& base, Axis axis, const Outline& outline,
-              const Section& section);
+    void loft(const Pose& pose, const Vec3d& base, Axis axis, const Outline& outline, const Section& section);
     /// A straight bar of `length` along an axis, from `base` on, with closed ends.
-    void bar(const Place& place, const Vec3d& base, Axis axis, const Outline& outline, double length);
+    void bar(const Pose& pose, const Vec3d& base, Axis axis, const Outline& outline, double length);
     /// A sheet along a curve in (x, z), `width` wide at its foot and pointed at its end.
-    void leaf(const Place& place, const std::vector<Vec2d>& curve, double width);
-    /// A wall along x from the place on, with half its thickness on either side, and without top and foot.
-    /// Openings are in order along the wall, with some wall between them. `with_ends` closes the wall's ends.
-    void wall(const Place& place, double length, double height, double thickness,
+    void leaf(const Pose& pose, const std::vector<Vec2d>& curve, double width);
+    /// A wall along x from the pose's origin, with half its thickness on either side, and without top and
+    /// foot. Openings are in order along the wall, with some wall between them. `with_ends` closes the wall's
+    /// ends.
+    void wall(const Pose& pose, double length, double height, double thickness,
               const std::vector<Opening>& openings, bool with_ends);
 
 private:
-    std::uint32_t vertex(const Place& place, const Vec3d& p);
+    std::uint32_t vertex(const Pose& pose, const Vec3d& p);
     void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
 
     std::uint64_t pieces_;

@@ -6,7 +6,7 @@
 namespace hedgerow::detail {
 namespace {
 
-void sphere(Model& m, const Place& p, const Vec3d& middle, double radius) {
+void sphere(Model& m, const Pose& p, const Vec3d& middle, double radius) {
     // Two arcs, each nearly a quarter of a circle.
     const double k = 0.42;
     m.loft(
@@ -16,7 +16,7 @@ void sphere(Model& m, const Place& p, const Vec3d& middle, double radius) {
 
 }  // namespace
 
-void pendant_lamp(Model& m, const Place& p, double length) {
+void pendant_lamp(Model& m, const Pose& p, double length) {
     m.bar(p, {0, 0, -length}, Axis::z, m.disc(0.003), length);
     m.loft(p, {}, Axis::z, m.disc(0.05), m.curve({{0, -0.04}, {0.4, -0.04}, {1, -0.02}, {1, 0}, {0, 0}}));
     // The shade: outside upward, inside downward, 2 mm thick.
@@ -33,7 +33,7 @@ void pendant_lamp(Model& m, const Place& p, double length) {
                     {0.99, 0}}));
     sphere(m, p, {0, 0, -length - 0.1}, 0.04);
 }
-void standing_lamp(Model& m, const Place& p) {
+void standing_lamp(Model& m, const Pose& p) {
     m.loft(p, {}, Axis::z, m.disc(0.14),
            m.curve({{0, 0},
                     {1, 0},
@@ -50,7 +50,7 @@ void standing_lamp(Model& m, const Place& p) {
     sphere(m, p, {0, 0, 1.47}, 0.035);
 }
 
-void vase(Model& m, const Place& p, double height) {
+void vase(Model& m, const Pose& p, double height) {
     const double h = height;
     m.loft(p, {}, Axis::z, m.disc(0.3 * h),
            m.curve({{0, 0},
@@ -67,7 +67,7 @@ void vase(Model& m, const Place& p, double height) {
                     {0.25, 0.8 * h},
                     {0, 0.7 * h}}));
 }
-void fruit_bowl(Model& m, const Place& p, Random random) {
+void fruit_bowl(Model& m, const Pose& p, Random random) {
     m.loft(p, {}, Axis::z, m.disc(0.16),
            m.curve({{0, 0.004},
                     {0.4, 0},
@@ -87,7 +87,7 @@ void fruit_bowl(Model& m, const Place& p, Random random) {
     }
 }
 
-void table_setting(Model& m, const Place& p) {
+void table_setting(Model& m, const Pose& p) {
     // The plate.
     m.loft(p, {}, Axis::z, m.disc(0.13),
            m.curve({{0, 0.003},
@@ -118,7 +118,7 @@ void table_setting(Model& m, const Place& p) {
     for (int i = -1; i <= 1; ++i) m.block(p, {-0.16 + 0.006 * i, 0.075, 0.001}, {0.002, 0.05, 0.001});
     m.block(p, {-0.16, -0.03, 0.001}, {0.012, 0.14, 0.001});  // the fork, below its prongs
 }
-void cup(Model& m, const Place& p) {
+void cup(Model& m, const Pose& p) {
     m.loft(p, {}, Axis::z, m.disc(0.04),
            m.curve({{0, 0},
                     {0.7, 0},
@@ -134,7 +134,7 @@ void cup(Model& m, const Place& p) {
     m.loft(p, {0.05, 0.004, 0.045}, Axis::y, m.disc(0.022),
            {{1, -0.008}, {1, 0}, {0.75, 0}, {0.75, -0.008}, {1, -0.008}});
 }
-void pot(Model& m, const Place& p, double radius) {
+void pot(Model& m, const Pose& p, double radius) {
     const double r = radius;
     m.loft(p, {}, Axis::z, m.disc(r),
            m.curve({{0, 0},
@@ -156,7 +156,7 @@ void pot(Model& m, const Place& p, double radius) {
                {{1, 0}, {1, 0.02 * r}, {0.8, 0.02 * r}, {0.8, 0}, {1, 0}});
 }
 
-void books(Model& m, const Place& p, double width, Random random) {
+void books(Model& m, const Pose& p, double width, Random random) {
     const double cover = 0.002;
     for (double x = 0; x < width - 0.05;) {
         const double thick = random.uniform(0.012, 0.05), height = random.uniform(0.17, 0.27);
@@ -169,7 +169,7 @@ void books(Model& m, const Place& p, double width, Random random) {
         x += thick + (random.uniform() < 0.06 ? 0.08 : 0.001);
     }
 }
-void pens(Model& m, const Place& p, Random random) {
+void pens(Model& m, const Pose& p, Random random) {
     m.loft(p, {}, Axis::z, m.disc(0.04), {{0, 0}, {1, 0}, {1, 0.1}, {0.96, 0.1}, {0.96, 0.003}, {0, 0.003}});
     for (int i = 0; i < 7; ++i) {
         const Vec2d at = random.direction<2>() * 0.028;
@@ -178,7 +178,7 @@ void pens(Model& m, const Place& p, Random random) {
     }
 }
 
-void picture(Model& m, const Place& p, const Vec2d& size) {
+void picture(Model& m, const Pose& p, const Vec2d& size) {
     const double a = size[1] / 2, b = size[0] / 2;  // across y the outline is in (z, x)
     m.loft(p, {}, Axis::y, rectangle(a, b),
            m.curve({{1, 0},
@@ -192,7 +192,7 @@ void picture(Model& m, const Place& p, const Vec2d& size) {
                     {0, 0.01}}));
 }
 
-void plant(Model& m, const Place& p, int leaves, Random random) {
+void plant(Model& m, const Pose& p, int leaves, Random random) {
     m.loft(p, {}, Axis::z, m.disc(0.15),
            m.curve({{0, 0},
                     {0.7, 0},
@@ -206,7 +206,7 @@ void plant(Model& m, const Place& p, int leaves, Random random) {
                     {0, 0.24}}));
     for (int i = 0; i < leaves; ++i) {
         const double out = random.uniform(0.1, 0.45), up = random.uniform(0.25, 0.9);
-        const Place leaf = p({0, 0, 0.24}, random.direction<2>());
+        const Pose leaf = p({0, 0, 0.24}, random.direction<2>());
         m.leaf(
             leaf,
             m.curve(
@@ -215,7 +215,7 @@ void plant(Model& m, const Place& p, int leaves, Random random) {
     }
 }
 
-void rug(Model& m, const Place& p, const Vec2d& size) {
+void rug(Model& m, const Pose& p, const Vec2d& size) {
     m.loft(p, {}, Axis::z, m.rounded(size[0] / 2, size[1] / 2, 0.05),
            {{0, 0}, {0.995, 0}, {1, 0.003}, {0.995, 0.008}, {0, 0.008}});
     const int fringes = static_cast<int>(size[1] / 0.02);

@@ -1,4 +1,4 @@
-/// Ray casting: pictures of any index, in blocks of pixels over an executor.
+/// Ray casting: pictures of any index, in tiles of pixels over an executor.
 #pragma once
 
 #include <array>
@@ -73,7 +73,7 @@ struct Picture {
 };
 
 /// Casts one or more rays a pixel; diffuse shading adds a shadow ray where the surface faces the light. The
-/// rays of a block of pixels are one batch. If the progress is cancelled, rows that are not finished stay
+/// rays of a tile of pixels are one batch. If the progress is cancelled, rows that are not finished stay
 /// black, and their layers empty.
 template <class T, class P>
 class Raycast {
@@ -105,9 +105,9 @@ public:
     }
 
 private:
-    /// Size of a block: large enough for the kernels, small enough to be cancelled soon.
-    static constexpr int band_rows = 8, block_columns = 64;
-    struct Block {
+    /// Size of a tile: large enough for the kernels, small enough to be cancelled soon.
+    static constexpr int band_rows = 8, tile_columns = 64;
+    struct Tile {
         int left, top, width, height;
 
         std::size_t size() const {
@@ -117,13 +117,13 @@ private:
         int y(std::size_t i) const { return top + static_cast<int>(i) / width; }
     };
     template <class V>
-    using OfBlock = std::array<V, static_cast<std::size_t>(band_rows) * block_columns>;
-    /// Rays from the eye, one for each pixel of a block, with their hits and the normals there, which point
+    using OfTile = std::array<V, static_cast<std::size_t>(band_rows) * tile_columns>;
+    /// Rays from the eye, one for each pixel of a tile, with their hits and the normals there, which point
     /// to the side of the ray.
     struct Looks {
-        OfBlock<Ray<T, 3>> rays;
-        OfBlock<Hit<T>> hits;
-        OfBlock<Vec3f> normals;
+        OfTile<Ray<T, 3>> rays;
+        OfTile<Hit<T>> hits;
+        OfTile<Vec3f> normals;
     };
     struct Total {
         Visits visits;
@@ -140,17 +140,17 @@ private:
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) + static_cast<std::size_t>(x);
     }
 
-    /// Casts a band of rows, block by block. Keeps the rows if all are finished; else clears them and returns
+    /// Casts a band of rows, tile by tile. Keeps the rows if all are finished; else clears them and returns
     /// false.
     bool band(int top, int height, const Progress& progress) {
         Total total;
-        Block block{0, top, 0, height};
-        for (; block.left < o_.width; block.left += block.width) {
-            block.width = std::min(block_columns, o_.width - block.left);
-            if (!see(block, total, progress)) break;
+        Tile tile{0, top, 0, height};
+        for (; tile.left < o_.width; tile.left += tile.width) {
+            tile.width = std::min(tile_columns, o_.width - tile.left);
+            if (!see(tile, total, progress)) break;
         }
-        // Clear the rows if the last block was cancelled.
-        const bool whole = block.left == o_.width;
+        // Clear the rows if the last tile was cancelled.
+        const bool whole = tile.left == o_.width;
         if (!whole) {
             const auto begin = static_cast<std::ptrdiff_t>(pixel(0, top));
             const auto end = static_cast<std::ptrdiff_t>(pixel(0, top + height));
@@ -167,16 +167,16 @@ private:
         return true;
     }
 
-    /// Casts every sample of a block's pixels. Returns false if it was cancelled.
-    bool see(const Block& block, Total& total, const Progress& progress) {
-        OfBlock<Visits> visits{};
+    /// Casts every sample of a tile's pixels. Returns false if it was cancelled.
+    bool see(const Tile& tile, Total& total, const Progress& progress) {
+        OfTile<Visits> visits{};
         for (int sample = 0; sample < o_.samples; ++sample) {
             if (progress.cancelled()) return false;
-            look(block, sample, visits, total);
+            look(tile, sample, visits, total);
         }
         // Turn the sums over the samples into means.
-        for (std::size_t i = 0; i < block.size(); ++i) {
-            const std::size_t p = pixel(block.x(i), block.y(i));
+        for (std::size_t i = 0; i < tile.size(); ++i) {
+            const std::size_t p = pixel(tile.x(i), tile.y(i));
             const Visits& counts = visits[i];
             const auto mean = [&](std::uint64_t all) { return static_cast<float>(double(all) / o_.samples); };
             if (o_.shading == Shading::steps)
@@ -194,12 +194,12 @@ private:
         }
         return true;
     }
-    /// Casts one sample of each of a block's pixels, and adds it to their sums.
-    void look(const Block& block, int sample, OfBlock<Visits>& visits, Total& total) {
-        // Find the closest hits of the block in one batch.
-        const std::size_t n = block.size();
+    /// Casts one sample of each of a tile's pixels, and adds it to their sums.
+    void look(const Tile& tile, int sample, OfTile<Visits>& visits, Total& total) {
+        // Find the closest hits of the tile in one batch.
+        const std::size_t n = tile.size();
         Looks looks;
-        for (std::size_t i = 0; i < n; ++i) looks.rays[i] = ray_through(block.x(i), block.y(i), sample);
+        for (std::size_t i = 0; i < n; ++i) looks.rays[i] = ray_through(tile.x(i), tile.y(i), sample);
         total.rays += n;
         total.use += index_.closest_hits(std::span(looks.rays).first(n), std::span(looks.hits).first(n),
                                          std::span(visits).first(o_.counted() ? n : 0));
@@ -207,7 +207,7 @@ private:
         for (std::size_t i = 0; i < n; ++i) {
             const Hit<T>& hit = looks.hits[i];
             if (hit) looks.normals[i] = facing_normal(hit, looks.rays[i]);
-            const std::size_t p = pixel(block.x(i), block.y(i));
+            const std::size_t p = pixel(tile.x(i), tile.y(i));
             values_[p] = values_[p] + colour(looks.rays[i], hit, looks.normals[i]);
             if (o_.layers && sample == 0 && hit) {
                 seen_[p].depth = static_cast<float>(hit.t);  // directions have length 1
@@ -215,7 +215,7 @@ private:
                 seen_[p].id = hit.primitive;
             }
         }
-        if (o_.shading == Shading::diffuse) add_light(block, looks, total);
+        if (o_.shading == Shading::diffuse) add_light(tile, looks, total);
     }
     /// The ray through the pixel's middle, or through a random point of the pixel if there are several
     /// samples.
@@ -249,15 +249,15 @@ private:
         return std::chrono::duration<float, std::nano>(least).count();
     }
     /// Adds direct light to the hits that face the light and are not in shadow.
-    void add_light(const Block& block, const Looks& looks, Total& total) {
-        OfBlock<Ray<T, 3>> shadows;
-        OfBlock<std::size_t> pixels;
-        OfBlock<float> facing;
-        OfBlock<bool> blocked;
-        OfBlock<Visits> visits{};
+    void add_light(const Tile& tile, const Looks& looks, Total& total) {
+        OfTile<Ray<T, 3>> shadows;
+        OfTile<std::size_t> pixels;
+        OfTile<float> facing;
+        OfTile<bool> blocked;
+        OfTile<Visits> visits{};
         // Make a shadow ray for each hit that faces the light.
         std::size_t n = 0;
-        for (std::size_t i = 0; i < block.size(); ++i) {
+        for (std::size_t i = 0; i < tile.size(); ++i) {
             const Hit<T>& hit = looks.hits[i];
             if (!hit) continue;
             facing[n] = dot(looks.normals[i], light_);
@@ -266,7 +266,7 @@ private:
             shadows[n] = {
                 offset_origin(looks.rays[i], hit.t, primitives_.bounds(hit.element), normal, normal),
                 Vec<T, 3>(light_)};
-            pixels[n++] = pixel(block.x(i), block.y(i));
+            pixels[n++] = pixel(tile.x(i), tile.y(i));
         }
         // Cast the shadow rays in one batch.
         total.rays += n;

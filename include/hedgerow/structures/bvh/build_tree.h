@@ -14,19 +14,17 @@ namespace hedgerow {
 /// builder writes only the nodes that it uses.
 template <std::floating_point T, int D>
 struct BuildNode {
-    struct Corners {
-        T low[D], high[D];
-    } corners;
+    T low[D], high[D];
     std::uint32_t first, count;
     std::uint32_t left, right;
 
     std::uint32_t leaves() const { return count > 0 ? 1 : first; }
     void set(const Box<T, D>& b) {
-        for (int k = 0; k < D; ++k) corners.low[k] = b.low[k], corners.high[k] = b.high[k];
+        for (int k = 0; k < D; ++k) low[k] = b.low[k], high[k] = b.high[k];
     }
     Box<T, D> box() const {
         Box<T, D> b;
-        for (int k = 0; k < D; ++k) b.low[k] = corners.low[k], b.high[k] = corners.high[k];
+        for (int k = 0; k < D; ++k) b.low[k] = low[k], b.high[k] = high[k];
         return b;
     }
 };

@@ -71,7 +71,7 @@ public:
         edits_.held[id] = true;
         ++edits_.count;
         // Put a new leaf at the cheapest place.
-        const std::vector<Place> path = path_to_cheapest(box, count);
+        const std::vector<ChildRef> path = path_to_cheapest(box, count);
         put(path.back(), new_leaf(id), box);
         tree_.bounds.expand(box);
         // Grow the boxes on the path and rotate, from the leaf upward.
@@ -120,7 +120,7 @@ public:
 
 private:
     /// A child, named by its parent and its index. The root's parent is `nobody`.
-    struct Place {
+    struct ChildRef {
         std::uint32_t node;
         int child;
     };
@@ -130,8 +130,8 @@ private:
     };
     static constexpr std::uint32_t nobody = NodeRef::nowhere;
 
-    NodeRef& ref_at(Place p) { return p.node == nobody ? tree_.root : tree_.nodes[p.node].child[p.child]; }
-    Box<T, D> box_at(Place p) const {
+    NodeRef& ref_at(ChildRef p) { return p.node == nobody ? tree_.root : tree_.nodes[p.node].child[p.child]; }
+    Box<T, D> box_at(ChildRef p) const {
         return p.node == nobody ? tree_.bounds : tree_.nodes[p.node].boxes[p.child];
     }
     int height_of(NodeRef r) const { return r.leaf() ? 0 : edits_.height[r.first]; }
@@ -177,8 +177,8 @@ private:
 
     /// The places from the root down to the one beside whose subtree a new leaf costs the least.
     template <class Count>
-    std::vector<Place> path_to_cheapest(const Box<T, D>& box, Count& count) {
-        std::vector<Place> path = {{nobody, 0}};
+    std::vector<ChildRef> path_to_cheapest(const Box<T, D>& box, Count& count) {
+        std::vector<ChildRef> path = {{nobody, 0}};
         while (true) {
             const NodeRef ref = ref_at(path.back());
             if (ref.empty() || ref.leaf()) return path;
@@ -199,7 +199,7 @@ private:
             path.push_back({ref.first, cheapest});
         }
     }
-    void put(Place at, NodeRef leaf, const Box<T, D>& box) {
+    void put(ChildRef at, NodeRef leaf, const Box<T, D>& box) {
         const NodeRef beside = ref_at(at);
         const NodeRef joined = beside.empty() ? leaf : join({beside, box_at(at)}, {leaf, box}).ref;
         ref_at(at) = joined;  // last, since `join` may move the list of nodes
@@ -266,8 +266,8 @@ private:
     }
 
     /// The places from the root down to a deepest leaf.
-    std::vector<Place> highest_path() const {
-        std::vector<Place> path = {{nobody, 0}};
+    std::vector<ChildRef> highest_path() const {
+        std::vector<ChildRef> path = {{nobody, 0}};
         for (NodeRef ref = tree_.root; !ref.leaf();) {
             const auto& child = tree_.nodes[ref.first].child;
             path.push_back({ref.first, height_of(child[1]) > height_of(child[0])});
@@ -276,7 +276,7 @@ private:
         return path;
     }
     /// Rebuilds the lowest subtree on the path that is too high for its number of leaves.
-    void balance(const std::vector<Place>& path) {
+    void balance(const std::vector<ChildRef>& path) {
         std::vector<Part> leaves;
         NodeRef gathered;
         for (std::size_t i = path.size(); i-- > 0;) {

@@ -189,13 +189,13 @@ public:
 private:
     /// The limit on groups and items, in words of 4 bytes.
     std::uint64_t room() const { return most_items(options_.items_per_primitive, count_); }
-    /// The place of a node: which child of which group. The root is in no group.
-    struct Place {
+    /// Names a node: which child of which group. The root is in no group.
+    struct ChildRef {
         std::uint32_t group = 0xFFFFFFFFu;
         unsigned child = 0;
     };
-    OrthantNode& at(Place p) {
-        return p.group == Place().group ? root_ : store_.group(p.group).child[p.child];
+    OrthantNode& at(ChildRef p) {
+        return p.group == ChildRef().group ? root_ : store_.group(p.group).child[p.child];
     }
 
     /// Builds the tree anew over the primitives in it.
@@ -245,7 +245,7 @@ private:
     }
 
     template <PrimitiveSet P, class Count>
-    void add(const P& set, PrimitiveId id, Place place, const Cube<T, D>& cell, Count& count) {
+    void add(const P& set, PrimitiveId id, ChildRef place, const Cube<T, D>& cell, Count& count) {
         const OrthantNode n = at(place);
         if (!n.inner()) {
             at(place) = store_.added(n, id);
@@ -267,7 +267,7 @@ private:
     /// that stays whole is tried again whenever its block grows, so that its insertions cost O(1) each,
     /// amortized.
     template <PrimitiveSet P, class Count>
-    void divide(const P& set, Place place, const Cube<T, D>& cell, Count& count) {
+    void divide(const P& set, ChildRef place, const Cube<T, D>& cell, Count& count) {
         const OrthantNode leaf = at(place);
         count.leaf(leaf.count);
         std::vector<PrimitiveId> ids;
@@ -280,7 +280,8 @@ private:
     }
 
     template <class Count>
-    void remove(Place place, const Cube<T, D>& cell, PrimitiveId id, const Box<T, D>& reach, Count& count) {
+    void remove(ChildRef place, const Cube<T, D>& cell, PrimitiveId id, const Box<T, D>& reach,
+                Count& count) {
         const OrthantNode n = at(place);
         if (!n.inner()) {
             count.leaf(n.count);
@@ -300,7 +301,7 @@ private:
     }
     /// Joins the children of a node into one leaf, if they are leaves whose primitives fit in one.
     template <class Count>
-    void join(Place place, Count& count) {
+    void join(ChildRef place, Count& count) {
         const OrthantNode n = at(place);
         const std::span children(store_.group(n.first).child);
         if (std::any_of(children.begin(), children.end(),
