@@ -30,7 +30,7 @@ namespace {
                      ". Check its permissions, and that nothing else writes to it");
 }
 
-struct alignas(64) Line {
+struct alignas(64) CacheLine {
     std::byte bytes[64];
 };
 
@@ -44,7 +44,8 @@ FileBytes read_file(const std::filesystem::path& path) {
     std::error_code error;
     const auto size = static_cast<std::size_t>(std::filesystem::file_size(path, error));
     if (error) fail(path, "read", error.value());
-    const auto memory = std::make_shared<Stored<Line>>((size + sizeof(Line) - 1) / sizeof(Line));
+    const auto memory =
+        std::make_shared<Stored<CacheLine>>((size + sizeof(CacheLine) - 1) / sizeof(CacheLine));
     std::byte* const data = reinterpret_cast<std::byte*>(memory->data());
     errno = 0;
     if (std::fread(data, 1, size, file.get()) != size) fail(path, "read", errno);

@@ -43,7 +43,7 @@ bool read_only(const std::filesystem::path& path, const std::filesystem::file_st
     return (status.permissions() & writers) == perms::none || ::access(path.c_str(), W_OK) != 0;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void cannot_write(const std::filesystem::path& path, const std::string& why) {
     throw OutputError(path.string() + ": cannot be written" + why);
 }
 
@@ -52,17 +52,17 @@ void check(const std::filesystem::path& path) {
     if (path.empty()) throw OutputError("the output has no name. Name a file");
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
-    if (std::filesystem::is_directory(status)) refuse(path, ", it is a directory. Name a file");
+    if (std::filesystem::is_directory(status)) cannot_write(path, ", it is a directory. Name a file");
     if (std::filesystem::exists(status)) {
         if (read_only(path, status))
-            refuse(path, ", it is read-only. Choose another output, or permit writing it");
+            cannot_write(path, ", it is read-only. Choose another output, or permit writing it");
         if (!std::filesystem::is_regular_file(status)) return;
     }
     const auto folder = std::filesystem::absolute(path).parent_path();
     if (!std::filesystem::is_directory(folder, ignored))
-        refuse(path, ": there is no folder " + folder.string() + ". Make it first");
+        cannot_write(path, ": there is no folder " + folder.string() + ". Make it first");
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
-        refuse(path, ": the folder " + folder.string() + " is read-only. Choose another output");
+        cannot_write(path, ": the folder " + folder.string() + " is read-only. Choose another output");
 }
 
 }  // namespace
@@ -126,8 +126,9 @@ void OutputFile::commit() {
 }
 
 void OutputFile::fail(int error) const {
-    refuse(path_, ": " + (error == 0 ? "the disk may be full" : std::generic_category().message(error)) +
-                      ". Check the folder, its permissions and the space left");
+    cannot_write(path_, ": " +
+                            (error == 0 ? "the disk may be full" : std::generic_category().message(error)) +
+                            ". Check the folder, its permissions and the space left");
 }
 
 }  // namespace detail
