@@ -163,7 +163,9 @@ testing_gltf::Gltf with_instances(testing_gltf::Gltf file, int count) {
 TEST_F(HostileFiles, BombsOfInstances) {
     if (*limits == '\0') GTEST_SKIP() << "without a limit of memory the triangles may fit";
     // Some 50 KB of JSON use a mesh of 10^6 triangles three thousand times.
-    auto mesh = testing_gltf::Gltf().array(std::string(12000000, '\0'), "VEC3", testing_gltf::f4, 1000000);
+    std::string zeros;
+    zeros.resize(12'000'000);
+    auto mesh = testing_gltf::Gltf().array(zeros, "VEC3", testing_gltf::f4, 1000000);
     mesh.primitive += R"(,"mode":5)";
     mesh.uri = "zeros.bin";
     write("zeros.bin", mesh.buffer);

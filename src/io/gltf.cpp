@@ -1,6 +1,8 @@
 /// glTF 2.0 scenes (`.gltf`, `.glb`): every instance of every mesh, in the scene's coordinates. This reader
 /// replaces Assimp, which damaged files can crash (docs/design/014-gltf.md).
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -101,7 +103,9 @@ private:
 
     void push(const std::vector<std::uint64_t>& nodes, const Affine<3>& to_scene) {
         if (open_.size() + nodes.size() > seen_.size()) file_.fail("more nodes are named than there are");
-        for (auto n = nodes.rbegin(); n != nodes.rend(); ++n) open_.push_back({*n, to_scene});
+        std::transform(nodes.rbegin(), nodes.rend(), std::back_inserter(open_), [&](std::uint64_t n) {
+            return Open{n, to_scene};
+        });
     }
     /// The nodes of the default scene, or of the first scene if there is no default. Without scenes, the
     /// nodes that have no parent.

@@ -20,7 +20,7 @@ std::string reason(const StructureCost& s, const Comparison& c, Ask ask) {
         return few + ": a leaf that it looks into holds " + number_text(met) + " " + c.primitive +
                ", a leaf on the mean " + number_text(filled) + ", so the detail lies in few leaves";
     // Describe nodes and tests, and what makes them many or cheap.
-    const std::string steps = number_text(query_mean(s, ask, &QueryCost::nodes)) + " nodes and " + few;
+    std::string steps = number_text(query_mean(s, ask, &QueryCost::nodes)) + " nodes and " + few;
     if (const double copies = static_cast<double>(s.items) / size; copies > copied)
         return steps + ": each of the " + c.primitive + " stands in " + number_text(copies) + " leaves";
     if (s.structure.starts_with("wide"))
