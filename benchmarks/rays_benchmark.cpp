@@ -53,7 +53,7 @@ void traces(const TriangleMesh<float>& mesh) {
         // Time our BVH and the peers in turn.
         std::vector<std::function<std::size_t()>> contenders = {[&, &rays = rays] {
             std::size_t found = 0;
-            for (const auto& r : rays) found += closest_hit(index, r).has_value();
+            for (const auto& r : rays) found += bool(closest_hit(index, r));
             return found;
         }};
         for (const auto& peer : theirs)

@@ -56,7 +56,7 @@ void row(const char* name, const Index& index, const RaySet& set, double built, 
     std::size_t hits = 0;
     const double time = median_seconds(repeats, [&] {
         hits = 0;
-        for (const auto& ray : set.rays) hits += closest_hit(index, ray).has_value();
+        for (const auto& ray : set.rays) hits += bool(closest_hit(index, ray));
     });
     const double n = static_cast<double>(set.rays.size());
     // Print the node bytes without the items of the leaves.

@@ -49,8 +49,8 @@ int main() {
                            center[1] + 70 * (0.5f - (static_cast<float>(row) + 0.5f) / rows), 60);
             const Ray3f ray{at, {0.1f, 0.2f, -2}};
             const auto hit = closest_hit(index, ray);
-            hits += hit.has_value();
-            std::putchar(hit ? static_cast<char>('a' + hit->instance % 26) : ' ');
+            hits += bool(hit);
+            std::putchar(hit ? static_cast<char>('a' + hit.instance % 26) : ' ');
             if ((row * columns + column) % 31 != 0) continue;  // the oracle is slow
             const Vec3f near = ray.at(28);
             wrong += hit != closest_hit(oracle, ray);

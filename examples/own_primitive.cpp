@@ -116,8 +116,8 @@ int main() {
             wrong += hit != closest_hit(grid, Ray3f{at, {0, 1, 0}});
             const auto near = closest_point(bvh, at);
             wrong += near != closest_point(kdtree, at) || near != closest_point(grid, at);
-            hits += hit.has_value();
-            std::putchar(hit ? "@%#*+=-:."[static_cast<int>((hit->t - 1) / extent[1] * 8.99f)] : ' ');
+            hits += bool(hit);
+            std::putchar(hit ? "@%#*+=-:."[static_cast<int>((hit.t - 1) / extent[1] * 8.99f)] : ' ');
         }
         std::putchar('\n');
     }

@@ -94,8 +94,8 @@ TYPED_TEST(Allocation, QueriesDoNone) {
         Visits visits;
         EXPECT_EQ(allocated_by([&] {
                       for (const auto& ray : questions.rays) {
-                          sum += closest_hit(index, ray).has_value();
-                          sum += closest_hit(index, ray, Except{3}, visits).has_value();
+                          sum += bool(closest_hit(index, ray));
+                          sum += bool(closest_hit(index, ray, Except{3}, visits));
                           sum += any_hit(index, ray, KeepAll{}, visits);
                       }
                       closest_hits(index, questions.rays, batch);
@@ -108,7 +108,7 @@ TYPED_TEST(Allocation, QueriesDoNone) {
                   0u);
         EXPECT_EQ(allocated_by([&] {
                       for (const auto& p : questions.points)
-                          sum += closest_point(index, p).has_value() + nearest(index, p, 20, near);
+                          sum += bool(closest_point(index, p)) + nearest(index, p, 20, near);
                   }),
                   0u);
         // hit_count may allocate memory that the thread keeps, so only a second run must allocate nothing.

@@ -223,8 +223,8 @@ bool is_sound(const std::filesystem::path& path) {
                 const float x = static_cast<float>(i) / 20;
                 const Ray3f ray{{x, 0.3f, -3}, {0.5f - x, 0.2f, 3}};
                 const auto hit = closest_hit(index, ray);
-                EXPECT_TRUE(!hit || hit->element < index.size());
-                EXPECT_EQ(any_hit(index, ray), hit.has_value());
+                EXPECT_TRUE(!hit || hit.element < index.size());
+                EXPECT_EQ(any_hit(index, ray), bool(hit));
             }
             index.refit();
         }

@@ -36,10 +36,10 @@ Questions(const I&, std::size_t) -> Questions<typename I::Scalar, I::dimension>;
 /// The answers of an index to `Questions`.
 template <class T, int D>
 struct Answers {
-    std::vector<std::optional<Hit<T>>> closest;
+    std::vector<Hit<T>> closest;
     std::vector<std::vector<Hit<T>>> all;
     std::vector<std::size_t> counts;  // 2 · hit count + any hit; any hit alone for an AnyIndex
-    std::vector<std::optional<Near<T, D>>> near;
+    std::vector<Near<T, D>> near;
     std::vector<std::vector<Near<T, D>>> nearest;
     std::vector<std::vector<PrimitiveId>> overlapping;
 
@@ -67,16 +67,14 @@ template <class T, int D>
 Answers<T, D> answers(const AnyIndex<T, D>& index, const Questions<T, D>& questions) {
     Answers<T, D> said;
     for (const auto& ray : questions.rays) {
-        Hit<T> closest;
         bool any = false;
-        index.closest_hits({&ray, 1}, {&closest, 1});
+        index.closest_hits({&ray, 1}, {&said.closest.emplace_back(), 1});
         index.any_hits({&ray, 1}, {&any, 1});
-        said.closest.push_back(closest ? std::optional(closest) : std::nullopt);
         said.counts.push_back(any);
         index.all_hits(ray, said.all.emplace_back());
     }
     for (const auto& p : questions.points) {
-        index.closest_points({&p, 1}, {&said.near.emplace_back().emplace(), 1});
+        index.closest_points({&p, 1}, {&said.near.emplace_back(), 1});
         index.nearest(p, 5, said.nearest.emplace_back());
     }
     for (const auto& box : questions.boxes) index.overlapping(box, said.overlapping.emplace_back());

@@ -104,7 +104,7 @@ TEST_F(Draw, ARaysTableIsItsTrace) {
                   trace.steps.size() + 2)
             << "a head, a line a step, and the sum";
         ASSERT_TRUE(trace.hit);
-        EXPECT_NE(r.output.find("hits primitive " + std::to_string(trace.hit->element)), std::string::npos);
+        EXPECT_NE(r.output.find("hits primitive " + std::to_string(trace.hit.element)), std::string::npos);
         // The JSON has the counts of the trace.
         const auto json =
             run("draw gen:segments2d:80 --json --structure " + spec + ray + " -o " + file("ray.svg"));

@@ -49,7 +49,7 @@ struct Answers {
         const std::unique_ptr<bool[]> any(new bool[rays.size() + 1]);
         any_hits(index, rays, {any.get(), rays.size()});
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            one.push_back(closest_hit(index, rays[i]).value_or(Hit<float>()));
+            one.push_back(closest_hit(index, rays[i]));
             any_batch.push_back(any[i]);
             any_one.push_back(any_hit(index, rays[i]));
         }
@@ -63,7 +63,7 @@ std::vector<Hit<float>> hits_of_the_walk(const Index& index, std::span<const Ray
     std::vector<Hit<float>> hits;
     for (const auto& r : rays) {
         Visits visits;
-        hits.push_back(closest_hit(index, r, KeepAll{}, visits).value_or(Hit<float>()));
+        hits.push_back(closest_hit(index, r, KeepAll{}, visits));
     }
     return hits;
 }

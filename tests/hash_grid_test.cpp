@@ -79,7 +79,7 @@ TEST(HashGrid, ALargerCellTakesThePlaceOfOneThatIsTooSmallForTheExtent) {
     EXPECT_EQ(index.structure().cell_size(), 1e9 / 0x1p29);
     EXPECT_EQ(index.structure().leaf_count(), 3u);
     EXPECT_EQ(index.validate(), "");
-    EXPECT_EQ(closest_point(index, Vec2d(6e8, 1))->element, 1u);
+    EXPECT_EQ(closest_point(index, Vec2d(6e8, 1)).element, 1u);
 }
 
 TEST(HashGrid, PointsInOnePlaceShareACell) {

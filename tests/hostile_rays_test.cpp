@@ -66,8 +66,7 @@ template <class Index>
 std::vector<Hit<typename Index::Scalar>> closest_of(
     const Index& index, std::span<const Ray<typename Index::Scalar, Index::dimension>> rays) {
     std::vector<Hit<typename Index::Scalar>> hits;
-    for (const auto& ray : rays)
-        hits.push_back(closest_hit(index, ray).value_or(Hit<typename Index::Scalar>()));
+    for (const auto& ray : rays) hits.push_back(closest_hit(index, ray));
     return hits;
 }
 

@@ -14,10 +14,10 @@ namespace {
 /// The answers of an index of instances.
 template <class T, int D>
 struct Answers {
-    std::vector<std::optional<Hit<T>>> closest;
+    std::vector<Hit<T>> closest;
     std::vector<std::vector<Hit<T>>> all;
     std::vector<std::size_t> counts;
-    std::vector<std::optional<Near<T, D>>> near;
+    std::vector<Near<T, D>> near;
     std::vector<std::vector<Near<T, D>>> nearest;
     std::vector<std::vector<PlacedId>> overlapping;
 };
@@ -107,7 +107,7 @@ struct Case {
         questions = Questions<T, D>(oracle.bounds(), targets, rays);
         want = ask(oracle, questions, regions);
         const auto hits = std::count_if(want.closest.begin(), want.closest.end(),
-                                        [](const auto& hit) { return hit.has_value(); });
+                                        [](const auto& hit) { return bool(hit); });
         EXPECT_EQ(hits > 0, (!std::is_same_v<P, PointCloud<T, D>>));
     }
 
@@ -202,20 +202,20 @@ TYPED_TEST(Instances, SayWhatIsHit) {
         InstanceSet{Instance(grid), Instance(grid, Transform<3>::translation({4, 0, 0})), Instance(grid)});
     const Ray<T, 3> right{{T(4.25), T(0.5), T(8)}, {T(0), T(0), T(-2)}};
     const auto hit = closest_hit(index, right);
-    ASSERT_TRUE(hit.has_value());
-    EXPECT_EQ(hit->t, T(3.5));
-    EXPECT_EQ(hit->instance, 1u);
+    ASSERT_TRUE(bool(hit));
+    EXPECT_EQ(hit.t, T(3.5));
+    EXPECT_EQ(hit.instance, 1u);
     const auto alone = closest_hit(grid, Ray<T, 3>{{T(0.25), T(0.5), T(8)}, {T(0), T(0), T(-2)}});
-    EXPECT_EQ(hit->element, alone->element);
+    EXPECT_EQ(hit.element, alone.element);
     // Of two instances in one place the first is the closest hit. Both are counted.
     const Ray<T, 3> left{{T(0.25), T(0.5), T(8)}, {T(0), T(0), T(-1)}};
-    EXPECT_EQ(closest_hit(index, left)->instance, 0u);
+    EXPECT_EQ(closest_hit(index, left).instance, 0u);
     EXPECT_EQ(hit_count(index, left), 4u);
-    EXPECT_EQ(closest_hit(index, left, Except{closest_hit(index, left)->element})->instance, 2u);
+    EXPECT_EQ(closest_hit(index, left, Except{closest_hit(index, left).element}).instance, 2u);
     // Closest points and overlaps name the instance too.
     const auto near = closest_point(index, Vec<T, 3>(T(4), T(0), T(3)));
-    EXPECT_EQ(near->instance, 1u);
-    EXPECT_EQ(near->distance2, T(4));
+    EXPECT_EQ(near.instance, 1u);
+    EXPECT_EQ(near.distance2, T(4));
     std::vector<PlacedId> found;
     overlapping(index, Box<T, 3>{{T(3), T(-2), T(-2)}, {T(3), T(2), T(2)}}, found);
     ASSERT_FALSE(found.empty());

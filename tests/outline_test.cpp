@@ -160,7 +160,7 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
                 oracle->closest_hits({&ray, 1}, {&best, 1});
                 const auto trace = index->trace(ray);
                 EXPECT_EQ(trace.visits, visits);
-                EXPECT_EQ(trace.hit.value_or(Hit<T>{}), best);
+                EXPECT_EQ(trace.hit, best);
                 // Sum up the steps of the trace: its tests, and whether one of them found the hit.
                 std::size_t tested = 0, skipped = 0, leaves = 0;
                 bool found = false;

@@ -29,7 +29,7 @@ std::size_t for_each_hit(const I& index, F f) {
         const Ray<T, D> ray{from, to - from};
         const auto hit = closest_hit(index, ray);
         if (!hit) continue;
-        f(ray, *hit);
+        f(ray, hit);
         ++hits;
     }
     return hits;
@@ -80,9 +80,9 @@ TEST(Surface, IsMetAsExactlyFromAfar) {
         const Ray3f ray{from, (at - from) * 0.3f};
         const auto hit = closest_hit(index, ray);
         if (!hit) continue;
-        ++hits, off_the_plane += ray.at(hit->t)[2] != 0;
-        EXPECT_EQ(position(index, *hit)[2], 0);
-        EXPECT_EQ(normal(index, *hit), Vec3f(0, 0, 1));
+        ++hits, off_the_plane += ray.at(hit.t)[2] != 0;
+        EXPECT_EQ(position(index, hit)[2], 0);
+        EXPECT_EQ(normal(index, hit), Vec3f(0, 0, 1));
     }
     EXPECT_GT(hits, 100);
     EXPECT_GT(off_the_plane, 20);
@@ -101,7 +101,7 @@ TEST(Surface, OfSpheresIsMetAsExactlyFromAfar) {
         const auto hit = closest_hit(index, ray);
         if (!hit) continue;
         ++hits;
-        const Vec3d along = normalized(Vec3d(ray.direction)), p(position(index, ray, *hit));
+        const Vec3d along = normalized(Vec3d(ray.direction)), p(position(index, ray, hit));
         EXPECT_LT(length(cross(along, p - Vec3d(from))), 1e-8) << "from the ray's line";
     }
     EXPECT_GT(hits, 100);
@@ -114,7 +114,7 @@ TEST(Surface, OfASliverHasADirection) {
     const Ray<double, 3> ray{{0, 0, 5}, {0, 0, -1}};
     const auto hit = closest_hit(build<BruteForce>(mesh), ray);
     ASSERT_TRUE(hit);
-    EXPECT_EQ(std::abs(normal(mesh, ray, *hit)[2]), 1);
+    EXPECT_EQ(std::abs(normal(mesh, ray, hit)[2]), 1);
 }
 
 /// Triangles of the largest and the smallest size have normals, though their squared areas are out of range.
@@ -125,8 +125,8 @@ TYPED_TEST(Surface, OfTinyAndHugeTriangles) {
         const auto index = build(mesh);
         const auto hit = closest_hit(index, Ray<T, 3>{{size, size / 4, size / 4}, {-size, 0, 0}});
         ASSERT_TRUE(hit);
-        EXPECT_EQ(normal(index, *hit), (Vec<T, 3>(1, 0, 0)));
-        EXPECT_EQ(position(index, *hit), (Vec<T, 3>(0, size / 4, size / 4)));
+        EXPECT_EQ(normal(index, hit), (Vec<T, 3>(1, 0, 0)));
+        EXPECT_EQ(position(index, hit), (Vec<T, 3>(0, size / 4, size / 4)));
     }
 }
 

@@ -159,11 +159,11 @@ TEST(Walkers, FiltersRefuseWhatTheListOfAllHitsHolds) {
         const auto expect = [&](auto filter) {
             const auto first = std::find_if(all.begin(), all.end(), filter);
             const auto hit = closest_hit(index, in, filter);
-            ASSERT_EQ(hit.has_value(), first != all.end());
+            ASSERT_EQ(bool(hit), first != all.end());
             if (hit) {
-                EXPECT_EQ(*hit, *first);
+                EXPECT_EQ(hit, *first);
             }
-            EXPECT_EQ(any_hit(index, in, filter), hit.has_value());
+            EXPECT_EQ(any_hit(index, in, filter), bool(hit));
             EXPECT_EQ(hit_count(index, in, filter),
                       static_cast<std::size_t>(std::count_if(all.begin(), all.end(), filter)));
         };

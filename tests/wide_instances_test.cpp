@@ -68,7 +68,7 @@ void expect_answers(const Index& index, const Expected<float>& expected, bool fi
     for (std::size_t i = 0; i < expected.rays.size(); ++i) {
         const auto& all = expected.all[i];
         const H want = all.empty() ? H() : all[0];
-        ASSERT_EQ(want, closest_hit(index, expected.rays[i]).value_or(H())) << "ray " << i;
+        ASSERT_EQ(want, closest_hit(index, expected.rays[i])) << "ray " << i;
         ASSERT_EQ(bool(want), any_hit(index, expected.rays[i])) << "any, ray " << i;
     }
     if (!filtered) return;
@@ -182,8 +182,8 @@ TEST(WideInstances, MasksAreAskedByEveryQuery) {
     const std::size_t two = all_hits(index, ray, second, InMasks{6});
     EXPECT_EQ(one + two, both.size());
     EXPECT_EQ(hit_count(index, ray, InMasks{1}), one);
-    EXPECT_EQ(closest_hit(index, ray, InMasks{1})->instance, 0u);
-    EXPECT_EQ(closest_hit(index, ray, InMasks{2})->geometry, 9u);
+    EXPECT_EQ(closest_hit(index, ray, InMasks{1}).instance, 0u);
+    EXPECT_EQ(closest_hit(index, ray, InMasks{2}).geometry, 9u);
     EXPECT_FALSE(any_hit(index, ray, InMasks{4}));
     EXPECT_EQ(hit_count(index, ray, InMasks{4}), 0u);
 }

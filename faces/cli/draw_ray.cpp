@@ -74,7 +74,7 @@ TraceTable table_of(const std::string& structure, const Ray<T, D>& ray, const Tr
     table.flat_origin = section.flat(origin);
     table.flat_direction = section.flat(origin + direction) - table.flat_origin;
     table.visits = trace.visits;
-    if (trace.hit) table.hit = {trace.hit->element, static_cast<double>(trace.hit->t)};
+    if (trace.hit) table.hit = {trace.hit.element, static_cast<double>(trace.hit.t)};
     // A row for each step, with the cell's part in the plane.
     for (const auto& s : trace.steps) {
         TraceRow row{s.cell.id,

@@ -71,25 +71,22 @@ public:
     KernelUse closest_hits(const RayArray<T, D>& rays, std::span<Hit<T>> hits,
                            std::span<Visits> visits = {}) const {
         if (visits.empty()) return closest_hits_uncounted(rays, hits);
-        return one_by_one<ClosestHit<AnyIndex>>(
-            rays, visits, [&](std::size_t i, const auto& hit) { hits[i] = hit.value_or(Hit<T>{}); });
+        return one_by_one<ClosestHit<AnyIndex>>(rays, hits, visits);
     }
     KernelUse any_hits(const RayArray<T, D>& rays, std::span<bool> hits,
                        std::span<Visits> visits = {}) const {
         if (visits.empty()) return any_hits_uncounted(rays, hits);
-        return one_by_one<AnyHit<AnyIndex>>(rays, visits, [&](std::size_t i, bool hit) { hits[i] = hit; });
+        return one_by_one<AnyHit<AnyIndex>>(rays, hits, visits);
     }
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits = nullptr) const {
         return counted<AllHits<AnyIndex>>(visits, ray, hits);
     }
-    /// Writes the closest point for each of `points`. The element is none (0xFFFFFFFF) where there is no
-    /// primitive.
+    /// Writes the closest point for each of `points`, false where there is no primitive.
     void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
                         std::span<Visits> visits = {}) const {
         for (std::size_t i = 0; i < points.size(); ++i)
             found[i] =
-                counted<ClosestPoint<AnyIndex>>(visits.empty() ? nullptr : &visits[i], points[i], anywhere)
-                    .value_or(Near<T, D>{});
+                counted<ClosestPoint<AnyIndex>>(visits.empty() ? nullptr : &visits[i], points[i], anywhere);
     }
     std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
                         Visits* visits = nullptr) const {
@@ -130,9 +127,10 @@ private:
         Visits nobodys;
         return answer<Q>(visits != nullptr ? *visits : nobodys, arguments...);
     }
-    template <class Q, class Take>
-    KernelUse one_by_one(const RayArray<T, D>& rays, std::span<Visits> visits, Take take) const {
-        for (std::size_t i = 0; i < rays.size(); ++i) take(i, answer<Q>(visits[i], rays[i], KeepAll{}));
+    template <class Q, class Answer>
+    KernelUse one_by_one(const RayArray<T, D>& rays, std::span<Answer> answers,
+                         std::span<Visits> visits) const {
+        for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = answer<Q>(visits[i], rays[i], KeepAll{});
         return {rays.size(), 0, 0};
     }
 };

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,17 +32,21 @@ using NearOf = Near<typename I::Scalar, I::dimension>;
 
 inline constexpr NoVisits no_visits{};
 
-/// The hit of least t in [t_min, t_max], if any. `filter(hit)` may refuse a hit; `count` may be a Visits.
+// The first queries are declared inline so that an optimising compiler can inline those that `core` has
+// compiled too (mesh_index.h).
+
+/// The hit of least t in [t_min, t_max]; a Hit that is false if nothing is hit. `filter(hit)` may refuse a
+/// hit; `count` may be a Visits.
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-std::optional<Hit<typename P::Scalar>> closest_hit(const Index<S, P>& index,
-                                                   const Ray<typename P::Scalar, P::dimension>& ray,
-                                                   const Filter& filter = {}, Count& count = no_visits) {
+inline Hit<typename P::Scalar> closest_hit(const Index<S, P>& index,
+                                           const Ray<typename P::Scalar, P::dimension>& ray,
+                                           const Filter& filter = {}, Count& count = no_visits) {
     return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
 }
 /// Whether the ray hits anything in [t_min, t_max].
 template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
-             const Filter& filter = {}, Count& count = no_visits) {
+inline bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
+                    const Filter& filter = {}, Count& count = no_visits) {
     return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
 }
 /// Writes every hit to `hits`, each primitive once, in the order of (t, instance, element). Returns how many
@@ -66,10 +69,10 @@ std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P:
         return all_hits(index, ray, hits, filter, count);
     }
 }
-/// The closest point of any primitive within `max_distance2` (squared, included); none if there is no such
-/// primitive.
+/// The closest point of any primitive within `max_distance2` (squared, included); a Near that is false if
+/// there is no such primitive.
 template <class S, class P, class Count = const NoVisits>
-std::optional<Near<typename P::Scalar, P::dimension>> closest_point(
+inline Near<typename P::Scalar, P::dimension> closest_point(
     const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
     typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
     Count& count = no_visits) {
@@ -136,13 +139,13 @@ KernelUse answer_rays(const I& index, const Rays& rays, std::span<Answer> answer
 }
 }  // namespace detail
 
-/// Writes the closest hit of ray i to hits[i], or a Hit that is false where nothing is hit; `any_hits` writes
-/// whether ray i hits anything. Large batches are cut into pieces over all cores, unless an executor is given
-/// or there is a filter (Threads). The rays may have any layout in memory (probes/ray_array.h); a vector or a
-/// span of rays will do. `filter(hit)` or `filter(i, hit)`, for ray i, may refuse a hit (queries/hit.h).
-/// Throws InputError, and writes nothing, if there are fewer places for answers than rays. Returns which
-/// algorithms answered (walks/kernel.h): only indexes of float triangles in a WideBvh answer batches by
-/// kernels, all others ray by ray.
+/// Writes the closest hit of ray i to hits[i], as `closest_hit` finds it; `any_hits` writes whether ray i
+/// hits anything. Large batches are cut into pieces over all cores, unless an executor is given or there is a
+/// filter (Threads). The rays may have any layout in memory (probes/ray_array.h); a vector or a span of rays
+/// will do. `filter(hit)` or `filter(i, hit)`, for ray i, may refuse a hit (queries/hit.h). Throws
+/// InputError, and writes nothing, if there are fewer places for answers than rays. Returns which algorithms
+/// answered (walks/kernel.h): only indexes of float triangles in a WideBvh answer batches by kernels, all
+/// others ray by ray.
 ///
 ///   closest_hits(index, rays, hits, default_executor());
 ///   closest_hits(index, rays, hits,
@@ -151,9 +154,8 @@ template <class S, class P, class Filter = KeepAll>
 KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
                        std::span<Hit<typename P::Scalar>> hits, Threads threads = {},
                        const Filter& filter = {}) {
-    using Found = Hit<typename P::Scalar>;
     return detail::answer_rays<ClosestHit<P, Filter>>(index, rays, hits, threads, filter, [&](std::size_t i) {
-        return closest_hit(index, rays[i], filter_of_ray(filter, i)).value_or(Found{});
+        return closest_hit(index, rays[i], filter_of_ray(filter, i));
     });
 }
 template <class S, class P, class Filter = KeepAll>
@@ -174,19 +176,16 @@ KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, 
     return any_hits(index, rays, hits, Threads(), filter);
 }
 
-/// Writes the closest point for each of `points`, as `closest_point` finds it. The element is none where
-/// nothing lies within the distance. The points may have any layout in memory (base/strided.h); a vector or a
-/// span of points will do. Throws InputError, and writes nothing, if there are fewer places for answers than
-/// points.
+/// Writes the closest point for each of `points`, as `closest_point` finds it. The points may have any layout
+/// in memory (base/strided.h); a vector or a span of points will do. Throws InputError, and writes nothing,
+/// if there are fewer places for answers than points.
 template <class S, class P>
 void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
                     std::span<Near<typename P::Scalar, P::dimension>> found, Threads threads = {},
                     typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
     detail::expect_room("points", points.size(), found.size());
     threads.over(points.size()).for_each_piece(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            found[i] = closest_point(index, points[i], max_distance2)
-                           .value_or(Near<typename P::Scalar, P::dimension>{});
+        for (std::size_t i = begin; i < end; ++i) found[i] = closest_point(index, points[i], max_distance2);
     });
 }
 

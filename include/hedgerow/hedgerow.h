@@ -2,10 +2,9 @@
 #pragma once
 
 #include <hedgerow/all.h>
-#include <hedgerow/ask.h>
 #include <hedgerow/instances/instance_set.h>
+#include <hedgerow/mesh_index.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
-#include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/surface.h>

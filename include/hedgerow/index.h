@@ -259,12 +259,8 @@ private:
 /// The type of `build<S>(primitives)` for primitives of type P, to be written where there is no `auto`:
 ///
 ///   IndexOf<KdTree, SphereSet<float, 3>> spheres;
-///   MeshIndex<float> mesh;
 template <template <class, int> class S, class P>
 using IndexOf = Index<S<typename P::Scalar, P::dimension>, ViewOf<P>>;
-/// The index of triangles that `build(mesh)` returns, and that files hold (io/index_file.h).
-template <std::floating_point T>
-using MeshIndex = Index<WideBvh<T, 3>, TriangleMeshView<T>>;
 
 /// Builds a structure over primitives: `build<KdTree>(mesh, {.leaf_size = 2})`. An lvalue or a view is
 /// borrowed: its arrays must outlive the index. An rvalue of a set that owns its arrays is moved into the

@@ -1,6 +1,7 @@
 /// The walk of an index to a ray's closest hit, step by step.
 #pragma once
 
+#include <optional>
 #include <unordered_map>
 
 #include <hedgerow/ask.h>
@@ -34,7 +35,7 @@ struct TraceStep {
 template <std::floating_point T, int D>
 struct Trace {
     std::vector<TraceStep<T, D>> steps;
-    std::optional<Hit<T>> hit;
+    Hit<T> hit;
     Visits visits;
 };
 

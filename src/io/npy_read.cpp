@@ -1,6 +1,5 @@
 /// The `.npy` format: a magic word, a Python dictionary, then the elements.
 #include <algorithm>
-#include <optional>
 
 #include "memory.h"
 #include "npy_format.h"

@@ -29,7 +29,7 @@ bool Trial::by_sixteen() const {
 std::size_t Trial::one_by_one(const Engine& engine) const {
     std::size_t found = 0;
     if (question_ == Question::closest)
-        for (const auto& r : rays_) found += closest_hit(engine, r).has_value();
+        for (const auto& r : rays_) found += bool(closest_hit(engine, r));
     else
         for (const auto& r : rays_) found += any_hit(engine, r);
     return found;
@@ -151,9 +151,8 @@ void Trial::count(std::vector<Row>& rows) {
 bool Trial::right(const Engine& engine, std::size_t i, Visits& visits) const {
     const Ray3f& ray = rays_[i];
     if (question_ == Question::closest) {
-        const Hit<float> plain = closest_hit(engine, ray, KeepAll{}, visits).value_or(Hit<float>{});
-        return closest_hit(engine, ray).value_or(Hit<float>{}) == plain &&
-               (!has(Mode::batch) || hits_[i] == plain);
+        const Hit<float> plain = closest_hit(engine, ray, KeepAll{}, visits);
+        return closest_hit(engine, ray) == plain && (!has(Mode::batch) || hits_[i] == plain);
     }
     const bool plain = any_hit(engine, ray, KeepAll{}, visits);
     return any_hit(engine, ray) == plain && (!has(Mode::batch) || any_[i] == plain);
@@ -162,7 +161,7 @@ bool Trial::differs(const PeerIndex& peer, std::size_t i) const {
     const Ray3f& ray = rays_[i];
     const Engine& engine = asked_.engines.front();
     if (question_ == Question::any) return peer.hits(ray) != any_hit(engine, ray);
-    const float ours = closest_hit(engine, ray).value_or(Hit<float>{}).t, theirs = peer.distance(ray);
+    const float ours = closest_hit(engine, ray).t, theirs = peer.distance(ray);
     if (std::isinf(theirs) || std::isinf(ours)) return std::isinf(theirs) != std::isinf(ours);
     return std::fabs(theirs - ours) > 1e-4f * std::fabs(ours);
 }

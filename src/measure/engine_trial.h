@@ -3,10 +3,10 @@
 
 #include <span>
 
-#include <hedgerow/ask.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/costs.h>
 #include <hedgerow/measure/engine.h>
+#include <hedgerow/mesh_index.h>
 
 namespace hedgerow::measure {
 

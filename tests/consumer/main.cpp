@@ -107,11 +107,11 @@ void answers(const char* name, const I& index, const TriangleMesh<T>& mesh, Numb
         const Vec<T, 3> from = numbers.point(T(-1), T(2)), into = numbers.point(T(0), T(1));
         // Every third ray aims at a vertex, where the answer depends on the last bit.
         const Vec<T, 3> to = i % 3 == 0 ? mesh.vertices[numbers.below(mesh.vertices.size())] : into;
-        const auto hit = closest_hit(index, {from, to - from}).value_or(Hit<T>{});
+        const auto hit = closest_hit(index, {from, to - from});
         hits += bool(hit);
         hash.add(hit.t), hash.add(hit.u), hash.add(hit.v), hash.add(hit.element);
         if (i % 3 != 1) continue;
-        const auto near = closest_point(index, from).value();
+        const auto near = closest_point(index, from);
         hash.add(near.distance2), hash.add(near.element);
         for (int axis = 0; axis < 3; ++axis) hash.add(near.point[axis]);
     }

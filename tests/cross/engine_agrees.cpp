@@ -63,7 +63,7 @@ bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count
             closest_hits(index, std::span<const Ray3f>(rays), std::span(got));
             any_hits(index, std::span<const Ray3f>(rays), {any.get(), count});
             for (std::size_t i = 0; i < count; ++i) {
-                const auto one = closest_hit(index, rays[i]).value_or(Hit<float>());
+                const auto one = closest_hit(index, rays[i]);
                 if (got[i] == want[i] && one == want[i] && any[i] == static_cast<bool>(want[i])) continue;
                 std::printf("%s, width %d: ray %zu differs\n", std::string(set).c_str(), width, i);
                 return false;

@@ -1,7 +1,6 @@
 /// Answers of a structure over instances, compared with those of brute force over brute force.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <hedgerow/hedgerow.h>
@@ -13,7 +12,7 @@ namespace hedgerow::hunter {
 
 template <class T>
 struct PlacedRayAnswer {
-    std::optional<Hit<T>> closest;
+    Hit<T> closest;
     bool any = false;
     std::vector<Hit<T>> all;
 
@@ -29,7 +28,7 @@ template <class Index, class T>
 std::vector<Near<T, 3>> placed_answer(const Index& index, const Vec<T, 3>& point) {
     std::vector<Near<T, 3>> said;
     nearest(index, point, 4, said);
-    if (const auto closest = closest_point(index, point)) said.push_back(*closest);
+    if (const auto closest = closest_point(index, point)) said.push_back(closest);
     return said;
 }
 template <class Index, class T>

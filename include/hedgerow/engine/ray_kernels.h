@@ -2,8 +2,6 @@
 /// triangles in a WideBvh, and of instances of such indexes.
 #pragma once
 
-#include <optional>
-
 #include <hedgerow/engine/kernels.h>
 #include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/geometry/transform.h>
@@ -81,9 +79,8 @@ private:
 template <class Set, class Filter, class I>
 requires(detail::TrianglesForKernels<I> || detail::InstancesForKernels<I>)  //
     struct Kernel<ClosestHit<Set, Filter>, I> : detail::RayKernel<&WideKernels::closest> {
-    std::optional<Hit<float>> answer(const I& index, const Ray<float, 3>& ray, const Filter& filter) const {
-        const Hit<float> hit = this->hit(index, ray, filter);
-        return hit ? std::optional(hit) : std::nullopt;
+    Hit<float> answer(const I& index, const Ray<float, 3>& ray, const Filter& filter) const {
+        return this->hit(index, ray, filter);
     }
     template <class Q>
     Flow offer_inside(const I& index, const Ray<float, 3>& ray, std::uint32_t instance,

@@ -92,7 +92,7 @@ private:
         unsigned left_of = 0, right_of = 0;
         for (int c = 0; c < 3; ++c) {
             const int next = (c + 1) % 3, previous = (c + 2) % 3;
-            const L edge = x[previous] * y[next] - y[previous] * x[next];
+            const L edge = edge_filter(x[previous], y[previous], x[next], y[next]);
             left_of |= edge.negative(), right_of |= edge.positive();
         }
         return ~(left_of & right_of);

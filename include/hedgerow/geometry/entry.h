@@ -155,6 +155,13 @@ inline double edge(const ShearedCorner<double>& p, const ShearedCorner<double>& 
 }
 }  // namespace detail
 
+/// First pass of the watertight test, a filter: the edge function in the working precision, of numbers or of
+/// lanes. A rounded difference of rounded products has the right sign or is 0.
+template <class N>
+constexpr N edge_filter(const N& px, const N& py, const N& qx, const N& qy) {
+    return product(px, qy) - product(py, qx);
+}
+
 /// Second pass of the watertight test: computes U, V, W again with exact signs, then t, u, v with real
 /// divisions, always in this order. Every path to a hit (scalar, lanes, any instruction set) ends here, so
 /// all paths give the same bits. Does not check t against an interval. For the remaining error see RayProbe.
@@ -173,14 +180,13 @@ std::optional<Meeting<T>> meet_exactly(const WatertightRay<T>& ray, const Sheare
     return Meeting<T>{rounded_to<T>(z / double(ray.direction_z)), rounded_to<T>(wb), rounded_to<T>(wc)};
 }
 
-/// The watertight test for any t: a filter in the working precision, then meet_exactly.
+/// The watertight test for any t.
 template <class T>
 std::optional<Meeting<T>> meet(const WatertightRay<T>& ray, const Triangle<T, 3>& tri) {
     const auto a = shear(ray, tri.a), b = shear(ray, tri.b), c = shear(ray, tri.c);
-    // First pass, a filter: a rounded difference of rounded products has the right sign or is 0.
-    const T u = product(c.x, b.y) - product(c.y, b.x);
-    const T v = product(a.x, c.y) - product(a.y, c.x);
-    const T w = product(b.x, a.y) - product(b.y, a.x);
+    const T u = edge_filter(c.x, c.y, b.x, b.y);
+    const T v = edge_filter(a.x, a.y, c.x, c.y);
+    const T w = edge_filter(b.x, b.y, a.x, a.y);
     if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
     return meet_exactly(ray, a, b, c);
 }

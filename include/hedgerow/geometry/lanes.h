@@ -280,6 +280,11 @@ std::uint32_t number_of_lane(T lane) {
     return static_cast<std::uint32_t>(std::bit_cast<BitsOf<T>>(lane) - std::bit_cast<BitsOf<T>>(T(1)));
 }
 
+/// a·b, each lane rounded once, as by the operator.
+template <std::floating_point T>
+Lanes<T> product(Lanes<T> a, Lanes<T> b) {
+    return a * b;
+}
 /// The first D lanes.
 template <int D, std::floating_point T>
 Vec<T, D> first(Lanes<T> a) {

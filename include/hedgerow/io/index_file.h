@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include <hedgerow/index.h>
+#include <hedgerow/mesh_index.h>
 #include <hedgerow/parallel/progress.h>
 
 namespace hedgerow {

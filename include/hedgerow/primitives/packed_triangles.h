@@ -46,7 +46,8 @@ public:
             const L z = L::load(p->row + 3 * ray.kz) - L::all(ray.origin[ray.kz]);
             const L x = (L::load(p->row + 3 * ray.kx) - L::all(ray.origin[ray.kx])) - L::all(ray.shear_x) * z;
             const L y = (L::load(p->row + 3 * ray.ky) - L::all(ray.origin[ray.ky])) - L::all(ray.shear_y) * z;
-            const L edges = x.previous_corner() * y.next_corner() - y.previous_corner() * x.next_corner();
+            const L edges =
+                edge_filter(x.previous_corner(), y.previous_corner(), x.next_corner(), y.next_corner());
             if ((edges.negative() & 7u) != 0 && (edges.positive() & 7u) != 0) continue;
             const auto m = meet_exactly(ray, p->corner(ray, 0), p->corner(ray, 1), p->corner(ray, 2));
             if (m && query.offer({m->t, m->u, m->v, p->id()}) == Flow::stop) return Flow::stop;

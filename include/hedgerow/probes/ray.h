@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <optional>
 #include <tuple>
-#include <variant>
 
 #include <hedgerow/geometry/box_pair.h>
 #include <hedgerow/geometry/box_rows.h>
@@ -345,7 +344,8 @@ private:
     int near_row_[D] = {};
     T slack_ = T(0);
     bool usable_ = false;
-    [[no_unique_address]] std::conditional_t<D == 3, WatertightRay<T>, std::monostate> watertight_;
+    struct Nothing {};
+    [[no_unique_address]] std::conditional_t<D == 3, WatertightRay<T>, Nothing> watertight_;
 };
 
 }  // namespace hedgerow

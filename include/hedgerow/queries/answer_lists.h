@@ -1,8 +1,7 @@
 /// The answers of a batch whose queries have any number of answers each.
 #pragma once
 
-#include <algorithm>
-#include <mutex>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -41,32 +40,26 @@ private:
 /// list holds. The result does not depend on how the work is cut.
 template <class T, class One>
 AnswerLists<T> answer_lists(std::size_t count, Executor& executor, One one) {
-    struct Piece {
-        std::size_t begin;
-        AnswerLists<T> lists;
-    };
-    // Answer the pieces, which end in any order.
-    std::vector<Piece> pieces;
-    std::mutex adding;
+    // Answer the pieces: pieces[i] has the lists of the piece that begins with query i, if one does.
+    std::vector<std::unique_ptr<AnswerLists<T>>> pieces(count);
     executor.for_each_piece(count, 256, [&](std::size_t begin, std::size_t end) {
-        Piece piece{begin, {}};
+        auto piece = std::make_unique<AnswerLists<T>>();
         std::vector<T> list;
         for (std::size_t i = begin; i < end; ++i) {
             one(i, list);
-            piece.lists.push_back(list);
+            piece->push_back(list);
         }
-        const std::lock_guard lock(adding);
-        pieces.push_back(std::move(piece));
+        pieces[begin] = std::move(piece);
     });
     // Join the pieces in the order of the queries.
-    if (pieces.size() == 1) return std::move(pieces[0].lists);
-    std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.begin < b.begin; });
+    if (count > 0 && pieces[0]->size() == count) return std::move(*pieces[0]);
+    std::erase(pieces, nullptr);
     std::size_t answers = 0;
-    for (const Piece& piece : pieces) answers += piece.lists.all().size();
+    for (const auto& piece : pieces) answers += piece->all().size();
     AnswerLists<T> joined;
     joined.reserve(count, answers);
-    for (const Piece& piece : pieces)
-        for (std::size_t i = 0; i < piece.lists.size(); ++i) joined.push_back(piece.lists[i]);
+    for (const auto& piece : pieces)
+        for (std::size_t i = 0; i < piece->size(); ++i) joined.push_back((*piece)[i]);
     return joined;
 }
 

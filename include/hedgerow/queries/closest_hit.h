@@ -1,8 +1,6 @@
 /// The hit of least t; equal t goes to the lowest (instance, element).
 #pragma once
 
-#include <optional>
-
 #include <hedgerow/queries/ray_query.h>
 
 namespace hedgerow {
@@ -24,9 +22,9 @@ public:
         if (c.t <= best_.t && (c.t < best_.t || comes_before(c, best_)) && this->counts(c)) best_ = c;
         return Flow::go_on;
     }
-    std::optional<Hit<Scalar>> answer() const {
-        if (best_.element == Hit<Scalar>::none) return std::nullopt;
-        return this->hit(best_);
+    /// False if nothing was hit.
+    Hit<Scalar> answer() const {
+        return best_.element == Hit<Scalar>::none ? Hit<Scalar>{} : this->hit(best_);
     }
 
 private:

@@ -1,8 +1,6 @@
 /// The point of the primitives closest to a given point.
 #pragma once
 
-#include <optional>
-
 #include <hedgerow/queries/point_query.h>
 
 namespace hedgerow {
@@ -24,10 +22,8 @@ public:
         if (nearer(c, best_)) best_ = c;
         return Flow::go_on;
     }
-    std::optional<Found> answer() const {
-        if (best_.element == no_primitive) return std::nullopt;
-        return this->found(best_);
-    }
+    /// False if no primitive is within the distance.
+    Found answer() const { return best_.element == no_primitive ? Found{} : this->found(best_); }
 
 private:
     Candidate best_;  // at first behind every candidate within the distance

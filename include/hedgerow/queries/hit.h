@@ -18,7 +18,7 @@ struct Hit {
     std::uint32_t primitive = none, geometry = 0, instance = 0, element = none;
 
     static constexpr std::uint32_t none = 0xFFFFFFFFu;
-    /// False for the Hit that a batch writes where nothing was hit.
+    /// False for the answer of a query that hit nothing; its t is infinite.
     explicit operator bool() const { return element != none; }
     friend bool operator==(const Hit&, const Hit&) = default;
 };

@@ -14,6 +14,8 @@ struct Near {
     Vec<T, D> point;
     std::uint32_t instance = 0;
 
+    /// False for the answer of a query that found nothing; its distance is infinite.
+    explicit operator bool() const { return element != no_primitive; }
     friend bool operator==(const Near&, const Near&) = default;
 };
 

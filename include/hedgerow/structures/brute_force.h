@@ -1,8 +1,6 @@
 /// Brute force: every query tests every primitive. The other structures are tested against it.
 #pragma once
 
-#include <functional>
-
 #include <hedgerow/structures/references.h>
 #include <hedgerow/walks/query.h>
 #include <hedgerow/walks/visits.h>
@@ -86,7 +84,8 @@ public:
     std::string validate(const P& set) const {
         if (!items_.empty() && items_.back() >= set.size()) return "items do not match the primitives";
         const bool ascend =
-            std::adjacent_find(items_.begin(), items_.end(), std::greater_equal<>()) == items_.end();
+            std::adjacent_find(items_.begin(), items_.end(),
+                               [](PrimitiveId a, PrimitiveId b) { return a >= b; }) == items_.end();
         return ascend ? "" : "items do not ascend";
     }
 
