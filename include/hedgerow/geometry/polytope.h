@@ -57,7 +57,6 @@ public:
         Face all;
         for (const Face& f : faces_) all.insert(all.end(), f.begin(), f.end());
         go_round(all, 0, 1);
-        all.erase(std::unique(all.begin(), all.end()), all.end());
         return all;
     }
     /// The section of the polytope by a plane: the corners of a convex polygon, or in the plane the ends of a
@@ -148,12 +147,14 @@ private:
             const Point& q = f[(i + 1) % n];
             const double b = plane.height(q);
             if (!((a < 0 && b > 0) || (a > 0 && b < 0))) continue;
-            const Point crossing = f[i] + (q - f[i]) * (a / (a - b));
+            // Computed from the low end, so that both faces of an edge find the same point.
+            const Point crossing = a < 0 ? f[i] + (q - f[i]) * (a / (a - b)) : q + (f[i] - q) * (b / (b - a));
             for (Face* part : {&low, &high, &cap}) part->push_back(crossing);
         }
     }
-    /// Sorts the corners of the cap around it, or in the plane keeps its two ends. A corner may be in the cap
-    /// several times, once for each face that has it.
+    /// Sorts the corners of the cap around it, or in the plane keeps its two ends. A corner may come several
+    /// times, once from each face that has it, and is kept once: otherwise cuts through one corner would
+    /// double it again and again.
     static void close(Face& cap, const Point& normal) {
         if (cap.size() < D) return;
         if constexpr (D == 2) {
@@ -167,8 +168,8 @@ private:
             go_round(cap, (axis + 1) % 3, (axis + 2) % 3);
         }
     }
-    /// Sorts a convex polygon's corners counterclockwise around their middle, in the plane of axes x and y.
-    /// Compares half planes and cross products, so no angle is computed.
+    /// Sorts a convex polygon's corners counterclockwise around their middle, in the plane of axes x and y,
+    /// and drops those that are repeated. Compares half planes and cross products, so no angle is computed.
     static void go_round(Face& corners, int x, int y) {
         Point center;
         for (const Point& p : corners) center = center + p / double(corners.size());
@@ -178,6 +179,7 @@ private:
             if (upper(a) != upper(b)) return upper(a);
             return product(a[x], b[y]) - product(a[y], b[x]) > 0;
         });
+        corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     }
     static Point crosswise(const Point& d) requires(D == 2) { return {-d[1], d[0]}; }
 
