@@ -1,6 +1,7 @@
 #include "interior_model.h"
 
 #include <algorithm>
+#include <array>
 
 #include "circle.h"
 
@@ -144,28 +145,34 @@ void Model::wall(const Pose& pose, double length, double height, double thicknes
     constexpr std::uint32_t none = ~std::uint32_t{0};
     std::vector<std::uint32_t> known(2 * x.size() * z.size(), none);
     // A corner of the lattice on the front (y < 0) or the back.
-    const auto corner = [&](std::size_t i, std::size_t k, std::size_t back) {
-        std::uint32_t& id = known[(i * z.size() + k) * 2 + back];
-        if (id == none) id = vertex(pose, {x[i], back ? thickness / 2 : -thickness / 2, z[k]});
+    struct Corner {
+        std::size_t i, k, back;
+    };
+    const auto known_or_new = [&](const Corner& c) {
+        std::uint32_t& id = known[(c.i * z.size() + c.k) * 2 + c.back];
+        if (id == none) id = vertex(pose, {x[c.i], c.back ? thickness / 2 : -thickness / 2, z[c.k]});
         return id;
+    };
+    // New vertices are made from the last corner to the first, by every compiler.
+    const auto face = [&](const std::array<Corner, 4>& corners) {
+        std::array<std::uint32_t, 4> id{};
+        for (std::size_t c = 4; c-- > 0;) id[c] = known_or_new(corners[c]);
+        quad(id[0], id[1], id[2], id[3]);
     };
     // Add the front and the back of each solid cell, and its sides that border on no solid cell.
     for (std::size_t i = 0; i < columns; ++i)
         for (std::size_t k = 0; k < rows; ++k) {
             if (!solid(i, k)) continue;
-            quad(corner(i, k, 0), corner(i + 1, k, 0), corner(i + 1, k + 1, 0), corner(i, k + 1, 0));
-            quad(corner(i + 1, k, 1), corner(i, k, 1), corner(i, k + 1, 1), corner(i + 1, k + 1, 1));
+            face({{{i, k, 0}, {i + 1, k, 0}, {i + 1, k + 1, 0}, {i, k + 1, 0}}});
+            face({{{i + 1, k, 1}, {i, k, 1}, {i, k + 1, 1}, {i + 1, k + 1, 1}}});
             // The wall's ends and the sides of its openings.
             if (i == 0 ? with_ends : !solid(i - 1, k))
-                quad(corner(i, k, 1), corner(i, k, 0), corner(i, k + 1, 0), corner(i, k + 1, 1));
+                face({{{i, k, 1}, {i, k, 0}, {i, k + 1, 0}, {i, k + 1, 1}}});
             if (i + 1 == columns ? with_ends : !solid(i + 1, k))
-                quad(corner(i + 1, k, 0), corner(i + 1, k, 1), corner(i + 1, k + 1, 1),
-                     corner(i + 1, k + 1, 0));
-            if (k > 0 && !solid(i, k - 1))
-                quad(corner(i, k, 1), corner(i + 1, k, 1), corner(i + 1, k, 0), corner(i, k, 0));
+                face({{{i + 1, k, 0}, {i + 1, k, 1}, {i + 1, k + 1, 1}, {i + 1, k + 1, 0}}});
+            if (k > 0 && !solid(i, k - 1)) face({{{i, k, 1}, {i + 1, k, 1}, {i + 1, k, 0}, {i, k, 0}}});
             if (k + 1 < rows && !solid(i, k + 1))
-                quad(corner(i, k + 1, 0), corner(i + 1, k + 1, 0), corner(i + 1, k + 1, 1),
-                     corner(i, k + 1, 1));
+                face({{{i, k + 1, 0}, {i + 1, k + 1, 0}, {i + 1, k + 1, 1}, {i, k + 1, 1}}});
         }
 }
 
