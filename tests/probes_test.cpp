@@ -44,15 +44,19 @@ struct Boxes {
     explicit Boxes(Random& random)
         : places(4 << static_cast<int>(random.uniform(0, 3))),
           count(1 + static_cast<int>(random.uniform(0, places))),
-          planes(std::size_t(2 * D * places), std::numeric_limits<T>::quiet_NaN()) {
+          planes(row(2 * D), std::numeric_limits<T>::quiet_NaN()) {
         for (int i = 0; i < count; ++i) {
             Box<T, D> box;
             if (random.uniform() > 0.1) box.expand(vector<T, D>(random)).expand(vector<T, D>(random));
             for (int k = 0; k < D; ++k) {
-                planes[std::size_t(2 * k * places + i)] = box.low[k];
-                planes[std::size_t((2 * k + 1) * places + i)] = box.high[k];
+                planes[row(2 * k) + static_cast<std::size_t>(i)] = box.low[k];
+                planes[row(2 * k + 1) + static_cast<std::size_t>(i)] = box.high[k];
             }
         }
+    }
+    /// Where a row of planes begins.
+    std::size_t row(int number) const {
+        return static_cast<std::size_t>(number) * static_cast<std::size_t>(places);
     }
     BoxRows<T, D> rows() const { return {planes.data(), places, count}; }
 };
