@@ -61,6 +61,24 @@ TEST(Batches, GiveWhatSingleCallsDo) {
     }
 }
 
+/// An executor that cuts as many pieces as there might be threads, some of them empty.
+class EmptyPieces final : public Executor {
+public:
+    void for_each_piece(std::size_t count, std::size_t,
+                        FunctionRef<void(std::size_t, std::size_t)> body) override {
+        for (const std::size_t i : {count, std::size_t(0), count / 2}) body(i, i);
+        body(0, count / 2), body(count / 2, count), body(count, count);
+    }
+    void both(FunctionRef<void()> first, FunctionRef<void()> second) override { first(), second(); }
+};
+TEST(Batches, MayBeCutIntoEmptyPieces) {
+    EmptyPieces executor;
+    const auto lists = answer_lists<int>(
+        5, executor, [](std::size_t i, std::vector<int>& list) { list.assign(i, static_cast<int>(i)); });
+    ASSERT_EQ(lists.size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(lists[i].size(), i);
+}
+
 TEST(Batches, OfInstancesNameThem) {
     const auto mesh = teapot<float>(100);
     const auto pot = build(mesh);

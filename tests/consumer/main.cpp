@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <random>
 #include <type_traits>
 
@@ -112,6 +113,7 @@ void answers(const char* name, const I& index, const TriangleMesh<T>& mesh, Numb
         hash.add(hit.t), hash.add(hit.u), hash.add(hit.v), hash.add(hit.element);
         if (i % 3 != 1) continue;
         const auto near = closest_point(index, from);
+        if (!near) std::abort();
         hash.add(near.distance2), hash.add(near.element);
         for (int axis = 0; axis < 3; ++axis) hash.add(near.point[axis]);
     }

@@ -43,6 +43,7 @@ AnswerLists<T> answer_lists(std::size_t count, Executor& executor, One one) {
     // Answer the pieces: pieces[i] has the lists of the piece that begins with query i, if one does.
     std::vector<std::unique_ptr<AnswerLists<T>>> pieces(count);
     executor.for_each_piece(count, 256, [&](std::size_t begin, std::size_t end) {
+        if (begin == end) return;  // an executor may cut empty pieces
         auto piece = std::make_unique<AnswerLists<T>>();
         std::vector<T> list;
         for (std::size_t i = begin; i < end; ++i) {
