@@ -15,6 +15,7 @@ namespace {
 /// cell on its way.
 TEST(Found, RaysFromFarAwayVisitACellOfAGridOnce) {
     std::vector<Sphere<float, 3>> shapes;
+    shapes.reserve(8);
     for (int i = 0; i < 8; ++i) shapes.push_back({{float(i & 1), float(i >> 1 & 1), float(i >> 2)}, 0.1f});
     const auto set = set_of(shapes);
     const Ray3f ray{{-1e12f, -1e12f, -1e12f}, {1, 1, 1}};

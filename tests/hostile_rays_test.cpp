@@ -134,6 +134,7 @@ struct Placements {
     template <class I>
     static std::vector<Instance<I>> all(const I& of, const std::vector<Transform<P::dimension>>& transforms) {
         std::vector<Instance<I>> placed;
+        placed.reserve(transforms.size());
         for (const auto& t : transforms) placed.emplace_back(of, t);
         return placed;
     }

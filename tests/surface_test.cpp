@@ -175,6 +175,7 @@ TYPED_TEST(Surface, OfInstances) {
     const auto pot = build<Grid>(mesh);
     const auto places = transforms<3>(20, Scales::any, 20);
     std::vector<Instance<decltype(pot)>> instances;
+    instances.reserve(places.size());
     for (const auto& place : places) instances.emplace_back(pot, place);
     const InstanceSet set(instances);
     const auto index = build<Bvh>(set);

@@ -34,6 +34,7 @@ CLI::Validator number(bool good(const std::string&), const std::string& wanted) 
 
 std::vector<std::string_view> names_of(const std::vector<const CLI::App*>& verbs) {
     std::vector<std::string_view> names;
+    names.reserve(verbs.size());
     for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
     return names;
 }

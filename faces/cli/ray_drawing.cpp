@@ -31,6 +31,7 @@ std::string runs_text(const std::vector<std::size_t>& numbers) {
 RayFrame::RayFrame(const FlatScene& scene, const std::vector<RayView>& views) {
     // Show all cells, also the visited ones where the others are not drawn.
     std::vector<const FlatStructure*> flats;
+    flats.reserve(views.size());
     for (const auto& v : views) flats.push_back(&v.structure.flat);
     shown = frame_of(scene, flats);
     for (const auto& v : views)

@@ -22,9 +22,9 @@ PeerBuild build_like(const Peer& peer, WideBuilder builder) {
 }
 
 double build_seconds(const Peer& peer, const TriangleMesh<float>& mesh, int repeats) {
-    std::vector<double> times;
-    for (int r = 0; r < repeats; ++r)
-        times.push_back(peer.build(mesh, build_like(peer, WideBuilder::medium), {})->build_seconds);
+    std::vector<double> times(static_cast<std::size_t>(repeats));
+    for (double& time : times)
+        time = peer.build(mesh, build_like(peer, WideBuilder::medium), {})->build_seconds;
     return median(times);
 }
 
