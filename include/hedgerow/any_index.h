@@ -52,15 +52,12 @@ public:
     /// InputError where the structure does not answer queries of this probe.
     template <AnsweringQuery Q, class Count, class... Arguments>
     auto answer(Count& count, Arguments&&... arguments) const {
-        if constexpr (!std::same_as<Count, Visits>)
-            return counted<Q>(nullptr, arguments...);
-        else
-            return in_ieee_mode([&] {
-                Q query(*this, arguments...);
-                Virtual<Q> asked(query);
-                walk(asked, count);
-                return query.answer();
-            });
+        return in_ieee_mode([&] {
+            Q query(*this, arguments...);
+            Virtual<Q> asked(query);
+            walk_and_count(asked, count);
+            return query.answer();
+        });
     }
 
     /// Whether the structure answers ray queries.
@@ -97,10 +94,20 @@ public:
         return counted<Overlapping<AnyIndex>>(visits, box, found);
     }
 
-    /// The structure's cells, parents before their children (walks/outline.h).
-    virtual std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits = {}) const = 0;
+    /// Calls a function for the structure's cells, parents before their children (walks/outline.h).
+    virtual void visit_outline(const OutlineLimits<D>& limits, CellVisitor<D> visit) const = 0;
+    /// The structure's cells, in a list.
+    std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits = {}) const {
+        std::vector<OutlineCell<D>> cells;
+        visit_outline(limits, [&](const OutlineCell<D>& cell) { return cells.push_back(cell), true; });
+        return cells;
+    }
     /// The walk of a ray's closest-hit query, step by step (trace.h).
-    virtual Trace<T, D> trace(const Ray<T, D>& ray) const = 0;
+    Trace<T, D> trace(const Ray<T, D>& ray) const {
+        return detail::trace_over(*this, ray, [&](const OutlineLimits<D>& limits, CellVisitor<D> visit) {
+            visit_outline(limits, visit);
+        });
+    }
     /// Whether single primitives can be inserted and erased, and whether the structure can be refitted to
     /// primitives that moved. `insert`, `erase` and `refit` throw InputError where the structure cannot do
     /// it; the index has to be built again then.
@@ -114,13 +121,27 @@ public:
 protected:
     virtual KernelUse closest_hits_uncounted(const RayArray<T, D>& rays, std::span<Hit<T>> hits) const = 0;
     virtual KernelUse any_hits_uncounted(const RayArray<T, D>& rays, std::span<bool> hits) const = 0;
-    virtual void walk(VirtualQuery<RayProbe<T, D>>& query, Visits& count) const = 0;
+    virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
     virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
 
 private:
     static constexpr T anywhere = std::numeric_limits<T>::max();
 
+    /// Walks. The count is a Visits or a NoVisits, or for rays also a TraceLog.
+    template <class Probe, class Count>
+    void walk_and_count(VirtualQuery<Probe>& query, Count& count) const {
+        if constexpr (std::same_as<std::remove_const_t<Count>, NoVisits>) {
+            Visits nobodys;
+            walk_and_count(query, nobodys);
+        } else if constexpr (std::same_as<Probe, RayProbe<T, D>> && std::same_as<Count, Visits>) {
+            detail::TraceLog<T, D> log(false);
+            walk(query, log);
+            count += log.visits;
+        } else {
+            walk(query, count);
+        }
+    }
     /// `answer`, whose visits are added to `visits` if that is not null.
     template <class Q, class... Arguments>
     auto counted(Visits* visits, Arguments&&... arguments) const {

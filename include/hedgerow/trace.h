@@ -41,10 +41,13 @@ struct Trace {
 
 namespace detail {
 
-/// A Count that records the walk. The query adds the limit and the candidates that it is offered.
+/// A Count that records the walk too, unless recording is switched off. The query adds the limit and the
+/// candidates that it is offered.
 template <std::floating_point T, int D>
 class TraceLog {
 public:
+    explicit TraceLog(bool recording = true) : recording_(recording) {}
+
     struct Entry {
         Place place;
         std::optional<Interval<T>> inside;
@@ -54,14 +57,30 @@ public:
         std::vector<std::pair<PrimitiveId, T>> offered = {};
     };
 
-    void node(const Place& place) { visits.node(), add(place, std::nullopt); }
-    void node(const Place& place, const Interval<T>& inside) { visits.node(), add(place, inside); }
-    void leaf(std::uint64_t count, const Place& place) { visits.leaf(count), look_into(place, std::nullopt); }
-    void leaf(std::uint64_t count, const Place& place, const Interval<T>& inside) {
-        visits.leaf(count), look_into(place, inside);
+    void node(const Place& place) {
+        visits.node();
+        if (recording_) add(place, std::nullopt);
     }
-    void own(PrimitiveId id) { visits.own(id), entries.back().looked_into = true; }
-    void skip(PrimitiveId id) { visits.skip(id), entries.back().skipped.push_back(id); }
+    void node(const Place& place, const Interval<T>& inside) {
+        visits.node();
+        if (recording_) add(place, inside);
+    }
+    void leaf(std::uint64_t count, const Place& place) {
+        visits.leaf(count);
+        if (recording_) look_into(place, std::nullopt);
+    }
+    void leaf(std::uint64_t count, const Place& place, const Interval<T>& inside) {
+        visits.leaf(count);
+        if (recording_) look_into(place, inside);
+    }
+    void own(PrimitiveId id) {
+        visits.own(id);
+        if (recording_) entries.back().looked_into = true;
+    }
+    void skip(PrimitiveId id) {
+        visits.skip(id);
+        if (recording_) entries.back().skipped.push_back(id);
+    }
 
     Visits visits;
     T limit = T(0);
@@ -76,6 +95,8 @@ private:
         if (entries.empty() || entries.back().place != place) add(place, inside);
         entries.back().looked_into = true;
     }
+
+    bool recording_;
 };
 
 template <class Set>
@@ -100,16 +121,20 @@ private:
     Log& log_;
 };
 
+/// Calls a function for the cells of a structure within limits (`visit_outline`).
+template <int D>
+using CellLister = FunctionRef<void(const OutlineLimits<D>&, CellVisitor<D>)>;
+
 /// The steps of a recorded walk, with the cells that its places identify. Only visited cells and their
 /// siblings are listed. Empty if a visited cell is not within the limits.
-template <class S, class T, int D>
-std::vector<TraceStep<T, D>> steps_of(const S& structure, const RayProbe<T, D>& probe,
+template <class T, int D>
+std::vector<TraceStep<T, D>> steps_of(const CellLister<D>& visit_cells, const RayProbe<T, D>& probe,
                                       const TraceLog<T, D>& log, const OutlineLimits<D>& limits) {
     const auto key = [](const Place& p) { return std::uint64_t(p.first) << 32 | p.second; };
     std::unordered_map<std::uint64_t, std::optional<OutlineCell<D>>> visited;
     for (const auto& e : log.entries) visited[key(e.place)] = std::nullopt;
     // Find the cell of each visited place.
-    visit_outline(structure, limits, [&](const OutlineCell<D>& cell) {
+    visit_cells(limits, [&](const OutlineCell<D>& cell) {
         const auto found = visited.find(key(cell.place));
         if (found == visited.end() || found->second) return false;
         found->second = cell;
@@ -149,6 +174,26 @@ Box<double, D> around(const RayProbe<T, D>& probe, const Box<T, D>& scene) {
     return {box.low - margin, box.high + margin};
 }
 
+/// Traces the query of a ray's closest hit on an index whose cells `visit_cells` lists.
+template <class Index, std::floating_point T, int D>
+Trace<T, D> trace_over(const Index& index, const Ray<T, D>& ray,
+                       const std::type_identity_t<CellLister<D>>& visit_cells) {
+    TraceLog<T, D> log;
+    Trace<T, D> found;
+    found.hit = index.template answer<TracedClosestHit<typename Index::Primitives>>(log, ray, log);
+    found.visits = log.visits;
+    if (log.entries.empty()) return found;
+    in_ieee_mode([&] {
+        const RayProbe<T, D> probe(ray, index.bounds());
+        OutlineLimits<D> near;
+        near.within = around(probe, index.bounds());
+        found.steps = steps_of<T, D>(visit_cells, probe, log, near);
+        // A ray from very far visits cells outside that box: search all cells.
+        if (found.steps.empty()) found.steps = steps_of<T, D>(visit_cells, probe, log, {});
+    });
+    return found;
+}
+
 }  // namespace detail
 
 /// Traces the query of a ray's closest hit. The walk and its visits are those of `closest_hit` without a
@@ -157,22 +202,10 @@ Box<double, D> around(const RayProbe<T, D>& probe, const Box<T, D>& scene) {
 template <class S, class P>
 Trace<typename P::Scalar, P::dimension> trace(const Index<S, P>& index,
                                               const Ray<typename P::Scalar, P::dimension>& ray) {
-    using T = typename P::Scalar;
     constexpr int D = P::dimension;
-    detail::TraceLog<T, D> log;
-    Trace<T, D> found;
-    found.hit = index.template answer<detail::TracedClosestHit<P>>(log, ray, log);
-    found.visits = log.visits;
-    if (log.entries.empty()) return found;
-    in_ieee_mode([&] {
-        const RayProbe<T, D> probe(ray, index.bounds());
-        OutlineLimits<D> near;
-        near.within = detail::around(probe, index.bounds());
-        found.steps = detail::steps_of(index.structure(), probe, log, near);
-        // A ray from very far visits cells outside that box: search all cells.
-        if (found.steps.empty()) found.steps = detail::steps_of(index.structure(), probe, log, {});
+    return detail::trace_over(index, ray, [&](const OutlineLimits<D>& limits, CellVisitor<D> visit) {
+        visit_outline(index.structure(), limits, visit);
     });
-    return found;
 }
 
 }  // namespace hedgerow

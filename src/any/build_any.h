@@ -9,6 +9,11 @@
 
 namespace hedgerow::detail {
 
+[[noreturn]] inline void refuse(const std::string& structure, const std::string& wanted,
+                                const char* instead) {
+    throw InputError("structure '" + structure + "' cannot " + wanted + ": " + instead);
+}
+
 template <class S, class P>
 class Holder final : public AnyIndex<typename P::Scalar, P::dimension> {
 public:
@@ -53,9 +58,9 @@ public:
         else
             refuse_rays();
     }
-    void walk(VirtualQuery<RayProbe<T, D>>& query, Visits& count) const override {
+    void walk(VirtualQuery<RayProbe<T, D>>& query, TraceLog<T, D>& log) const override {
         if constexpr (rays)
-            index_.ask(query, count);
+            index_.ask(query, log);
         else
             refuse_rays();
     }
@@ -63,14 +68,8 @@ public:
         index_.ask(query, count);
     }
     void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const override { index_.ask(query, count); }
-    std::vector<OutlineCell<D>> outline(const OutlineLimits<D>& limits) const override {
-        return hedgerow::outline(index_.structure(), limits);
-    }
-    Trace<T, D> trace(const Ray<T, D>& ray) const override {
-        if constexpr (rays)
-            return hedgerow::trace(index_, ray);
-        else
-            refuse_rays();
+    void visit_outline(const OutlineLimits<D>& limits, CellVisitor<D> visit) const override {
+        hedgerow::visit_outline(index_.structure(), limits, visit);
     }
 
     bool changes_one_by_one() const override { return one_by_one; }
@@ -101,10 +100,10 @@ private:
     static constexpr bool one_by_one = ChangesOneByOne<S, P>;
     static constexpr bool fits_again = Refittable<S, P>;
     [[noreturn]] void refuse_rays() const {
-        refuse("answer rays", "ask it for neighbours, or take another structure");
+        hedgerow::detail::refuse(name_, "answer rays", "ask it for neighbours, or take another structure");
     }
-    [[noreturn]] void refuse(const std::string& wanted, const char* instead = "build it again") const {
-        throw InputError("structure '" + name_ + "' cannot " + wanted + ": " + instead);
+    [[noreturn]] void refuse(const std::string& wanted) const {
+        hedgerow::detail::refuse(name_, wanted, "build it again");
     }
 
     std::string name_;

@@ -6,60 +6,39 @@
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/parallel/watched_executor.h>
 
-#include "motion.h"
 #include "scene_questions.h"
 
 namespace hedgerow::measure {
 
 namespace {
 
-template <class T>
-const char* noun(const TriangleMesh<T>&) {
-    return "triangles";
-}
-template <class T, int D>
-const char* noun(const SphereSet<T, D>&) {
-    return "spheres";
-}
-template <class T, int D>
-const char* noun(const PointCloud<T, D>&) {
-    return "points";
-}
-template <class T>
-const char* noun(const SegmentSet<T>&) {
-    return "segments";
-}
-
-template <class P>
+template <std::floating_point T, int D>
 class Measuring {
 public:
-    using T = typename P::Scalar;
-    static constexpr int D = P::dimension;
     using Any = AnyIndex<T, D>;
     using Set = Questions<T, D>;
 
-    Measuring(const P& primitives, const MeasureOptions& options, Executor& executor,
+    Measuring(const Scene<T, D>& scene, const MeasureOptions& options, Executor& executor,
               const Progress& progress)
-        : primitives_(primitives),
+        : scene_(scene),
           o_(options),
           building_(&executor == &serial_executor() ? Clock::thread : Clock::wall),
           progress_(progress),
           executor_(executor, {{}, progress.cancel}) {
-        if (primitives.size() == 0)
-            throw InputError("there are no primitives, so there is nothing to compare");
+        if (scene.size() == 0) throw InputError("there are no primitives, so there is nothing to compare");
         // Build the default structure, whose answers are the reference for all others.
-        oracle_ = build_any("bvh", primitives, executor_);
-        const SceneQuestions<P> scene(primitives, *oracle_, options);
-        auto all = scene.all();
+        oracle_ = scene.build("bvh", executor_);
+        const SceneQuestions questions(scene, *oracle_, options);
+        auto all = questions.all();
         questions_ = std::move(all.questions);
         ray_sets_ = std::move(all.ray_sets);
-        seen_from_outside_ = scene.seen_from_outside();
+        seen_from_outside_ = questions.seen_from_outside();
         Visits ignored;
         for (const auto& q : questions_) answers_.push_back(q->answers(*oracle_, ignored, progress_));
     }
 
     Comparison run(std::span<const std::string> structures) {
-        Comparison c{{}, noun(primitives_), primitives_.size(), D, {}, ray_sets_, seen_from_outside_, true};
+        Comparison c{{}, scene_.noun(), scene_.size(), D, {}, ray_sets_, seen_from_outside_, true};
         // Build all structures and count what their queries visit.
         steps_ = structures.size() * (static_cast<std::size_t>(o_.rounds) * questions_.size() + 2);
         try {
@@ -106,8 +85,7 @@ private:
         double spent = 0;
         do {
             c.index.reset();
-            seconds.push_back(
-                seconds_of([&] { c.index = build_any(structure, primitives_, executor_); }, building_));
+            seconds.push_back(seconds_of([&] { c.index = scene_.build(structure, executor_); }, building_));
             spent += seconds.back();
         } while (static_cast<int>(seconds.size()) < o_.rounds && spent < o_.build_seconds);
         const Any& index = *c.index;
@@ -228,7 +206,7 @@ private:
 
     /// Times erasing up to 1000 primitives and inserting them again.
     void change(Built& c) {
-        const std::size_t n = primitives_.size(), some = std::min<std::size_t>(n, 1000);
+        const std::size_t n = scene_.size(), some = std::min<std::size_t>(n, 1000);
         const std::uint64_t first = scattered(o_.seed) % n;
         std::vector<double> out, in;
         for (int round = 0; round < o_.rounds; ++round) {
@@ -255,16 +233,16 @@ private:
     /// Times a refit over a copy of the primitives that is moved, and compares its queries with those of an
     /// index that is built after the motion.
     void refit(Built& c) {
-        // Refit an index over the copy.
-        P moved = primitives_;
-        const auto fitted = build_any(c.cost.structure, moved, executor_);
-        Bend<T, D>(oracle_->bounds())(moved);
+        // Build an index over the copy, and refit it.
+        const auto moving = scene_.copy();
+        const auto fitted = moving->build(c.cost.structure, executor_);
+        moving->move(Bend<T, D>(oracle_->bounds()));
         std::vector<double> seconds, slowdown;
         double drift = 1;
         for (int round = 0; round < o_.rounds; ++round)
             seconds.push_back(seconds_of([&] { drift = fitted->refit(executor_); }, building_));
         // Build another index, check that both give the same answers, and compare their times.
-        const auto anew = build_any(c.cost.structure, moved, executor_);
+        const auto anew = moving->build(c.cost.structure, executor_);
         expect_same(c, *fitted, *anew, "after a refit");
         for (int round = 0; round < o_.rounds; ++round) {
             double refitted = 0, rebuilt = 0;
@@ -294,7 +272,7 @@ private:
                                    "' (seed " + std::to_string(o_.seed) + "): please report this scene");
     }
 
-    const P& primitives_;
+    const Scene<T, D>& scene_;
     const MeasureOptions& o_;
     Clock building_;  // wall for several threads: no thread's clock shows all their work
     const Progress& progress_;
@@ -313,7 +291,8 @@ private:
 template <class P>
 Comparison compare(const P& primitives, std::span<const std::string> structures,
                    const MeasureOptions& options, Executor& executor, const Progress& progress) {
-    return Measuring<P>(primitives, options, executor, progress).run(structures);
+    const SceneOf<P> scene(primitives);
+    return Measuring(scene, options, executor, progress).run(structures);
 }
 
 #define HEDGEROW_COMPARE(P)                                                                               \

@@ -12,18 +12,16 @@
 
 namespace hedgerow::measure {
 
-template <class P>
+template <std::floating_point T, int D>
 class SceneQuestions {
 public:
-    using T = typename P::Scalar;
-    static constexpr int D = P::dimension;
     using Set = Questions<T, D>;
     using Rays = std::vector<Ray<T, D>>;
     /// How many neighbours a question for the nearest asks for.
     static constexpr std::size_t neighbours = 8;
 
-    SceneQuestions(const P& primitives, const AnyIndex<T, D>& index, const MeasureOptions& options)
-        : set_(view_of(primitives)), index_(index), box_(index.bounds()), o_(options) {}
+    SceneQuestions(const Scene<T, D>& scene, const AnyIndex<T, D>& index, const MeasureOptions& options)
+        : scene_(scene), index_(index), box_(index.bounds()), o_(options) {}
 
     /// The queries, and the number of rays in each set that hit nothing.
     struct All {
@@ -33,32 +31,32 @@ public:
     All all() const {
         All found;
         std::vector<std::pair<const char*, Rays>> sets;
-        if constexpr (!PointSet<ViewOf<P>>) {
+        if (scene_.has_surfaces()) {
             sets = {
                 {"coherent", coherent_rays()}, {"incoherent", incoherent_rays()}, {"random", random_rays()}};
             for (const auto& [kind, rays] : sets)
                 if (!rays.empty()) found.ray_sets.push_back({kind, rays.size(), missed(rays)});
         }
         for_each_question<T, D>([&]<class Question>(Question) {
-            if constexpr (answered_by<Question, P>)
-                if (o_.asks.empty() ||
-                    std::find(o_.asks.begin(), o_.asks.end(), Question::name) != o_.asks.end())
-                    add<Question>(sets, found.questions);
+            // Where there are no surfaces, there are no sets of rays, and so no queries by rays.
+            if (o_.asks.empty() || std::find(o_.asks.begin(), o_.asks.end(), Question::name) != o_.asks.end())
+                add<Question>(sets, found.questions);
         });
         return found;
     }
     /// The share of the primitives that are visible from the eye of the coherent rays, estimated from a
     /// sample; 1 if the eye is in the scene's box.
     double seen_from_outside() const {
-        if constexpr (D == 3 && requires { shape(0); }) {
+        if constexpr (D == 3) {
             const Vec<T, 3> eye(camera().eye);
-            if (box_.contains(eye)) return 1;
+            if (!scene_.has_surfaces() || box_.contains(eye)) return 1;
             constexpr std::size_t some = 2000;
             // Cast rays from the eye to random places on random primitives.
             Rays rays;
             for (std::size_t i = 0; i < some; ++i) {
                 Random chance = random(of_sights, i);
-                const auto place = place_on(shape(chance.bits() % set_.size()), chance);
+                const std::size_t primitive = chance.bits() % scene_.size();
+                const auto place = scene_.place_on(primitive, chance);
                 rays.push_back({eye, place.point - eye});
             }
             std::vector<Hit<T>> hits(some);
@@ -120,7 +118,7 @@ private:
     }
     /// The middle of a random primitive's box.
     Vec<T, D> middle(std::size_t i) const {
-        return set_.bounds(random(of_places, i).bits() % set_.size()).center();
+        return scene_.middle(random(of_places, i).bits() % scene_.size());
     }
     T small() const { return length(box_.extent()) / 200; }
     std::vector<Ball<T, D>> balls() const {
@@ -170,7 +168,7 @@ private:
         Rays all;
         const auto size_of_box = static_cast<double>(max_component(box_.extent()));
         if (!(size_of_box > 0)) return all;
-        const SurfaceSamples samples([this](std::size_t i) { return shape(i); }, set_.size(), size_of_box);
+        const SurfaceSamples samples(scene_, size_of_box);
         if (samples.empty()) return all;
         // Start off the surface by more than its rounding error, so that the ray does not hit it at once.
         const T off =
@@ -183,19 +181,8 @@ private:
         }
         return all;
     }
-    static constexpr bool has_shapes = requires(const ViewOf<P>& v) { v.triangle(0); }
-    || requires(const ViewOf<P>& v) { v.sphere(0); }
-    || requires(const ViewOf<P>& v) { v.segment(0); };
-    auto shape(std::size_t i) const requires has_shapes {
-        if constexpr (requires { set_.triangle(i); })
-            return set_.triangle(i);
-        else if constexpr (requires { set_.sphere(i); })
-            return set_.sphere(i);
-        else
-            return set_.segment(i);
-    }
 
-    ViewOf<P> set_;
+    const Scene<T, D>& scene_;
     const AnyIndex<T, D>& index_;
     Box<T, D> box_;
     const MeasureOptions& o_;

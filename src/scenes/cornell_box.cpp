@@ -56,7 +56,7 @@ TriangleMesh<double> block(const Quad& top, const Pieces& n, detail::WeldedMesh 
     return std::move(to.mesh);
 }
 
-TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
+TriangleMesh<double> build_cornell_box(std::uint64_t size, const Progress& progress) {
     // Triangles of all faces in (y, z), in (z, x) and in (x, y): two per piece.
     const Pieces pieces = detail::nearest_box_split(size, {12, 10, 10});
     TriangleMesh<double> mesh;
@@ -72,7 +72,7 @@ TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
 
 template <class T>
 TriangleMesh<T> cornell_box(std::uint64_t size, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, progress); });
+    return detail::in_precision<T>([&] { return build_cornell_box(size, progress); });
 }
 template TriangleMesh<float> cornell_box<float>(std::uint64_t, const Progress&);
 template TriangleMesh<double> cornell_box<double>(std::uint64_t, const Progress&);

@@ -11,7 +11,7 @@
 namespace hedgerow {
 namespace {
 
-TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
+TriangleMesh<double> build_cube(std::uint64_t size, const Progress& progress) {
     const auto pieces = detail::nearest_box_split(size, {4, 4, 4});
     detail::WeldedMesh to(progress, size);
     for (int axis = 0; axis < 3; ++axis)
@@ -35,7 +35,7 @@ TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
 
 template <class T>
 TriangleMesh<T> cube(std::uint64_t size, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, progress); });
+    return detail::in_precision<T>([&] { return build_cube(size, progress); });
 }
 template TriangleMesh<float> cube<float>(std::uint64_t, const Progress&);
 template TriangleMesh<double> cube<double>(std::uint64_t, const Progress&);

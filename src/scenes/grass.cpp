@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t triangles_a_blade = 3;
 constexpr double shortest = 0.02, longest = 0.05;
-constexpr double widest = 1.0 / 256;
+constexpr double widest_blade = 1.0 / 256;
 
 /// A uniform random point of a triangle: a point of the parallelogram, folded over its diagonal.
 Vec3d point_of(const TriangleMesh<double>& mesh, const TriangleIndices& t, Random& random) {
@@ -39,13 +39,13 @@ void grow_blade(TriangleMesh<double>& mesh, const Vec3d& root, double width, Ran
     mesh.triangles.push_back({first + 2, first + 3, first + 4});
 }
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+TriangleMesh<double> build_grass(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     TriangleMesh<double> mesh = terrain<double>(size / 8, seed, detail::part_of(progress));
     const std::size_t ground = mesh.triangles.size();
     const std::uint64_t blades = size > ground ? (size - ground + 1) / triangles_a_blade : 0;
     // A blade is at most a third as wide as the mean distance between blades.
     const double spacing = 1 / std::sqrt(static_cast<double>(std::max<std::uint64_t>(blades, 1)));
-    const double width = std::min(widest, spacing / 3);
+    const double width = std::min(widest_blade, spacing / 3);
     mesh.vertices.reserve(mesh.vertices.size() + 5 * blades);
     mesh.triangles.reserve(ground + triangles_a_blade * blades);
     for (std::uint64_t i = 0; i < blades; ++i) {
@@ -61,7 +61,7 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progres
 
 template <class T>
 TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, seed, progress); });
+    return detail::in_precision<T>([&] { return build_grass(size, seed, progress); });
 }
 template TriangleMesh<float> grass<float>(std::uint64_t, std::uint64_t, const Progress&);
 template TriangleMesh<double> grass<double>(std::uint64_t, std::uint64_t, const Progress&);

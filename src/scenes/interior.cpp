@@ -40,7 +40,7 @@ bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t 
     return count >= size;
 }
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+TriangleMesh<double> build_interior(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     const std::vector<Thing> things = flat();
     // Find the least level that fills the size. Counts grow with the level.
     std::uint64_t below = 0, enough = 0;
@@ -60,7 +60,7 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progres
 
 template <class T>
 TriangleMesh<T> interior(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
-    return in_precision<T>([&] { return build(size, seed, progress); });
+    return in_precision<T>([&] { return build_interior(size, seed, progress); });
 }
 template TriangleMesh<float> interior<float>(std::uint64_t, std::uint64_t, const Progress&);
 template TriangleMesh<double> interior<double>(std::uint64_t, std::uint64_t, const Progress&);

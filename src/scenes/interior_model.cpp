@@ -144,17 +144,17 @@ void Model::wall(const Pose& pose, double length, double height, double thicknes
     // Make each vertex when it is first used.
     constexpr std::uint32_t none = ~std::uint32_t{0};
     std::vector<std::uint32_t> known(2 * x.size() * z.size(), none);
-    // A corner of the lattice on the front (y < 0) or the back.
-    struct Corner {
+    // The lattice has corners on the front (y < 0) and on the back.
+    struct LatticeCorner {
         std::size_t i, k, back;
     };
-    const auto known_or_new = [&](const Corner& c) {
+    const auto known_or_new = [&](const LatticeCorner& c) {
         std::uint32_t& id = known[(c.i * z.size() + c.k) * 2 + c.back];
         if (id == none) id = vertex(pose, {x[c.i], c.back ? thickness / 2 : -thickness / 2, z[c.k]});
         return id;
     };
     // New vertices are made from the last corner to the first, by every compiler.
-    const auto face = [&](const std::array<Corner, 4>& corners) {
+    const auto face = [&](const std::array<LatticeCorner, 4>& corners) {
         std::array<std::uint32_t, 4> id{};
         for (std::size_t c = 4; c-- > 0;) id[c] = known_or_new(corners[c]);
         quad(id[0], id[1], id[2], id[3]);

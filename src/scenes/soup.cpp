@@ -12,7 +12,7 @@
 namespace hedgerow {
 namespace {
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+TriangleMesh<double> build_soup(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     constexpr std::uint64_t most = (std::uint64_t{1} << 32) / 3;
     if (size > most)
         throw UsageError("gen:soup: " + std::to_string(size) + " triangles are too many; ask for at most " +
@@ -36,7 +36,7 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progres
 
 template <class T>
 TriangleMesh<T> soup(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, seed, progress); });
+    return detail::in_precision<T>([&] { return build_soup(size, seed, progress); });
 }
 template TriangleMesh<float> soup<float>(std::uint64_t, std::uint64_t, const Progress&);
 template TriangleMesh<double> soup<double>(std::uint64_t, std::uint64_t, const Progress&);

@@ -65,7 +65,7 @@ TriangleMesh<double> bowl(std::uint64_t size, const Progress& progress) {
     return mesh;
 }
 
-TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
+TriangleMesh<double> build_stadium(std::uint64_t size, const Progress& progress) {
     constexpr std::uint64_t default_total = 54'056, default_teapot = 6'320;
     const TriangleMesh<double> pot =
         teapot<double>(size * default_teapot / default_total, detail::part_of(progress));
@@ -78,7 +78,7 @@ TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
 
 template <class T>
 TriangleMesh<T> teapot_in_stadium(std::uint64_t size, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, progress); });
+    return detail::in_precision<T>([&] { return build_stadium(size, progress); });
 }
 template TriangleMesh<float> teapot_in_stadium<float>(std::uint64_t, const Progress&);
 template TriangleMesh<double> teapot_in_stadium<double>(std::uint64_t, const Progress&);

@@ -64,7 +64,7 @@ void add_patch(detail::WeldedMesh& to, const Patch& patch, const detail::Split& 
     }
 }
 
-TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
+TriangleMesh<double> build_teapot(std::uint64_t size, const Progress& progress) {
     // 32 patches have two triangles per cell. At the two poles, one patch in each quarter loses one triangle
     // per column. In one column handle and spout would be flat, so one column is only for sizes that two
     // cannot reach.
@@ -84,7 +84,7 @@ TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
 
 template <class T>
 TriangleMesh<T> teapot(std::uint64_t size, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, progress); });
+    return detail::in_precision<T>([&] { return build_teapot(size, progress); });
 }
 template TriangleMesh<float> teapot<float>(std::uint64_t, const Progress&);
 template TriangleMesh<double> teapot<double>(std::uint64_t, const Progress&);

@@ -33,7 +33,7 @@ double value_noise(std::uint64_t seed, const Vec2d& p) {
     return low + product(weight[1], high - low);
 }
 
-double height(std::uint64_t seed, Vec2d p) {
+double height_at(std::uint64_t seed, Vec2d p) {
     double sum = 0, amplitude = relief;
     p = p * coarsest_cells;
     for (int i = 0; i < octaves; ++i) {
@@ -45,7 +45,7 @@ double height(std::uint64_t seed, Vec2d p) {
     return sum;
 }
 
-TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+TriangleMesh<double> build_terrain(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     const detail::Split split = detail::nearest_split(size, {2});
     const auto columns = static_cast<std::uint32_t>(split.columns),
                rows = static_cast<std::uint32_t>(split.rows);
@@ -57,7 +57,7 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progres
         for (std::uint32_t i = 0; i <= columns; ++i) {
             detail::step(progress, mesh.vertices.size(), mesh.vertices.capacity());
             const Vec2d p(static_cast<double>(i) / columns, static_cast<double>(k) / rows);
-            mesh.vertices.push_back({p[0], p[1], height(seed, p)});
+            mesh.vertices.push_back({p[0], p[1], height_at(seed, p)});
         }
     // Add two triangles per cell.
     for (std::uint32_t k = 0; k < rows; ++k) {
@@ -75,7 +75,7 @@ TriangleMesh<double> build(std::uint64_t size, std::uint64_t seed, const Progres
 
 template <class T>
 TriangleMesh<T> terrain(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, seed, progress); });
+    return detail::in_precision<T>([&] { return build_terrain(size, seed, progress); });
 }
 template TriangleMesh<float> terrain<float>(std::uint64_t, std::uint64_t, const Progress&);
 template TriangleMesh<double> terrain<double>(std::uint64_t, std::uint64_t, const Progress&);

@@ -17,7 +17,7 @@ Vec3d turned(const Vec3d& p) {
     return {product(cosine, q[0]) + product(sine, q[2]), q[1], product(cosine, q[2]) - product(sine, q[0])};
 }
 
-TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
+TriangleMesh<double> build_turned_stadium(std::uint64_t size, const Progress& progress) {
     TriangleMesh<double> mesh = teapot_in_stadium<double>(size, progress);
     for (Vec3d& p : mesh.vertices) p = turned(p);
     return mesh;
@@ -27,7 +27,7 @@ TriangleMesh<double> build(std::uint64_t size, const Progress& progress) {
 
 template <class T>
 TriangleMesh<T> turned_stadium(std::uint64_t size, const Progress& progress) {
-    return detail::in_precision<T>([&] { return build(size, progress); });
+    return detail::in_precision<T>([&] { return build_turned_stadium(size, progress); });
 }
 template TriangleMesh<float> turned_stadium<float>(std::uint64_t, const Progress&);
 template TriangleMesh<double> turned_stadium<double>(std::uint64_t, const Progress&);

@@ -7,6 +7,7 @@
 #include <hedgerow/geometry/lattice.h>
 #include <hedgerow/geometry/overlap.h>
 #include <hedgerow/geometry/polytope.h>
+#include <hedgerow/parallel/executor.h>
 #include <hedgerow/walks/orthants.h>
 #include <hedgerow/walks/planes.h>
 #include <hedgerow/walks/volumes.h>
@@ -52,6 +53,10 @@ struct OutlineLimits {
 
     bool allow(const OutlineCell<D>& c) const { return c.level <= levels && overlap(c.box, within); }
 };
+
+/// A function that is called for each cell. It returns whether the cell's children are wanted too.
+template <int D>
+using CellVisitor = FunctionRef<bool(const OutlineCell<D>&)>;
 
 template <class S>
 inline constexpr int dimension_of =
