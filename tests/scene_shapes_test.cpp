@@ -177,6 +177,25 @@ TEST(Cube, IsClosed) {
     EXPECT_EQ(cube<double>(12).size(), 12u);
 }
 
+TEST(Boulder, IsClosedAndItsTrianglesAreAlike) {
+    for (const unsigned size : {100u, 1000u, 30'000u}) {
+        const auto mesh = boulder<double>(size, 2);
+        EXPECT_EQ(open_edges(mesh), 0u) << size;
+        EXPECT_EQ(mesh.vertices.size(), mesh.size() / 2 + 2);  // Euler's formula: V = F / 2 + 2 if closed
+        EXPECT_GT(signed_volume(mesh), 2) << "faces outward";
+        // No edge is much longer than the others.
+        double sum = 0, longest = 0;
+        for (const auto& t : mesh.triangles) {
+            const auto [a, b, c] = triangle(mesh, t);
+            for (const double edge : {length(b - a), length(c - b), length(a - c)})
+                sum += edge, longest = std::max(longest, edge);
+        }
+        EXPECT_LT(longest, 6 * sum / static_cast<double>(3 * mesh.size())) << size;
+    }
+    const Vec3d extent = bounds(boulder<double>(10'000)).extent();
+    EXPECT_GT(extent[2], extent[0]) << "higher than wide";
+}
+
 TEST(CornellBox, IsOpenOnlyToTheFrontAndTheFloor) {
     const auto mesh = cornell_box<double>(32);
     EXPECT_EQ(mesh.size(), 32u);

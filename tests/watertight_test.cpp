@@ -10,7 +10,7 @@ namespace {
 
 /// A closed mesh without symmetry: a finely cut cube whose every vertex is moved outward by its own amount.
 template <class T>
-TriangleMesh<T> boulder() {
+TriangleMesh<T> bumpy_cube() {
     TriangleMesh<T> mesh = cube<T>(1200);
     for (auto& v : mesh.vertices) {
         Random random(23, static_cast<std::uint64_t>(std::lround(double(v[0]) * 1e3) * 4000003 +
@@ -39,7 +39,7 @@ TYPED_TEST_SUITE(Watertight, Scalars);
 
 TYPED_TEST(Watertight, NoRayLeaksOutOfAClosedMesh) {
     using T = TypeParam;
-    const auto mesh = boulder<T>();
+    const auto mesh = bumpy_cube<T>();
     for (const std::string spec : {"bvh", "bvh:builder=midpoint", "wide", "kdtree", "grid", "octree"}) {
         SCOPED_TRACE(spec);
         const std::size_t count = in_long_runs(spec == "wide" ? 100000000 : 10000000, 1000000);

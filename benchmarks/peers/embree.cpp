@@ -57,7 +57,7 @@ RTCRay ray_of(const Ray3f& r) {
 }
 
 struct Packets16 final : PeerIndex::Packets {
-    explicit Packets16(std::span<const Ray3f> from) : rays(from.size() / 16) {
+    Packets16(std::span<const Ray3f> from, bool together) : rays(from.size() / 16), coherent(together) {
         for (std::size_t p = 0; p < rays.size(); ++p)
             for (std::size_t i = 0; i < 16; ++i) {
                 const Ray3f& r = from[16 * p + i];
@@ -69,6 +69,7 @@ struct Packets16 final : PeerIndex::Packets {
             }
     }
     std::vector<RTCRay16> rays;
+    bool coherent;
 };
 
 class EmbreeIndex final : public PeerIndex {
@@ -123,8 +124,8 @@ public:
         for (const Ray3f& r : rays) found += occluded(r, context);
         return found;
     }
-    std::unique_ptr<Packets> packets(std::span<const Ray3f> rays) const override {
-        return std::make_unique<Packets16>(rays);
+    std::unique_ptr<Packets> packets(std::span<const Ray3f> rays, bool coherent) const override {
+        return std::make_unique<Packets16>(rays, coherent);
     }
     std::size_t closest(const Packets& packets) const override {
         return by_sixteen(packets, [&](const int* valid, RTCIntersectContext* context, const RTCRay16& rays) {
@@ -169,12 +170,13 @@ private:
         const FlushToZero flush;
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        const auto& asked = static_cast<const Packets16&>(packets);
+        context.flags =
+            asked.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         alignas(64) std::array<int, 16> valid;
         valid.fill(-1);
         std::size_t found = 0;
-        for (const RTCRay16& rays : static_cast<const Packets16&>(packets).rays)
-            found += hit(valid.data(), &context, rays);
+        for (const RTCRay16& rays : asked.rays) found += hit(valid.data(), &context, rays);
         return found;
     }
 

@@ -22,15 +22,17 @@ namespace {
 
 struct BenchArguments : Common {
     std::vector<std::string> scenes;
-    std::string sets = "primary,diffuse,random,shadow", modes = "one,batch", questions = "closest,any",
-                builders = "medium,high", instruction_set, html;
+    std::string sets = "primary,diffuse,random,shadow,ambient", modes = "one,batch",
+                questions = "closest,any", builders = "medium,high", instruction_set, html;
     int width = 0, rounds = 0;
     unsigned threads = 1;
     bool quick = false;
 };
 
-constexpr const char* usual_scenes[] = {"gen:teapot-in-stadium:50000", "gen:soup:200000",
-                                        "gen:hairball:200000", "gen:terrain:20000"};
+constexpr const char* usual_scenes[] = {
+    "gen:teapot-in-stadium:50000", "gen:turned-stadium:200000", "gen:terrain:500000",
+    "gen:hairball:500000",         "gen:grass:300000",          "gen:soup:200000",
+    "gen:boulder:1000000",         "gen:interior:1000000"};
 
 /// Parses a comma-separated list of known words. The position of a word in `known` is its value in E. A word
 /// that is repeated counts once. Throws UsageError for an unknown word.
@@ -59,8 +61,9 @@ EngineOptions options_of(const BenchArguments& a) {
     o.questions = list_of<Question>("--questions", a.questions, questions);
     o.modes = list_of<Mode>("--modes", a.modes, modes);
     o.builders = list_of<WideBuilder>("--builders", a.builders, wide_builder_names);
-    if (o.sets == std::vector{RayKind::shadow} && o.questions == std::vector{Question::closest})
-        throw UsageError("--sets shadow: shadow rays are asked for any hit; add --questions any");
+    if (std::all_of(o.sets.begin(), o.sets.end(), only_any_hit) &&
+        o.questions == std::vector{Question::closest})
+        throw UsageError("--sets " + a.sets + ": these rays are asked for any hit; add --questions any");
     if (a.quick) o.rounds = 3, o.picture = 128, o.random = 1 << 14, o.sample = 2000;
     if (a.rounds > 0) o.rounds = a.rounds;
     o.seed = a.seed, o.cancel = &interrupted;
@@ -74,6 +77,7 @@ EngineOptions options_of(const BenchArguments& a) {
 struct NamedMesh {
     std::string name;
     TriangleMesh<float> mesh;
+    std::optional<Camera> camera;  // of the scene's own
 };
 
 /// Loads all scenes before anything is measured, so that a bad scene is reported before a long run. Throws
@@ -94,14 +98,15 @@ std::vector<NamedMesh> load_all(const BenchArguments& a) {
                              ": holds no triangles; bench is about rays against triangles: see "
                              "compare for other primitives");
         if (mesh->size() == 0) throw InputError(scene + ": is empty, so there is nothing to measure");
-        all.push_back({name, std::move(*mesh)});
+        all.push_back({name, std::move(*mesh), camera_for(generated_name(one))});
     }
     return all;
 }
 
 BenchReport report_for(const EngineOptions& options, const std::vector<std::unique_ptr<Peer>>& peers) {
     BenchReport r;
-    r.processor = processor(), r.compiler = compiler(), r.cores = std::thread::hardware_concurrency();
+    r.processor = processor(), r.avx512_rate = avx512_rate(), r.compiler = compiler(),
+    r.cores = std::thread::hardware_concurrency();
     r.instruction_set = wide_kernels() != nullptr ? wide_kernels()->instruction_set : "plain";
     r.gigahertz = clock_rate();
     r.width = options.width, r.threads = options.threads, r.options = options;
@@ -156,7 +161,9 @@ int bench(const BenchArguments& a) {
         };
         for (const NamedMesh& s : scenes) {
             if (interrupted) break;
-            report.scenes.push_back(measure_engine(s.name, s.mesh, peers, options, go_on));
+            EngineOptions of_scene = options;
+            of_scene.camera = s.camera;
+            report.scenes.push_back(measure_engine(s.name, s.mesh, peers, of_scene, go_on));
         }
     }
     // Report what was finished, if anything was.
@@ -181,8 +188,9 @@ Run add_bench(CLI::App& verb) {
     verb.add_option("-o,--output", a->output, "also write a chart of the rates, as .svg");
     verb.add_option("--html", a->html, "also write one page with plots, that needs no other file");
     verb.add_flag("--quick", a->quick, "fewer rays and rounds");
-    verb.add_option("--sets", a->sets, "of rays, as primary,diffuse,random,shadow")->capture_default_str();
-    verb.add_option("--questions", a->questions, "closest,any; shadow rays are asked any")
+    verb.add_option("--sets", a->sets, fmt::format("of rays, as {}", fmt::join(ray_kinds, ",")))
+        ->capture_default_str();
+    verb.add_option("--questions", a->questions, "closest,any; shadow and ambient rays are asked any")
         ->capture_default_str();
     verb.add_option("--modes", a->modes, "one: a call a ray; batch: a call for all")->capture_default_str();
     verb.add_option("--builders", a->builders, "whose trees are traced, as fast,medium,high; the best counts")

@@ -48,7 +48,11 @@ ordered_json json_of(const Row& row, const BenchReport& report) {
                       {"best", json_of(row.best(), row.mode, report)},
                       {"ours", ours},
                       {"theirs", theirs}};
-    if (const TheirRate* const them = row.against()) j["against"] = json_of(*them), j["ratio"] = row.ratio();
+    if (const TheirRate* const them = row.against()) {
+        j["against"] = json_of(*them);
+        j["ratio"] = row.ratio();
+        j["ratio_to_single_calls"] = row.ratio_to(row.by_single_calls());
+    }
     return j;
 }
 
@@ -100,6 +104,7 @@ ordered_json json_of(const BenchReport& r) {
                          {"set", m.set},
                          {"count", m.count}});
     return {{"processor", r.processor},
+            {"avx512", r.avx512_rate},
             {"cores", r.cores},
             {"clock_ghz", r.gigahertz},
             {"compiler", r.compiler},

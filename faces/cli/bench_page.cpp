@@ -115,7 +115,7 @@ std::string chart_of(const BenchReport& r) {
     };
     for (const RayKind set : r.options.sets)
         panels.emplace_back(
-            set, set != RayKind::shadow && asked(Question::closest) ? Question::closest : Question::any);
+            set, !only_any_hit(set) && asked(Question::closest) ? Question::closest : Question::any);
     return svg_of(bars(r, "Million rays a second on one thread", panels));
 }
 

@@ -13,7 +13,7 @@
 namespace hedgerow::cli {
 
 struct BenchReport {
-    std::string processor, compiler, instruction_set;
+    std::string processor, avx512_rate, compiler, instruction_set;
     unsigned cores = 0;
     double gigahertz = 0;  ///< clock rate while one thread computes
     int width = 0;         ///< children a node

@@ -74,7 +74,8 @@ Table rays_table(const BenchReport& r, const SceneCosts& s) {
         t.columns.emplace_back("times as fast");
     }
     if (!r.peers.empty())
-        for (const char* column : {"against", "its Mrays/s", "x"}) t.columns.emplace_back(column);
+        for (const char* column : {"against", "its Mrays/s", "x", "x to single calls"})
+            t.columns.emplace_back(column);
     // A row for each row of results: our best tree, then the peer that it is compared with.
     for (const Row& row : s.rows) {
         const OurRate& best = row.best();
@@ -93,6 +94,7 @@ Table rays_table(const BenchReport& r, const SceneCosts& s) {
             cells.push_back(name_of(*them));
             cells.push_back(rate_text(them->seconds));
             cells.push_back(ratio_text(row.ratio()));
+            cells.push_back(ratio_text(row.ratio_to(row.by_single_calls())));
         }
     }
     return t;
@@ -171,9 +173,9 @@ std::string name_of(const TheirRate& rate) {
 }
 
 std::string machine_of(const BenchReport& r) {
-    std::string line =
-        fmt::format("{}, {} core{}, {:.2f} GHz, {}, {}, width {}", r.processor, r.cores,
-                    r.cores == 1 ? "" : "s", r.gigahertz, r.compiler, r.instruction_set, r.width);
+    std::string line = fmt::format("{}, {} core{}, {}, {:.2f} GHz, {}, {}, width {}", r.processor, r.cores,
+                                   r.cores == 1 ? "" : "s", r.avx512_rate, r.gigahertz, r.compiler,
+                                   r.instruction_set, r.width);
     for (const auto& p : r.peers) line += fmt::format(", beside {} {}", p.name, p.version);
     return line;
 }

@@ -128,15 +128,31 @@ private:
         }
         const Engine& engine = asked_.engines.front();
         const Box3f& box = engine.bounds();
-        const auto primary = primary_rays(box, o_.picture);
+        const auto primary = primary_rays(o_.camera.value_or(side_camera(box)), o_.picture);
         std::vector<Hit<float>> hits(primary.size());
         closest_hits(engine, std::span<const Ray3f>(primary), std::span(hits));
-        for (const RayKind kind : o_.sets)
-            sets_.push_back(kind == RayKind::primary   ? primary
-                            : kind == RayKind::diffuse ? diffuse_rays(mesh_, primary, hits, o_.seed)
-                            : kind == RayKind::shadow  ? shadow_rays(mesh_, box, primary, hits)
-                                                       : random_rays(box, o_.random, o_.seed));
+        for (const RayKind kind : o_.sets) sets_.push_back(rays_of(kind, box, primary, hits));
         return true;
+    }
+
+    std::vector<Ray3f> rays_of(RayKind kind, const Box3f& box, const std::vector<Ray3f>& primary,
+                               const std::vector<Hit<float>>& hits) const {
+        switch (kind) {
+            case RayKind::primary:
+                return primary;
+            case RayKind::diffuse:
+                return diffuse_rays(mesh_, primary, hits, o_.seed);
+            case RayKind::ambient:
+                return ambient_rays(diffuse_rays(mesh_, primary, hits, o_.seed), box);
+            case RayKind::shadow:
+                return shadow_rays(mesh_, light(box), primary, hits);
+            default:
+                return random_rays(box, o_.random, o_.seed);
+        }
+    }
+    Vec3f light(const Box3f& box) const {
+        if (!o_.camera) return side_light(box);
+        return o_.camera->eye + o_.camera->up * (0.2f * length(o_.camera->target - o_.camera->eye));
     }
 
     bool traces() {
@@ -177,13 +193,13 @@ private:
         for (std::size_t e = 0; e < scaling.size(); ++e)
             row.ours[e].on_threads = scaling[e].seconds, row.ours[e].scaling = scaling[e].times;
     }
-    /// Calls f with the trial of each question of each set, until f returns false. Shadow rays are for any
-    /// hit only. A set is empty where no primary ray hits.
+    /// Calls f with the trial of each question of each set, until f returns false. Some sets are for any hit
+    /// only. A set is empty where no primary ray hits.
     template <class F>
     bool each_trial(F f) const {
         for (std::size_t s = 0; s < o_.sets.size(); ++s)
             for (const Question question : o_.questions) {
-                if (o_.sets[s] == RayKind::shadow && question == Question::closest) continue;
+                if (only_any_hit(o_.sets[s]) && question == Question::closest) continue;
                 if (sets_[s].empty()) continue;
                 Trial trial(asked_, o_, o_.sets[s], sets_[s], question);
                 if (!f(trial)) return false;

@@ -6,20 +6,31 @@
 
 namespace hedgerow::measure {
 
+namespace {
+
+/// The fastest of the rates that are not robust and that `counts`, or nullptr.
+template <class F>
+const TheirRate* fastest(const std::vector<TheirRate>& all, F counts) {
+    const TheirRate* best = nullptr;
+    for (const TheirRate& t : all)
+        if (!t.robust && counts(t) && (best == nullptr || t.seconds < best->seconds)) best = &t;
+    return best;
+}
+
+}  // namespace
+
 const OurRate& Row::best() const {
     return *std::min_element(ours.begin(), ours.end(),
                              [](const OurRate& a, const OurRate& b) { return a.seconds < b.seconds; });
 }
-const TheirRate* Row::against() const {
-    const int calls = mode == Mode::batch && coherent(set) ? 16 : 1;
-    const TheirRate* best = nullptr;
-    for (const TheirRate& t : theirs)
-        if (!t.robust && t.calls_of == calls && (best == nullptr || t.seconds < best->seconds)) best = &t;
-    return best;
+const TheirRate* Row::by_single_calls() const {
+    return fastest(theirs, [](const TheirRate& t) { return t.calls_of == 1; });
 }
-double Row::ratio() const {
-    const TheirRate* const them = against();
-    return them != nullptr ? them->seconds / best().seconds : 0;
+const TheirRate* Row::by_any_calls() const {
+    return fastest(theirs, [](const TheirRate&) { return true; });
+}
+double Row::ratio_to(const TheirRate* their_rate) const {
+    return their_rate != nullptr ? their_rate->seconds / best().seconds : 0;
 }
 
 const TheirBuild* SceneCosts::against(const OurBuild& build) const {
@@ -80,8 +91,12 @@ std::vector<Mean> means_of(const std::vector<SceneCosts>& scenes) {
                 for (const SceneCosts& s : scenes)
                     for (const Row& row : s.rows)
                         if (row.mode == mode && row.question == question &&
-                            (mode == Mode::one ? !together : coherent(row.set) == together))
+                            (mode == Mode::one ? !together : coherent(row.set) == together)) {
                             means.add(group_of(row), false, row.ratio(), s, name_of(row.set));
+                            if (mode == Mode::batch)
+                                means.add(group_of(row) + ", to single calls", false,
+                                          row.ratio_to(row.by_single_calls()), s, name_of(row.set));
+                        }
     for (const SceneCosts& s : scenes)
         for (const OurBuild& b : s.builds)
             means.add("build, " + std::string(name_of(b.builder)), true, s.ratio(b), s, "");

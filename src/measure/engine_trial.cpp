@@ -23,7 +23,7 @@ bool Trial::has(Mode mode) const {
     return std::find(o_.modes.begin(), o_.modes.end(), mode) != o_.modes.end();
 }
 bool Trial::by_sixteen() const {
-    return coherent(kind_) && has(Mode::batch) && rays_.size() >= 16;
+    return has(Mode::batch) && rays_.size() >= 16;
 }
 
 std::size_t Trial::one_by_one(const Engine& engine) const {
@@ -64,7 +64,7 @@ void Trial::add_ours(Contest& contest) {
                         });
 }
 
-/// Adds the peers by single calls, and where rays are coherent also by calls of sixteen.
+/// Adds the peers by single calls, and beside batches also by calls of sixteen.
 void Trial::add_theirs(Contest& contest) {
     const bool closest = question_ == Question::closest;
     for (const Asked::Tree& tree : asked_.trees) {
@@ -73,7 +73,7 @@ void Trial::add_theirs(Contest& contest) {
         contest.add(name,
                     [this, closest, &index] { return closest ? index.closest(rays_) : index.any(rays_); });
         if (!by_sixteen()) continue;
-        packets_.push_back(index.packets(rays_));
+        packets_.push_back(index.packets(rays_, coherent(kind_)));
         contest.add(name + ", by 16", [closest, &index, rays = packets_.back().get()] {
             return closest ? index.closest(*rays) : index.any(*rays);
         });

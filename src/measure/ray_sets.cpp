@@ -7,10 +7,6 @@ namespace hedgerow::measure {
 
 namespace {
 
-Vec3f eye_of(const Box3f& box) {
-    return box.center() + Vec3f(0.3f, 0.5f, 1.f) * (0.85f * length(box.extent()));
-}
-
 /// Calls f(i, origin, normal) for each ray i that hits. `origin` is where its next ray starts: off the
 /// surface, on the side of ray i. The normal points to that side.
 template <class F>
@@ -27,20 +23,28 @@ void for_each_hit(const TriangleMesh<float>& mesh, const std::vector<Ray3f>& ray
 
 }  // namespace
 
-std::vector<Ray3f> primary_rays(const Box3f& box, int size) {
-    const Vec3f eye = eye_of(box);
-    const Vec3f forward = normalized(box.center() - eye);
-    const Vec3f right = normalized(cross(forward, Vec3f(0, 1, 0)));
-    const Vec3f up = cross(right, forward);
+Camera side_camera(const Box3f& box) {
+    Camera camera;
+    camera.target = box.center();
+    camera.eye = camera.target + Vec3f(0.3f, 0.5f, 1.f) * (0.85f * length(box.extent()));
+    camera.up = {0, 1, 0};
+    camera.field_of_view = 53;
+    return camera;
+}
+
+Vec3f side_light(const Box3f& box) {
+    return side_camera(box).eye + Vec3f(0.6f, 0.8f, -0.3f) * length(box.extent());
+}
+
+std::vector<Ray3f> primary_rays(const Camera& camera, int size) {
+    const RayMaker make(camera, size, size);
     std::vector<Ray3f> rays;
     for (int ty = 0; ty < size; ty += 16)
         for (int tx = 0; tx < size; tx += 16)
             for (int y = ty; y < ty + 16; ++y)
-                for (int x = tx; x < tx + 16; ++x) {
-                    const float u = (float(x) + 0.5f) / float(size) - 0.5f,
-                                v = 0.5f - (float(y) + 0.5f) / float(size);
-                    rays.push_back({eye, normalized(forward + right * u + up * v)});
-                }
+                for (int x = tx; x < tx + 16; ++x)
+                    rays.push_back(
+                        make.ray<float>(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f));
     return rays;
 }
 
@@ -55,9 +59,13 @@ std::vector<Ray3f> diffuse_rays(const TriangleMesh<float>& mesh, const std::vect
     return result;
 }
 
-std::vector<Ray3f> shadow_rays(const TriangleMesh<float>& mesh, const Box3f& box,
+std::vector<Ray3f> ambient_rays(std::vector<Ray3f> diffuse, const Box3f& box) {
+    for (Ray3f& ray : diffuse) ray.t_max = length(box.extent()) / 10 / length(ray.direction);
+    return diffuse;
+}
+
+std::vector<Ray3f> shadow_rays(const TriangleMesh<float>& mesh, const Vec3f& light,
                                const std::vector<Ray3f>& rays, const std::vector<Hit<float>>& hits) {
-    const Vec3f light = eye_of(box) + Vec3f(0.6f, 0.8f, -0.3f) * length(box.extent());
     std::vector<Ray3f> result;
     for_each_hit(mesh, rays, hits, [&](std::size_t, const Vec3f& from, const Vec3f&) {
         Ray3f ray{from, light - from};
@@ -78,7 +86,7 @@ std::vector<Ray3f> random_rays(const Box3f& box, std::size_t n, std::uint64_t se
 
 std::vector<RaySet> ray_sets(const TriangleMesh<float>& mesh, const Box3f& box, int size, std::size_t n) {
     const auto index = build(mesh);
-    auto primary = primary_rays(box, size);
+    auto primary = primary_rays(side_camera(box), size);
     std::vector<Hit<float>> hits(primary.size());
     closest_hits(index, std::span<const Ray3f>(primary), std::span<Hit<float>>(hits));
     auto diffuse = diffuse_rays(mesh, primary, hits);

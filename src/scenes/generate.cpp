@@ -53,6 +53,8 @@ constexpr SceneInfo scenes[] = {
           []<class T>(In<T>, U n, U seed, const P& p) { return hairball<T>(n, seed, p); }),
     scene("soup", 1'000'000, "triangles", 3, "separate random triangles in the unit cube", 84,
           []<class T>(In<T>, U n, U seed, const P& p) { return soup<T>(n, seed, p); }),
+    scene("boulder", 999'940, "triangles", 3, "a smooth closed surface with fine detail, like a scan", 60,
+          []<class T>(In<T>, U n, U seed, const P& p) { return boulder<T>(n, seed, p); }),
     scene("interior", 967'616, "triangles", 3, "a furnished flat of six rooms, from walls to pens", 24,
           []<class T>(In<T>, U n, U seed, const P& p) { return interior<T>(n, seed, p); }),
     scene("cornell-box", 32, "triangles", 3, "the Cornell box: a room with a light and two blocks", 60,

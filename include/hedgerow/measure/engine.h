@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,7 +41,8 @@ constexpr double floor_of(Mode m) {
 }
 
 struct EngineOptions {
-    std::vector<RayKind> sets = {RayKind::primary, RayKind::diffuse, RayKind::random, RayKind::shadow};
+    std::vector<RayKind> sets = {RayKind::primary, RayKind::diffuse, RayKind::random, RayKind::shadow,
+                                 RayKind::ambient};
     std::vector<Question> questions = {Question::closest, Question::any};
     std::vector<Mode> modes = {Mode::one, Mode::batch};
     /// Builders whose trees are traced. The builds of all builders are timed.
@@ -48,7 +50,10 @@ struct EngineOptions {
     int width = 0;         ///< see WideOptions::width
     unsigned threads = 1;  ///< if not 1, batches and builds are timed on so many too
     int rounds = 5, build_rounds = 3;
-    int picture = 1024;            ///< primary rays a side; diffuse and shadow rays start at their hits
+    int picture = 1024;  ///< primary rays a side; diffuse, shadow and ambient rays start at their hits
+    /// The camera of the primary rays, with the light of the shadow rays a little above it; without one both
+    /// are outside the scene.
+    std::optional<Camera> camera;
     std::size_t random = 1 << 19;  ///< random rays
     std::size_t sample = 20'000;   ///< most rays of a set that are counted and checked
     std::uint64_t seed = 0;
@@ -89,11 +94,15 @@ struct Row {
 
     /// The result of our fastest tree.
     const OurRate& best() const;
-    /// The result of the fastest peer that is not robust. For batches of coherent rays it is by calls of
-    /// sixteen, else by single calls. nullptr if no peer was timed so.
-    const TheirRate* against() const;
-    /// Our rate as a multiple of the rate of against(); 0 if that is nullptr.
-    double ratio() const;
+    /// The result of the fastest peer that is not robust: by single calls, and by calls of any kind. nullptr
+    /// without peers.
+    const TheirRate* by_single_calls() const;
+    const TheirRate* by_any_calls() const;
+    /// What ours is compared with: for batches the fastest call of any kind, else single calls.
+    const TheirRate* against() const { return mode == Mode::batch ? by_any_calls() : by_single_calls(); }
+    /// Our rate as a multiple of theirs; 0 without one.
+    double ratio_to(const TheirRate* theirs) const;
+    double ratio() const { return ratio_to(against()); }
 };
 
 struct OurBuild {

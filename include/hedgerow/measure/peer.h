@@ -24,8 +24,8 @@ struct PeerBuild {
 /// An index that a peer has built. One thread queries it. Batch queries return the number of rays that hit.
 class PeerIndex {
 public:
-    /// Rays in the peer's own layout, in packets of sixteen. Rays that do not fill the last packet are left
-    /// out.
+    /// Rays in the peer's own layout, in packets of sixteen, which the peer is told are coherent or not. Rays
+    /// that do not fill the last packet are left out.
     class Packets {
     public:
         virtual ~Packets() = default;
@@ -34,8 +34,8 @@ public:
     virtual ~PeerIndex() = default;
     virtual std::size_t closest(std::span<const Ray3f> rays) const = 0;
     virtual std::size_t any(std::span<const Ray3f> rays) const = 0;
-    virtual std::unique_ptr<Packets> packets(std::span<const Ray3f> rays) const = 0;
-    /// Queries by calls of sixteen rays, flagged as coherent. Only the first ray of each sixteen is counted.
+    virtual std::unique_ptr<Packets> packets(std::span<const Ray3f> rays, bool coherent) const = 0;
+    /// Queries by calls of sixteen rays. Only the first ray of each sixteen is counted.
     virtual std::size_t closest(const Packets& packets) const = 0;
     virtual std::size_t any(const Packets& packets) const = 0;
 

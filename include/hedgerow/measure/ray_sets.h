@@ -9,15 +9,16 @@
 #include <hedgerow/geometry/ray.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/hit.h>
+#include <hedgerow/render/camera.h>
 #include <hedgerow/scenes/random.h>
 
 namespace hedgerow::measure {
 
 /// Primary rays are those of a picture. Diffuse rays leave the hits of primary rays as from a matte surface,
-/// shadow rays leave these hits towards one light. Random rays go from one random point of the scene's box
-/// through another.
-enum class RayKind { primary, diffuse, random, shadow };
-inline constexpr std::string_view ray_kinds[] = {"primary", "diffuse", "random", "shadow"};
+/// shadow rays leave these hits towards one light. Ambient rays are diffuse rays that end after a tenth of
+/// the scene's diagonal. Random rays go from one random point of the scene's box through another.
+enum class RayKind { primary, diffuse, random, shadow, ambient };
+inline constexpr std::string_view ray_kinds[] = {"primary", "diffuse", "random", "shadow", "ambient"};
 constexpr std::string_view name_of(RayKind kind) {
     return ray_kinds[static_cast<std::size_t>(kind)];
 }
@@ -25,15 +26,23 @@ constexpr std::string_view name_of(RayKind kind) {
 constexpr bool coherent(RayKind kind) {
     return kind == RayKind::primary || kind == RayKind::shadow;
 }
+/// Whether rays of the kind ask if something is in their way, and not what.
+constexpr bool only_any_hit(RayKind kind) {
+    return kind == RayKind::shadow || kind == RayKind::ambient;
+}
 
-/// A pinhole view of the scene from the side. The rays are size × size, rounded up to whole tiles of 16×16,
-/// tile by tile.
-std::vector<Ray3f> primary_rays(const Box3f& box, int size);
+/// A view of a box from the side, and a light above and beside it.
+Camera side_camera(const Box3f& box);
+Vec3f side_light(const Box3f& box);
+/// The rays of a size × size picture, rounded up to whole tiles of 16×16, tile by tile.
+std::vector<Ray3f> primary_rays(const Camera& camera, int size);
 /// Rays from the hits, cosine-distributed about the normal.
 std::vector<Ray3f> diffuse_rays(const TriangleMesh<float>& mesh, const std::vector<Ray3f>& rays,
                                 const std::vector<Hit<float>>& hits, std::uint64_t seed = 0);
-/// Rays from the hits to a point light, which is above the scene and beside the eye. The light is at t = 1.
-std::vector<Ray3f> shadow_rays(const TriangleMesh<float>& mesh, const Box3f& box,
+/// Diffuse rays that end after a tenth of the box's diagonal.
+std::vector<Ray3f> ambient_rays(std::vector<Ray3f> diffuse, const Box3f& box);
+/// Rays from the hits to a point light, which is at t = 1.
+std::vector<Ray3f> shadow_rays(const TriangleMesh<float>& mesh, const Vec3f& light,
                                const std::vector<Ray3f>& rays, const std::vector<Hit<float>>& hits);
 std::vector<Ray3f> random_rays(const Box3f& box, std::size_t n, std::uint64_t seed = 0);
 

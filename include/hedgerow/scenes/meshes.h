@@ -55,6 +55,12 @@ TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed = 0, const Progress
 template <class T>
 TriangleMesh<T> hairball(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
+/// A smooth closed surface with fine detail, as scanners make of statues: one sheet of small
+/// triangles of much the same size, whose vertices are not regular. A sphere, bent and roughened by value
+/// noise; about 2.5 high and 1.8 wide, around the origin. A larger size samples the same boulder more finely.
+template <class T>
+TriangleMesh<T> boulder(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
+
 /// A furnished flat of six rooms, 13 m × 9 m and 2.8 m high, in metres: walls with doors and windows that are
 /// open, mouldings 5 m long and 5 mm wide, planks, tables, chairs, shelves of books, curtains, lamps,
 /// crockery and cutlery of 1 mm. Most of it lies along the axes. Things are added in the order of their
