@@ -106,6 +106,45 @@ TEST(Wide, BatchesOfAnySize) {
     });
 }
 
+TEST(Wide, IntervalsThatEndAtAHit) {
+    // Steps of a staircase, which lie across the rays' longest axis: a hit has the s of all three corners.
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        Random random(3, i);
+        const float x = static_cast<float>(i % 8), y = static_cast<float>(i / 8),
+                    z = static_cast<float>(random.uniform());
+        mesh.vertices.insert(mesh.vertices.end(),
+                             {{x, y, z}, {x + 1, y, z}, {x, y + 1, z}, {x + 1, y + 1, z}});
+        mesh.triangles.push_back({4 * i, 4 * i + 1, 4 * i + 2});
+        mesh.triangles.push_back({4 * i + 1, 4 * i + 3, 4 * i + 2});
+    }
+    const auto brute = build<BruteForce>(mesh);
+    std::vector<Ray3f> rays;
+    for (std::uint64_t i = 0; rays.size() < 20'000; ++i) {
+        Random random(5, i);
+        const Vec3d from(random.uniform(0, 8), random.uniform(0, 8), random.uniform(1, 9));
+        const Vec3d along(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-3, -1));
+        Ray3f ray{Vec3f(from), Vec3f(along)};
+        const float t = closest_hit(brute, ray).t;
+        if (std::isinf(t)) continue;
+        // The interval ends at the hit or begins there, or it is too short for it by the least step.
+        const float end = i % 2 == 0 ? t : std::nextafter(t, i % 4 == 1 ? 0.0f : 100.0f);
+        (i / 4 % 2 == 0 ? ray.t_max : ray.t_min) = end;
+        rays.push_back(ray);
+    }
+    const auto want = std::make_unique<bool[]>(rays.size()), found = std::make_unique<bool[]>(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) want[i] = any_hit(brute, rays[i]);
+    EXPECT_GT(std::count(want.get(), want.get() + rays.size(), true), 5000);
+    EXPECT_GT(std::count(want.get(), want.get() + rays.size(), false), 2000);
+    for_each_kernel(mesh, [&](const auto& index, std::string_view) {
+        any_hits(index, rays, {found.get(), rays.size()});
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(any_hit(index, rays[i]), want[i]) << i;
+            ASSERT_EQ(found[i], want[i]) << i;
+        }
+    });
+}
+
 TEST(Wide, CoherentRays) {
     const auto mesh = teapot_in_stadium<float>(3000);
     const auto index = build<WideBvh>(mesh);

@@ -44,7 +44,7 @@ private:
     static constexpr int most_slots = 32, enough_leaves = 16;
     static constexpr int stack_places = most_slots * 256;
     using Block = TriangleBlock<float>;
-    using Stack = WalkStack<W>;
+    using Stack = WalkStack<W, wanted>;
     static constexpr std::size_t stride = WideNodes<float, 3>::stride_of(W);
 
     /// Whether there is a filter is a template parameter, since checking it at each leaf makes any hit 3%
@@ -118,7 +118,7 @@ private:
             answers[index_[s]] = ray_[s].element != Hit<float>::none;
     }
 
-    HWY_INLINE Stack stack_of(int s) { return {stack_entry_, stack_word_, s * room_, top_[s]}; }
+    HWY_INLINE Stack stack_of(int s) { return {stack_, s * room_, top_[s]}; }
     HWY_INLINE void pop(int s, Stack& stack) {
         word_[s] = stack.pop();
         top_[s] = stack.top();
@@ -130,7 +130,7 @@ private:
     HWY_INLINE void open_node(int s) {
         const std::byte* const node = reinterpret_cast<const std::byte*>(start_[0] + word_[s] * stride);
         Stack stack = stack_of(s);
-        const Boxes<W> boxes(node, Slabs<W>(ray_[s]), ray_[s].s_limit);
+        const Boxes<W> boxes(node, Slabs<W>(ray_[s]));
         if constexpr (wanted == Wanted::any)
             stack.push_unsorted(boxes, children_of<W>(node));
         else
@@ -143,9 +143,11 @@ private:
         Stack stack = stack_of(s);
         const std::uint32_t leaf = word_[s] & ~WideChild::leaf_bit;
         if (filtered ? test_block_filtered(scene_, leaf, ray_[s], index_[s])
-                     : test_block(scene_.blocks[leaf], ray_[s])) {
-            if constexpr (wanted == Wanted::any) return false;
-            stack.sweep(ray_[s].s_limit);
+                     : test_block<wanted>(scene_.blocks[leaf], ray_[s])) {
+            if constexpr (wanted == Wanted::any)
+                return false;
+            else
+                stack.sweep(ray_[s].s_limit);
         }
         pop(s, stack);
         return word_[s] != Stack::end;
@@ -162,8 +164,7 @@ private:
     int top_[most_slots];
     std::size_t index_[most_slots];
     int inner_[2 * most_slots], leaf_[2 * most_slots];
-    std::int32_t stack_entry_[stack_places];
-    std::uint32_t stack_word_[stack_places];
+    typename Stack::Place stack_[stack_places];
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

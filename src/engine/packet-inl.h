@@ -60,7 +60,7 @@ private:
     using Rays = PacketHits<wanted>;
     using V = PacketRays::V;
     using M = PacketRays::M;
-    using Stack = WalkStack<W>;
+    using Stack = WalkStack<W, Wanted::closest>;
     static constexpr PacketRays::F f{};
 
     /// The children that some ray may enter, and for each the s at which, by the intervals, the first ray
@@ -112,9 +112,8 @@ private:
     }
     HWY_INLINE void trace() {
         constexpr int room = Stack::room(bvh_max_depth + 1);
-        std::int32_t entries[room];
-        std::uint32_t words[room];
-        Stack stack(entries, words, 0, 0);
+        std::uint64_t places[room];
+        Stack stack(places, 0, 0);
         stack.clear();
         open(stack, 0);
         for (std::uint32_t place = stack.pop(); place != Stack::end; place = stack.pop()) {

@@ -135,7 +135,7 @@ private:
     }
     HWY_INLINE void add_pairs(M kept, hn::Vec<decltype(i32)> pair, int& pairs) {
         if constexpr (compresses) {
-            hn::StoreU(hn::Compress(pair, hn::RebindMask(i32, kept)), i32, pair_ + pairs);
+            hn::StoreU(compressed(i32, pair, hn::RebindMask(i32, kept)), i32, pair_ + pairs);
             pairs += static_cast<int>(hn::CountTrue(f, kept));
         } else if (unsigned left = bits_of(f, kept)) {
             alignas(64) std::int32_t each[lanes];
@@ -274,6 +274,20 @@ private:
     /// are any.
     HWY_INLINE bool meet(const WideScene& scene, const ShearedCorners<F>& corners, std::uint32_t id, int at,
                          unsigned candidates) {
+        // Any hit: those that are sure need no exact test.
+        bool found = false;
+        if (wanted == Wanted::any && scene.filter.keeps == nullptr) {
+            const unsigned sure =
+                candidates &
+                bits_of(f, corners.surely_meets(f, hn::Load(f, z + at), hn::Load(f, z_length + at),
+                                                hn::Load(f, t_min + at), hn::Load(f, t_limit + at)));
+            if (sure != 0) {
+                found = true;
+                end(sure, id, at);
+                candidates ^= sure;
+            }
+            if (candidates == 0) return found;
+        }
         Meetings m;
         const auto direction_z = [&](auto d, int from) {
             return hn::PromoteTo(d, hn::Load(hn::Rebind<float, decltype(d)>(), z + at + from));
@@ -288,10 +302,9 @@ private:
         candidates &= bits_of(f, better);
         if (scene.filter.keeps != nullptr) [[unlikely]]
             candidates = kept_of(scene, candidates, m, id, at);
-        if (candidates == 0) return false;
+        if (candidates == 0) return found;
         // Store the new hits and limits.
-        const std::uint64_t bits = candidates;
-        better = hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits));
+        better = mask_of(candidates);
         hn::BlendedStore(t, better, f, t_limit + at);
         hn::BlendedStore(hn::Load(f, m.u), better, f, u + at);
         hn::BlendedStore(hn::Load(f, m.v), better, f, v + at);
@@ -300,6 +313,17 @@ private:
             wanted == Wanted::any ? hn::Set(f, -1.0f) : s_limit_of(f, t, hn::Load(f, z_length + at));
         hn::BlendedStore(limited, better, f, s_limit + at);
         return true;
+    }
+
+    static HWY_INLINE M mask_of(unsigned rays) {
+        const std::uint64_t bits = rays;
+        return hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits));
+    }
+    /// Any hit: gives rays from `at` on (a bit each) their answer.
+    HWY_INLINE void end(unsigned rays, std::uint32_t id, int at) {
+        const M hit = mask_of(rays);
+        hn::BlendedStore(hn::BitCast(f, hn::Set(u32, id)), hit, f, reinterpret_cast<float*>(element) + at);
+        hn::BlendedStore(hn::Set(f, -1.0f), hit, f, s_limit + at);
     }
 
     /// The candidates that the filter of the call keeps.

@@ -23,10 +23,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <int W, class Test>
 class RayAsker {
 public:
-    HWY_INLINE RayAsker(WideRay& ray, Test test) : ray_(ray), slabs_(ray), test_(test) {}
+    HWY_INLINE RayAsker(WideRay& ray, Test test) : ray_(ray), test_(test) {}
 
-    // Which children of a node the ray enters, and at which s.
-    HWY_INLINE Boxes<W> boxes(const std::byte* node) const { return {node, slabs_, ray_.s_limit}; }
+    // What the test of boxes needs, as long as no leaf is tested.
+    HWY_INLINE Slabs<W> slabs() const { return Slabs<W>(ray_); }
     HWY_INLINE bool test(std::uint32_t leaf) { return test_(leaf); }
     // The walk skips children that the ray enters beyond this s.
     HWY_INLINE float limit() const { return ray_.s_limit; }
@@ -34,14 +34,13 @@ public:
 
 private:
     WideRay& ray_;
-    const Slabs<W> slabs_;
     Test test_;
 };
 
 template <int W, Wanted wanted>
 bool trace_one(const WideScene& scene, WideRay& ray) {
     const auto test = [&](std::uint32_t leaf) __attribute__((always_inline)) {
-        return test_triangles(scene, leaf, ray, 0);
+        return test_triangles<wanted>(scene, leaf, ray, 0);
     };
     return walk<W, wanted>(scene.tree, RayAsker<W, decltype(test)>(ray, test));
 }

@@ -50,82 +50,126 @@ HWY_INLINE V sorted_descending(D d, V v) {
     return v;
 }
 
-// Whether the instruction set has a compress instruction.
-inline constexpr bool compresses = HWY_TARGET == HWY_AVX3;
+// Whether the instruction set compresses lanes in a few instructions: by one instruction, or by a permutation
+// that a table holds.
+inline constexpr bool compresses = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2;
 
-// A ray's stack: entries and words, in memory of the caller. An entry is an s, stored as the bits of the
-// float: these compare as integers like the floats, since s is not negative. The lowest place stores the
-// word that ends the walk.
-template <int W>
+// For each mask of eight lanes: the numbers of its lanes in order, four bits each.
+struct LanesOfMasks {
+    std::uint32_t lanes[256];
+
+    constexpr LanesOfMasks() : lanes{} {
+        for (unsigned mask = 0; mask < 256; ++mask) {
+            int place = 0;
+            for (unsigned lane = 0; lane < 8; ++lane)
+                if (mask >> lane & 1) lanes[mask] |= lane << (4 * place++);
+        }
+    }
+};
+inline constexpr LanesOfMasks lanes_of_masks;
+
+// Moves the lanes of a mask to the front, in their order. Highway's own Compress for AVX2 copies its table at
+// each call where g++ compiles it.
+template <class D, class V>
+HWY_INLINE V compressed([[maybe_unused]] D d, V v, hn::Mask<D> mask) {
+#if HWY_TARGET == HWY_AVX2
+    const auto lanes = hn::Shr(hn::Set(d, static_cast<std::int32_t>(lanes_of_masks.lanes[bits_of(d, mask)])),
+                               hn::ShiftLeft<2>(hn::Iota(d, 0)));
+    return hn::TableLookupLanes(v, hn::IndicesFromVec(d, hn::And(lanes, hn::Set(d, 7))));
+#else
+    return hn::Compress(v, mask);
+#endif
+}
+
+// A child that waits: its s above its word. The s is stored as the bits of the float, which compare as
+// integers like the floats, since s is not negative.
+HWY_INLINE std::uint64_t waiting(float s, std::uint32_t word) {
+    std::uint64_t both = std::uint64_t(std::bit_cast<std::uint32_t>(s)) << 32 | word;
+    asm("" : "+r"(both));  // in a general register: g++ would order pairs in vectors, which takes longer
+    return both;
+}
+
+HWY_INLINE void order(std::uint64_t& nearer, std::uint64_t& farther) {
+    const std::uint64_t a = nearer, b = farther;
+    nearer = a < b ? a : b;
+    farther = a < b ? b : a;
+}
+
+// A ray's stack of waiting children, in memory of the caller. A walk that stops at the first hit needs no s:
+// its places store words alone. The lowest place stores the word that ends the walk, at s = 0.
+template <int W, Wanted wanted>
 class WalkStack {
 public:
+    using Place = std::conditional_t<wanted == Wanted::any, std::uint32_t, std::uint64_t>;
     static constexpr std::uint32_t end = WideChild::none().word;
     // Places for the walk of a tree of `depth` levels, with room for pushes, which write whole vectors.
     static constexpr int room(int depth) { return (depth * (W - 1) + 2 * W + 15) / 16 * 16; }
 
-    HWY_INLINE WalkStack(std::int32_t* entries, std::uint32_t* words, int bottom, int top)
-        : entries_(entries), words_(words), bottom_(bottom), top_(top) {}
+    HWY_INLINE WalkStack(Place* places, int bottom, int top) : places_(places), bottom_(bottom), top_(top) {}
     HWY_INLINE void clear() {
-        words_[bottom_] = end;
+        places_[bottom_] = end;
         top_ = bottom_ + 1;
     }
     HWY_INLINE int top() const { return top_; }
-    HWY_INLINE std::uint32_t pop() { return words_[--top_]; }
-
-    HWY_INLINE void push(float entry, std::uint32_t word) {
-        entries_[top_] = std::bit_cast<std::int32_t>(entry);
-        words_[top_++] = word;
-    }
+    HWY_INLINE std::uint32_t pop() { return static_cast<std::uint32_t>(places_[--top_]); }
+    HWY_INLINE void push(Place child) { places_[top_++] = child; }
     // Pushes the entered children, the nearest on top.
     HWY_INLINE void push(const Boxes<W>& boxes, const std::uint32_t* children) {
-        if constexpr (Boxes<W>::parts == 1)
-            push_sorted(hn::RebindMask(i32, boxes.entered[0]), keys_of(boxes), children);
-        else
-            push_each(boxes, children);
+        if constexpr (Boxes<W>::parts == 1) {
+            push_sorted(hn::RebindMask(i32, boxes.entered[0]), keys_of(boxes, 0), children);
+        } else if constexpr (compresses && Boxes<W>::parts == 2) {
+            const int count = std::popcount(boxes.bits());
+            if (count <= Boxes<W>::lanes) [[likely]]
+                push_few(keys_in_front(boxes), count, children);
+            else
+                push(push_others_each(boxes, children));
+        } else if (boxes.bits() != 0) {
+            push(push_others_each(boxes, children));
+        }
     }
     // Pushes the entered children except the nearest, whose word is returned. The nearest is known before
     // the others are sorted, so the walk can continue meanwhile.
     HWY_INLINE std::uint32_t push_others(const Boxes<W>& boxes, const std::uint32_t* children) {
         if constexpr (Boxes<W>::parts == 1) {
             const auto entered = hn::RebindMask(i32, boxes.entered[0]);
-            const Lanes keys = keys_of(boxes);
+            const Lanes keys = keys_of(boxes, 0);
             const Lanes nearest = hn::MinOfLanes(
                 i32, hn::IfThenElse(entered, keys, hn::Set(i32, std::numeric_limits<std::int32_t>::max())));
             push_sorted(hn::And(entered, hn::Ne(keys, nearest)), keys, children);
             return children[hn::GetLane(nearest) & (W - 1)];
         } else {
-            push_each(boxes, children);
-            return pop();
+            return static_cast<std::uint32_t>(push_others_each(boxes, children));
         }
     }
-    // `push` and `push_others` in any order, without entries: for walks that stop at the first hit.
+    // `push` and `push_others` in any order, for walks that stop at the first hit.
     HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
-        if constexpr (Boxes<W>::parts > 1)
-            put_each_unsorted(boxes.bits(), children);
-        else if constexpr (compresses)
-            put_unsorted(hn::RebindMask(i32, boxes.entered[0]), children);
-        else
+        if constexpr (compresses)
+            for (int p = 0; p < Boxes<W>::parts; ++p)
+                put_unsorted(hn::RebindMask(i32, boxes.entered[p]), children + p * Boxes<W>::lanes);
+        else if constexpr (Boxes<W>::parts == 1)
             push(boxes, children);  // a sort takes less time than a compress by table
+        else
+            put_each_unsorted(boxes.bits(), children);
     }
     HWY_INLINE std::uint32_t push_others_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
         const unsigned entered = boxes.bits();
         const int last = static_cast<int>(std::bit_width(entered)) - 1;
         const std::uint64_t others = entered ^ (1u << last);
-        if constexpr (Boxes<W>::parts > 1 || !compresses)
-            put_each_unsorted(static_cast<unsigned>(others), children);
-        else
+        if constexpr (HWY_TARGET == HWY_AVX3)
             put_unsorted(hn::LoadMaskBits(i32, reinterpret_cast<const std::uint8_t*>(&others)), children);
+        else
+            put_each_unsorted(static_cast<unsigned>(others), children);
         return children[last];
     }
     // Removes children that a hit has put out of reach, so that a pop need not check them.
-    HWY_INLINE void sweep(float s_limit) {
-        const std::int32_t limit = std::bit_cast<std::int32_t>(s_limit);
+    HWY_INLINE void sweep(float s_limit) requires(wanted == Wanted::closest) {
+        const std::uint64_t limit = waiting(s_limit, end);
         const int top = top_;
         top_ = bottom_ + 1;
         for (int i = top_; i < top; ++i) {
-            const std::int32_t entry = entries_[i];
-            entries_[top_] = entry, words_[top_] = words_[i];
-            top_ += entry <= limit;
+            const Place child = places_[i];
+            places_[top_] = child;
+            top_ += child <= limit;
         }
     }
 
@@ -134,34 +178,36 @@ private:
     using Lanes = hn::Vec<hn::RebindToSigned<Floats<W>>>;
 
     // A key is the entry of a child, with the child's number in the lowest bits.
-    static HWY_INLINE Lanes keys_of(const Boxes<W>& boxes) {
-        const auto entry = hn::BitCast(i32, boxes.entry[0]);
-        return hn::Or(hn::AndNot(hn::Set(i32, W - 1), entry), hn::Iota(i32, 0));
+    static HWY_INLINE Lanes keys_of(const Boxes<W>& boxes, int part) {
+        const auto entry = hn::BitCast(i32, boxes.entry[part]);
+        return hn::Or(hn::AndNot(hn::Set(i32, W - 1), entry), hn::Iota(i32, part * Boxes<W>::lanes));
+    }
+    // The keys of the entered children of a row that takes two vectors. One vector has room for them.
+    static HWY_INLINE Lanes keys_in_front(const Boxes<W>& boxes) {
+        const auto low = hn::RebindMask(i32, boxes.entered[0]), high = hn::RebindMask(i32, boxes.entered[1]);
+        const int count = static_cast<int>(hn::CountTrue(i32, low));
+        const Lanes from = hn::And(hn::Iota(i32, -count), hn::Set(i32, Boxes<W>::lanes - 1));
+        return hn::IfThenElse(
+            hn::FirstN(i32, static_cast<std::size_t>(count)), compressed(i32, keys_of(boxes, 0), low),
+            hn::TableLookupLanes(compressed(i32, keys_of(boxes, 1), high), hn::IndicesFromVec(i32, from)));
     }
     HWY_INLINE void push_sorted(hn::Mask<decltype(i32)> entered, Lanes keys, const std::uint32_t* children) {
-        const Lanes child = hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children));
         const int count = static_cast<int>(hn::CountTrue(i32, entered));
-        if constexpr (compresses && W == 16) {
-            const Lanes few = hn::Compress(keys, entered);
-            if (count <= 4) [[likely]]
-                return put_sorted(hn::Half<hn::Half<decltype(i32)>>(), few, count, child);
+        if constexpr (compresses && W == 16)
             if (count <= 8) [[likely]]
-                return put_sorted(hn::Half<decltype(i32)>(), few, count, child);
-        }
+                return push_few(compressed(i32, keys, entered), count, children);
         const Lanes sorted = sorted_descending(i32, hn::IfThenElse(entered, keys, hn::Set(i32, -1)));
-        put(i32, count, sorted, ordered(child, sorted));
+        put(i32, count, sorted, ordered(children, sorted));
     }
-    HWY_INLINE void put_unsorted(hn::Mask<decltype(i32)> entered, const std::uint32_t* children) {
-        const Lanes child = hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children));
-        hn::StoreU(hn::Compress(child, entered), i32, reinterpret_cast<std::int32_t*>(words_) + top_);
-        top_ += static_cast<int>(hn::CountTrue(i32, entered));
+    // Sorts and pushes up to eight keys, which are in front, in as few lanes as have room for them.
+    HWY_INLINE void push_few(Lanes keys, int count, const std::uint32_t* children) {
+        if (count <= 4) [[likely]]
+            put_sorted(hn::CappedTag<std::int32_t, 4>(), keys, count, children);
+        else
+            put_sorted(hn::CappedTag<std::int32_t, 8>(), keys, count, children);
     }
-    HWY_INLINE void put_each_unsorted(unsigned entered, const std::uint32_t* children) {
-        for (; entered != 0; entered &= entered - 1) words_[top_++] = children[std::countr_zero(entered)];
-    }
-    // Sorts and pushes the first `count` keys, in as many lanes as D has.
     template <class D>
-    HWY_INLINE void put_sorted(D d, Lanes keys, int count, Lanes children) {
+    HWY_INLINE void put_sorted(D d, Lanes keys, int count, const std::uint32_t* children) {
         const auto some = hn::FirstN(d, static_cast<std::size_t>(count));
         const auto sorted = sorted_descending(d, hn::IfThenElse(some, lowest(d, keys), hn::Set(d, -1)));
         put(d, count, sorted, lowest(d, ordered(children, widened(i32, sorted))));
@@ -181,34 +227,75 @@ private:
             return hn::ZeroExtendVector(d, widened(hn::Half<D>(), v));
     }
     // The children in the order of their keys.
-    static HWY_INLINE Lanes ordered(Lanes children, Lanes keys) {
-        return hn::TableLookupLanes(children, hn::IndicesFromVec(i32, hn::And(keys, hn::Set(i32, W - 1))));
+    static HWY_INLINE Lanes ordered(const std::uint32_t* children, Lanes keys) {
+        constexpr int lanes = Boxes<W>::lanes;
+        const auto place = hn::IndicesFromVec(i32, hn::And(keys, hn::Set(i32, lanes - 1)));
+        const auto part = [&](int p) {
+            const auto* const all = reinterpret_cast<const std::int32_t*>(children) + p * lanes;
+            return hn::TableLookupLanes(hn::LoadU(i32, all), place);
+        };
+        if constexpr (Boxes<W>::parts == 1)
+            return part(0);
+        else
+            return hn::IfThenElse(hn::Eq(hn::And(keys, hn::Set(i32, lanes)), hn::Zero(i32)), part(0),
+                                  part(1));
     }
     template <class D, class V>
     HWY_INLINE void put(D d, int count, V keys, V children) {
-        hn::StoreU(hn::AndNot(hn::Set(d, W - 1), keys), d, entries_ + top_);
-        hn::StoreU(children, d, reinterpret_cast<std::int32_t*>(words_) + top_);
+        auto* const to = reinterpret_cast<std::int32_t*>(places_ + top_);
+        if constexpr (wanted == Wanted::any)
+            hn::StoreU(children, d, to);
+        else
+            hn::StoreInterleaved2(children, hn::AndNot(hn::Set(d, W - 1), keys), d, to);
         top_ += count;
     }
-    // `push` where a row takes several vectors: children are inserted one by one.
-    HWY_INLINE void push_each(const Boxes<W>& boxes, const std::uint32_t* children) {
-        alignas(64) float at[W];
-        boxes.store(at);
-        const int base = top_;
-        for (unsigned entered = boxes.bits(); entered != 0; entered &= entered - 1) {
-            const int i = std::countr_zero(entered);
-            const std::int32_t entry = std::bit_cast<std::int32_t>(at[i]);
-            int place = top_++;
-            for (; place > base && entries_[place - 1] < entry; --place) {
-                entries_[place] = entries_[place - 1];
-                words_[place] = words_[place - 1];
-            }
-            entries_[place] = entry, words_[place] = children[i];
-        }
+    HWY_INLINE void put_unsorted(hn::Mask<decltype(i32)> entered, const std::uint32_t* children) {
+        const Lanes child = hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children));
+        hn::StoreU(compressed(i32, child, entered), i32, reinterpret_cast<std::int32_t*>(places_ + top_));
+        top_ += static_cast<int>(hn::CountTrue(i32, entered));
+    }
+    HWY_INLINE void put_each_unsorted(unsigned entered, const std::uint32_t* children) {
+        for (; entered != 0; entered &= entered - 1) places_[top_++] = children[std::countr_zero(entered)];
     }
 
-    std::int32_t* entries_;
-    std::uint32_t* words_;
+    // ---- Without lanes, where a row takes several vectors ----
+
+    // Pushes the entered children except the nearest, which is returned; at least one is entered. Up to four
+    // are ordered by conditional moves, more are inserted one by one.
+    HWY_INLINE Place push_others_each(const Boxes<W>& boxes, const std::uint32_t* children) {
+        alignas(64) float at[W];
+        boxes.store(at);
+        unsigned entered = boxes.bits();
+        const auto next = [&]() __attribute__((always_inline)) {
+            const int i = std::countr_zero(entered);
+            entered &= entered - 1;
+            return waiting(at[i], children[i]);
+        };
+        Place a = next();
+        if (entered == 0) return a;
+        Place b = next();
+        order(a, b);
+        if (entered == 0) return push(b), a;
+        Place c = next();
+        order(b, c), order(a, b);
+        if (entered == 0) return push(c), push(b), a;
+        Place d = next();
+        order(c, d), order(b, c), order(a, b);
+        const Place* const base = places_ + top_;
+        push(d), push(c), push(b);
+        if (entered == 0) return a;
+        push(a);
+        while (entered != 0) insert(base, next());
+        return places_[--top_];
+    }
+    // Inserts a child among those from `base` on.
+    HWY_INLINE void insert(const Place* base, Place child) {
+        Place* place = places_ + top_++;
+        for (; place > base && place[-1] < child; --place) *place = place[-1];
+        *place = child;
+    }
+
+    Place* places_;
     int bottom_, top_;
 };
 

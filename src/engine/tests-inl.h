@@ -21,6 +21,9 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Whether the asker wants the nearest of all answers, or stops at the first.
+enum class Wanted { closest, any };
+
 template <class D>
 HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
     std::uint64_t bits = 0;
@@ -32,24 +35,31 @@ HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
 template <int W>
 using Floats = hn::CappedTag<float, W>;
 
-// The numbers of a ray that the test of boxes needs, each in all lanes.
+// The numbers of a ray that the test of boxes needs, each in all lanes. The axes have names, since g++ keeps
+// arrays of vectors in memory.
 template <int W>
 struct Slabs {
     using V = hn::Vec<Floats<W>>;
 
-    V inverse[3], enter_at[3], leave_at[3], s_min;
-    std::size_t near_row[3];
+    struct Axis {
+        V inverse, enter_at, leave_at;
+        std::size_t near_row;
 
-    HWY_INLINE explicit Slabs(const WideRay& ray) {
-        constexpr Floats<W> f;
-        for (int k = 0; k < 3; ++k) {
-            inverse[k] = hn::Set(f, ray.inverse[k]);
-            enter_at[k] = hn::Set(f, ray.enter_at[k]);
-            leave_at[k] = hn::Set(f, ray.leave_at[k]);
-            near_row[k] = ray.near_row[k];
-        }
-        s_min = hn::Set(f, ray.s_min);
-    }
+        HWY_INLINE Axis(const WideRay& ray, int k)
+            : inverse(hn::Set(Floats<W>(), ray.inverse[k])),
+              enter_at(hn::Set(Floats<W>(), ray.enter_at[k])),
+              leave_at(hn::Set(Floats<W>(), ray.leave_at[k])),
+              near_row(ray.near_row[k]) {}
+    };
+    Axis x, y, z;
+    V s_min, s_limit;
+
+    HWY_INLINE explicit Slabs(const WideRay& ray)
+        : x(ray, 0),
+          y(ray, 1),
+          z(ray, 2),
+          s_min(hn::Set(Floats<W>(), ray.s_min)),
+          s_limit(hn::Set(Floats<W>(), ray.s_limit)) {}
 };
 
 // The boxes of W children: a mask of those that the ray enters, and the s at which it does.
@@ -63,18 +73,16 @@ struct Boxes {
     hn::Mask<Floats<W>> entered[parts];
 
     HWY_INLINE Boxes() = default;
-    HWY_INLINE Boxes(const std::byte* node, const Slabs<W>& ray, float s_limit) {
+    HWY_INLINE Boxes(const std::byte* node, const Slabs<W>& ray) {
         for (int p = 0; p < parts; ++p) {
-            const auto near_s = [&](int k) {
-                const V planes = row(node, ray.near_row[k], p);
-                return hn::MulSub(planes, ray.inverse[k], ray.enter_at[k]);
+            const auto near_s = [&](const typename Slabs<W>::Axis& axis) __attribute__((always_inline)) {
+                return hn::MulSub(row(node, axis.near_row, p), axis.inverse, axis.enter_at);
             };
-            const auto far_s = [&](int k) {
-                const V planes = row(node, ray.near_row[k] ^ (4 * W), p);
-                return hn::MulSub(planes, ray.inverse[k], ray.leave_at[k]);
+            const auto far_s = [&](const typename Slabs<W>::Axis& axis) __attribute__((always_inline)) {
+                return hn::MulSub(row(node, axis.near_row ^ (4 * W), p), axis.inverse, axis.leave_at);
             };
-            const V exit = hn::Min(hn::Min(far_s(0), far_s(1)), hn::Min(far_s(2), hn::Set(f, s_limit)));
-            entry[p] = hn::Max(hn::Max(near_s(0), near_s(1)), hn::Max(near_s(2), ray.s_min));
+            const V exit = hn::Min(hn::Min(far_s(ray.x), far_s(ray.y)), hn::Min(far_s(ray.z), ray.s_limit));
+            entry[p] = hn::Max(hn::Max(near_s(ray.x), near_s(ray.y)), hn::Max(near_s(ray.z), ray.s_min));
             entered[p] = hn::Le(entry[p], exit);
         }
     }
@@ -116,16 +124,43 @@ struct ShearedCorners {
     // triangle lies between its corners, so one that does not reach into the interval is not hit in it.
     // Places that are not filled are NaN and fail every comparison.
     HWY_INLINE hn::Mask<F> may_meet(F f, V direction_z, V s_low, V s_limit) const {
-        const auto forward = [&](V along) { return hn::Xor(along, hn::And(direction_z, hn::Set(f, -0.0f))); };
-        const V a = forward(z[0]), b = forward(z[1]), c = forward(z[2]);
-        return hn::And(around(f), hn::And(hn::Le(hn::Min(a, hn::Min(b, c)), s_limit),
-                                          hn::Ge(hn::Max(a, hn::Max(b, c)), s_low)));
+        const Range s = along(f, direction_z);
+        return hn::And(around(f), hn::And(hn::Le(s.least, s_limit), hn::Ge(s.most, s_low)));
     }
     // First half of `may_meet`: whether the ray may pass between the edges.
     HWY_INLINE hn::Mask<F> around(F f) const {
+        const Range side = sides(f);
+        return hn::Or(hn::Ge(side.least, hn::Zero(f)), hn::Le(side.most, hn::Zero(f)));
+    }
+    // Whether the exact test would find a meeting within [t_min, t_max]: for sure where no rounded difference
+    // is 0, and where the whole triangle lies in the interval. `z_length` is |direction_z|.
+    HWY_INLINE hn::Mask<F> surely_meets(F f, V direction_z, V z_length, V t_min, V t_max) const {
+        const Range side = sides(f), s = along(f, direction_z);
+        const auto between = hn::Or(hn::Gt(side.least, hn::Zero(f)), hn::Lt(side.most, hn::Zero(f)));
+        // The interval of s is narrowed by as much as `may_meet` widens it.
+        const V room = hn::Mul(hn::Set(f, underflow), hn::Add(hn::Set(f, 1.0f), z_length));
+        const V last = hn::Min(t_max, hn::Set(f, std::numeric_limits<float>::max()));
+        const V low = hn::MulAdd(hn::Mul(t_min, z_length), hn::Set(f, 1 + wider), room);
+        const V high = hn::MulSub(hn::Mul(last, z_length), hn::Set(f, 1 - wider), room);
+        return hn::And(between, hn::And(hn::Ge(s.least, low), hn::Le(s.most, high)));
+    }
+
+private:
+    struct Range {
+        V least, most;
+    };
+    static HWY_INLINE Range range_of(V a, V b, V c) {
+        return {hn::Min(a, hn::Min(b, c)), hn::Max(a, hn::Max(b, c))};
+    }
+    // The sides of the edges on which the ray passes.
+    HWY_INLINE Range sides(F) const {
         const auto edge = [&](int p, int q) { return hn::Sub(hn::Mul(x[p], y[q]), hn::Mul(y[p], x[q])); };
-        const V u = edge(2, 1), v = edge(0, 2), w = edge(1, 0), zero = hn::Zero(f);
-        return hn::Or(hn::Ge(hn::Min(u, hn::Min(v, w)), zero), hn::Le(hn::Max(u, hn::Max(v, w)), zero));
+        return range_of(edge(2, 1), edge(0, 2), edge(1, 0));
+    }
+    // The s of the corners.
+    HWY_INLINE Range along(F f, V direction_z) const {
+        const V sign = hn::And(direction_z, hn::Set(f, -0.0f));
+        return range_of(hn::Xor(z[0], sign), hn::Xor(z[1], sign), hn::Xor(z[2], sign));
     }
 };
 
@@ -208,8 +243,9 @@ HWY_INLINE bool nearer(float t, std::uint32_t id, float t_min, float t_limit, st
 }
 
 // Tests the triangles of a block. A triangle that is hit nearer than the ray's hit so far (or as near, with
-// a lower number) becomes the hit, if `keeps(t, u, v, id)`. True if there was one.
-template <class Keeps>
+// a lower number) becomes the hit, if `keeps(t, u, v, id)`. True if there was one. Where any hit is wanted,
+// the hit may lack its t, u and v.
+template <Wanted wanted, class Keeps>
 HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keeps keeps) {
     using F = Floats<8>;
     constexpr F f;
@@ -225,6 +261,16 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keep
         unsigned candidates = bits_of(
             f, corners.may_meet(f, hn::Set(f, ray.z), hn::Set(f, ray.s_low), hn::Set(f, ray.s_limit)));
         if (candidates == 0) continue;
+        // Any hit: one that is sure needs no exact test.
+        if constexpr (wanted == Wanted::any) {
+            const unsigned sure =
+                bits_of(f, corners.surely_meets(f, hn::Set(f, ray.z), hn::Set(f, ray.z_length),
+                                                hn::Set(f, ray.t_min), hn::Set(f, ray.t_limit)));
+            if (sure != 0) {
+                ray.element = block.id[at + std::countr_zero(sure)];
+                return true;
+            }
+        }
         // Test the candidates exactly, and keep the nearest.
         Meetings m;
         const auto z = [&](auto d, int) { return hn::Set(d, static_cast<double>(ray.z)); };
@@ -244,22 +290,24 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray, Keep
     if (found) ray.s_limit = s_limit_of(ray.t_limit, ray.z_length);
     return found;
 }
+template <Wanted wanted>
 HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
-    return test_block(block, ray, [](float, float, float, std::uint32_t) { return true; });
+    return test_block<wanted>(block, ray, [](float, float, float, std::uint32_t) { return true; });
 }
-// `test_block` with the filter of the call. It is not inlined, since a call inside the other would cost
-// registers.
+// `test_block` with the filter of the call, which wants to know what is hit. It is not inlined, since a call
+// inside the other would cost registers.
 [[gnu::cold]] HWY_NOINLINE bool test_block_filtered(const WideScene& scene, std::uint32_t leaf, WideRay& ray,
                                                     std::size_t number) {
-    return test_block(scene.blocks[leaf], ray, [&](float t, float u, float v, std::uint32_t id) {
-        return kept(scene, number, t, u, v, id);
-    });
+    return test_block<Wanted::closest>(
+        scene.blocks[leaf], ray,
+        [&](float t, float u, float v, std::uint32_t id) { return kept(scene, number, t, u, v, id); });
 }
 // Tests the triangles of a leaf for ray `number`, with the filter of the call if there is one.
+template <Wanted wanted>
 HWY_INLINE bool test_triangles(const WideScene& scene, std::uint32_t leaf, WideRay& ray, std::size_t number) {
     if (scene.filter.keeps != nullptr) [[unlikely]]
         return test_block_filtered(scene, leaf, ray, number);
-    return test_block(scene.blocks[leaf], ray);
+    return test_block<wanted>(scene.blocks[leaf], ray);
 }
 
 HWY_INLINE Hit<float> hit_of(const WideScene& scene, const WideRay& ray) {
