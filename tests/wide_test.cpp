@@ -111,7 +111,8 @@ TEST(Wide, IntervalsThatEndAtAHit) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < 64; ++i) {
         Random random(3, i);
-        const float x = static_cast<float>(i % 8), y = static_cast<float>(i / 8),
+        const std::uint32_t column = i % 8, row = i / 8;
+        const float x = static_cast<float>(column), y = static_cast<float>(row),
                     z = static_cast<float>(random.uniform());
         mesh.vertices.insert(mesh.vertices.end(),
                              {{x, y, z}, {x + 1, y, z}, {x, y + 1, z}, {x + 1, y + 1, z}});
