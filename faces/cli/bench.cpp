@@ -22,7 +22,7 @@ namespace {
 
 struct BenchArguments : Common {
     std::vector<std::string> scenes;
-    std::string sets = "primary,diffuse,random,shadow,ambient", modes = "one,batch",
+    std::string sets = fmt::format("{}", fmt::join(ray_kinds, ",")), modes = "one,batch",
                 questions = "closest,any", builders = "medium,high", instruction_set, html;
     int width = 0, rounds = 0;
     unsigned threads = 1;

@@ -60,7 +60,8 @@ std::vector<Ray3f> diffuse_rays(const TriangleMesh<float>& mesh, const std::vect
 }
 
 std::vector<Ray3f> ambient_rays(std::vector<Ray3f> diffuse, const Box3f& box) {
-    for (Ray3f& ray : diffuse) ray.t_max = length(box.extent()) / 10 / length(ray.direction);
+    const float reach = length(box.extent()) / 10;
+    for (Ray3f& ray : diffuse) ray.t_max = reach / length(ray.direction);
     return diffuse;
 }
 

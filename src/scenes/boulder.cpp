@@ -1,10 +1,10 @@
 /// A smooth closed surface with fine detail.
-#include <array>
 #include <cmath>
 
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 
+#include "noise.h"
 #include "precision.h"
 #include "steps.h"
 
@@ -17,27 +17,6 @@ constexpr double coarsest_skin = 3;        // lattice cells a unit in the first 
 constexpr int octaves_of_skin = 7;
 constexpr double height_to_width = 1.4;
 constexpr double jitter = 0.15;  // of the distance between vertices
-
-/// Value noise at p: random values in [0, 1) at the points of a lattice, with smooth steps between them.
-double noise_in_space(std::uint64_t seed, const Vec3d& p) {
-    std::array<std::uint64_t, 3> cell{};
-    Vec3d weight;
-    for (int k = 0; k < 3; ++k) {
-        const double shifted = p[k] + 0x1p20;  // positive, so that truncation is the floor
-        cell[static_cast<std::size_t>(k)] = static_cast<std::uint64_t>(shifted);
-        const double f = shifted - std::floor(shifted);
-        weight[k] = product(product(f, f), 3 - 2 * f);
-    }
-    const auto between = [](double a, double b, double share) { return a + product(share, b - a); };
-    const auto value = [&](std::uint64_t x, std::uint64_t y, std::uint64_t z) {
-        return Random(seed, ((cell[0] + x) << 42) + ((cell[1] + y) << 21) + cell[2] + z).uniform();
-    };
-    const auto row = [&](std::uint64_t y, std::uint64_t z) {
-        return between(value(0, y, z), value(1, y, z), weight[0]);
-    };
-    const auto plane = [&](std::uint64_t z) { return between(row(0, z), row(1, z), weight[1]); };
-    return between(plane(0), plane(1), weight[2]);
-}
 
 /// A point of the cube [-1, 1]³ on the unit sphere, so that a regular grid stays nearly regular.
 Vec3d on_sphere(const Vec3d& p) {
@@ -55,9 +34,9 @@ Vec3d sculpted(std::uint64_t seed, const Vec3d& on) {
     double skin = 0, amplitude = roughness, scale = coarsest_skin;
     std::uint64_t stream = scattered(seed);
     for (int i = 0; i < octaves_of_skin; ++i, amplitude /= 2, scale *= 2)
-        skin += product(amplitude, noise_in_space(stream++, on * scale) - 0.5);
+        skin += product(amplitude, detail::value_noise<3>(stream++, on * scale) - 0.5);
     Vec3d p = on * (1 + skin);
-    for (int k = 0; k < 3; ++k) p[k] += product(bent, noise_in_space(stream++, on * bends) - 0.5);
+    for (int k = 0; k < 3; ++k) p[k] += product(bent, detail::value_noise<3>(stream++, on * bends) - 0.5);
     return {p[0], p[1], product(height_to_width, p[2])};
 }
 

@@ -2,6 +2,7 @@
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 
+#include "noise.h"
 #include "precision.h"
 #include "sizing.h"
 #include "steps.h"
@@ -13,31 +14,11 @@ constexpr int octaves = 11;
 constexpr double coarsest_cells = 3;  // lattice cells along the square's side in the first octave
 constexpr double relief = 0.125;      // half the height that all octaves together can reach
 
-/// The noise at p: random values in [0, 1) at the points of an octave's lattice, with smooth steps between
-/// them. Each seed has its own noise.
-double value_noise(std::uint64_t seed, const Vec2d& p) {
-    std::uint64_t cell[2];
-    double weight[2];
-    for (int i = 0; i < 2; ++i) {
-        const double shifted = p[i] + 0x1p20;  // positive, so that truncation is the floor
-        cell[i] = static_cast<std::uint64_t>(shifted);
-        const double f = shifted - static_cast<double>(cell[i]);
-        weight[i] = product(product(f, f), 3 - 2 * f);
-    }
-    const auto row = [&](std::uint64_t y) {
-        const double a = Random(seed, (cell[0] << 32) + y).uniform();
-        const double b = Random(seed, ((cell[0] + 1) << 32) + y).uniform();
-        return a + product(weight[0], b - a);
-    };
-    const double low = row(cell[1]), high = row(cell[1] + 1);
-    return low + product(weight[1], high - low);
-}
-
 double height_at(std::uint64_t seed, Vec2d p) {
     double sum = 0, amplitude = relief;
     p = p * coarsest_cells;
     for (int i = 0; i < octaves; ++i) {
-        sum += product(amplitude, value_noise(scattered(seed) + static_cast<std::uint64_t>(i), p));
+        sum += product(amplitude, detail::value_noise<2>(scattered(seed) + static_cast<std::uint64_t>(i), p));
         amplitude /= 2;
         // Twice as fine, turned by the angle with cosine 4/5 and sine 3/5.
         p = Vec2d(product(1.6, p[0]) - product(1.2, p[1]), product(1.2, p[0]) + product(1.6, p[1]));
