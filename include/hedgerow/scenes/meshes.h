@@ -55,9 +55,9 @@ TriangleMesh<T> grass(std::uint64_t size, std::uint64_t seed = 0, const Progress
 template <class T>
 TriangleMesh<T> hairball(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
-/// A smooth closed surface with fine detail, as scanners make of statues: one sheet of small triangles of much
-/// the same size, whose vertices are not regular. A sphere, bent and roughened by value noise; about 2.7 high
-/// and 2.2 wide, around the origin. A larger size samples the same boulder more finely.
+/// A smooth closed surface with fine detail, as scanners make of statues: one sheet of small triangles of
+/// much the same size, whose vertices are not regular. A sphere, bent and roughened by value noise; about 2.7
+/// high and 2.2 wide, around the origin. A larger size samples the same boulder more finely.
 template <class T>
 TriangleMesh<T> boulder(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
