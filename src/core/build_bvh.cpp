@@ -48,11 +48,9 @@ BuildTree<T, D> build_tree(ReferenceList<T, D> references, CornersOf<T, D> corne
         }
         return top_down(BinnedSplitter<T, D>(std::move(references), sah), sah);
     };
-    if (options.reinsertion == 0) return build(options);
-    // Reinsertion may move every primitive on its own, so leaves of several primitives are made after it.
-    SahOptions single = options;
-    single.max_leaf_size = 1;
-    return reinserted(build(single), options, options.reinsertion, executor);
+    auto tree = build(options);
+    reinsert(tree, options.reinsertion, options.reinsertion_share, executor);
+    return tree;
 }
 
 #define HEDGEROW_BUILD_BVH(T, D) \

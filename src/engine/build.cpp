@@ -17,13 +17,15 @@ void require(bool good, const char* name, V value, const char* wanted) {
     throw UsageError(std::string(name) + "=" + std::to_string(value) + " is not " + wanted);
 }
 
-BvhOptions binary(const WideOptions& options) {
+BvhOptions binary(const WideOptions& options, std::uint32_t block) {
     BvhOptions o;
     o.builder = options.builder == WideBuilder::fast ? BvhBuilder::lbvh : BvhBuilder::binned;
-    o.reinsertion = options.builder == WideBuilder::high ? options.reinsertion : 0;
+    if (options.builder == WideBuilder::medium) o.reinsertion = 3, o.reinsertion_share = 0.03;
+    if (options.builder == WideBuilder::high) o.reinsertion = options.reinsertion, o.reinsertion_share = 0.3;
     o.max_leaf_size = options.max_leaf_size;
     o.traversal_cost = options.traversal_cost;
     o.intersection_cost = options.intersection_cost;
+    o.block = block;
     return o;
 }
 
@@ -46,12 +48,12 @@ WideOptions resolved(const WideOptions& options) {
 
 template <std::floating_point T, int D>
 WideTree<T, D> build_wide_tree(ReferenceList<T, D> references, const WideOptions& options,
-                               Executor& executor) {
+                               std::uint32_t block, Executor& executor) {
     const WideOptions all = resolved(options);
     const auto whole = [](PrimitiveId) { return Corners<T, D>(); };  // called by no builder that is used here
     const std::size_t count = references.size();
     executor.expect(count);  // for the collapse, which takes one step a leaf
-    const auto tree = build_tree<T, D>(std::move(references), whole, binary(all), executor);
+    const auto tree = build_tree<T, D>(std::move(references), whole, binary(all, block), executor);
     if (tree.items.empty()) return {};
     if (tree.leaves > WideCollapse<T, D>::most_leaves)
         throw InputError("a wide BVH has at most 2^28 leaves, and these primitives would take " +
@@ -61,8 +63,9 @@ WideTree<T, D> build_wide_tree(ReferenceList<T, D> references, const WideOptions
     return WideCollapse<T, D>(tree, all.width, executor).build();
 }
 
-#define HEDGEROW_BUILD_WIDE(T, D) \
-    template WideTree<T, D> build_wide_tree(ReferenceList<T, D>, const WideOptions&, Executor&);
+#define HEDGEROW_BUILD_WIDE(T, D)                                                                   \
+    template WideTree<T, D> build_wide_tree(ReferenceList<T, D>, const WideOptions&, std::uint32_t, \
+                                            Executor&);
 HEDGEROW_BUILD_WIDE(float, 2)
 HEDGEROW_BUILD_WIDE(float, 3)
 HEDGEROW_BUILD_WIDE(double, 2)

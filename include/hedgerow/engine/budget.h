@@ -18,23 +18,22 @@ namespace hedgerow {
 /// triangles.
 ///
 /// A primitive takes a reference of 8 numbers. A binary tree takes 2n − 1 nodes and n items.
-/// - Binary tree by `medium`: the references and the tree.
+/// - Binary tree by `medium` and `high`: the references and the tree; after that, the tree and, for
+///   reinsertion, a parent, a place in a list and an area a node (24 bytes), and a move for a part of them.
 /// - Binary tree by `fast`: the references, which stay, and the tree; sorted codes and room to sort them in;
 ///   later, lists of the leaves of subtrees that are halved by count.
-/// - Binary tree by `high`: two trees; a tree whose nodes can be moved (a box and 16 bytes a node); and
-///   either the nodes by their area (16 bytes each, in an array that has just doubled) or a third tree.
 /// - Collapse, to L <= n leaves and fewer than L inner nodes, since each has two children or more: the
 ///   binary tree; width − 1 costs a leaf; 2L children and L beginnings in arrays that may be half empty; and
 ///   the wide tree, which is items in blocks of eight, and nodes.
 template <std::floating_point T, int D>
 double most_bytes_to_build(std::size_t n, const WideOptions& resolved) {
-    constexpr std::size_t reference = sizeof(Reference<T, D>), id = sizeof(PrimitiveId),
-                          box = sizeof(LaneBox<T>);
-    constexpr std::size_t tree = 2 * sizeof(BuildNode<T, D>) + id, code = 8, halves = 24, place = 16;
+    constexpr std::size_t reference = sizeof(Reference<T, D>), id = sizeof(PrimitiveId);
+    constexpr std::size_t tree = 2 * sizeof(BuildNode<T, D>) + id, code = 8, halves = 24;
     std::size_t binary = reference + tree;
-    if (resolved.builder == WideBuilder::fast) binary += 2 * code + halves;
-    if (resolved.builder == WideBuilder::high)
-        binary = std::max(binary, 2 * tree + 2 * (box + place) + std::max(6 * place + 2, tree + halves));
+    if (resolved.builder == WideBuilder::fast)
+        binary += 2 * code + halves;
+    else
+        binary = std::max(binary, tree + 2 * (24 + 24));
     const auto width = static_cast<std::size_t>(resolved.width);
     const std::size_t children = 4 * 12, beginnings = 2 * 8, costs = (width - 1) * sizeof(float);
     const std::size_t wide = wide_leaf_size * id + WideNodes<T, D>::stride_of(resolved.width);

@@ -9,7 +9,8 @@
 namespace hedgerow {
 
 /// The builder of the binary tree that a wide tree is collapsed from, fastest first: linear (LBVH), binned
-/// SAH, and binned SAH improved by reinsertion.
+/// SAH with up to three passes of reinsertion over the largest nodes (3%), and binned SAH with passes over
+/// three tenths of the nodes until they gain too little.
 enum class WideBuilder { fast, medium, high };
 inline constexpr std::string_view wide_builder_names[] = {"fast", "medium", "high"};
 constexpr std::string_view name_of(WideBuilder builder) {
@@ -23,8 +24,8 @@ struct WideOptions {
     int width = 0;
     /// Largest number of primitives in a leaf: 1 to `wide_leaf_size`.
     std::uint32_t max_leaf_size = wide_leaf_size;
-    /// Costs of the binary tree's SAH (SahOptions): to open a node, and to test a triangle. Over instances
-    /// WideBvh multiplies the second by WideBvh::instance_cost.
+    /// Costs of the binary tree's SAH (SahOptions): to open a node, and to test a primitive. Triangles cost
+    /// as much as a whole block of eight, and instances WideBvh::instance_cost times as much.
     double traversal_cost = 4, intersection_cost = 1;
     /// Largest number of passes of reinsertion, for the builder `high`.
     int reinsertion = 10;
@@ -36,7 +37,7 @@ struct WideOptions {
     template <class Option>
     void list(Option& option) {
         option("builder", builder, wide_builder_names,
-               "of the binary tree that it is collapsed from: lbvh, binned, binned and improved");
+               "of the binary tree that it is collapsed from: lbvh, binned, binned and improved at length");
         option("width", width, 0, 16, "children a node: 4, 8 or 16; 0: what this processor is best at");
         option("reinsertion", reinsertion, 0, 100, "most passes of the builder 'high'");
         option("traversal_cost", traversal_cost, 0, 1e6, "of an inner node of the binary tree, for the SAH");
@@ -49,10 +50,11 @@ struct WideOptions {
 /// The options with a width chosen in place of 0. Throws UsageError for an option out of its range.
 WideOptions resolved(const WideOptions& options);
 
-/// Builds the tree over all references. Throws UsageError for an option out of its range, and InputError for
-/// more than 2^28 leaves. Compiled in core (src/engine/build.cpp), for float and double, in 2D and 3D.
+/// Builds the tree over all references, whose leaves are tested by blocks of so many (SahOptions::block).
+/// Throws UsageError for an option out of its range, and InputError for more than 2^28 leaves. Compiled in
+/// core (src/engine/build.cpp), for float and double, in 2D and 3D.
 template <std::floating_point T, int D>
 WideTree<T, D> build_wide_tree(ReferenceList<T, D> references, const WideOptions& options,
-                               Executor& executor);
+                               std::uint32_t block, Executor& executor);
 
 }  // namespace hedgerow

@@ -40,7 +40,8 @@ public:
         Options all = resolved(options);
         refuse_beyond_budget<T, D>(set.size(), all);
         if constexpr (Instanced<P>) all.intersection_cost *= instance_cost;
-        return WideBvh(references_of(set, executor), all, executor);
+        constexpr bool in_blocks = D == 3 && std::same_as<P, TriangleMeshView<T>>;  // see pack()
+        return WideBvh(references_of(set, executor), all, in_blocks ? wide_leaf_size : 1, executor);
     }
 
     /// Each primitive is in exactly one leaf.
@@ -162,10 +163,10 @@ public:
     }
 
 private:
-    WideBvh(ReferenceList<T, D> references, const Options& options, Executor& executor)
+    WideBvh(ReferenceList<T, D> references, const Options& options, std::uint32_t block, Executor& executor)
         : options_(options),
           count_(references.size()),
-          tree_(build_wide_tree<T, D>(std::move(references), options, executor)) {}
+          tree_(build_wide_tree<T, D>(std::move(references), options, block, executor)) {}
     WideBvh(const Options& options, std::size_t count, WideTree<T, D> tree, double built_cost)
         : options_(options), count_(count), tree_(std::move(tree)), built_cost_(built_cost) {}
 

@@ -48,10 +48,17 @@ struct SahOptions {
     /// min(bins, 4 + n/20).
     int bins = 32;
     static constexpr int most_bins = 64;
+    /// How many primitives one instruction tests, a power of two. They cost as much as so many, even if a
+    /// leaf has fewer.
+    std::uint32_t block = 1;
 
-    double leaf_cost(std::uint32_t count, double area) const { return intersection_cost * count * area; }
-    /// Whether `count` primitives are a leaf whatever the boxes below: to test them all costs no more than to
-    /// open one inner node.
+    /// The primitives that `count` of them cost as much as: whole blocks.
+    std::uint32_t tests(std::uint32_t count) const { return (count + block - 1) & ~(block - 1); }
+    double leaf_cost(std::uint32_t count, double area) const {
+        return intersection_cost * tests(count) * area;
+    }
+    /// Whether `count` primitives are a leaf whatever the boxes below: to test each alone costs no more than
+    /// to open one inner node.
     bool always_leaf(std::uint32_t count) const {
         return count <= max_leaf_size && intersection_cost * count <= traversal_cost;
     }

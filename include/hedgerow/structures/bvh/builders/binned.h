@@ -106,26 +106,26 @@ protected:
             (b < best.border ? boxes.first : boxes.second).expand(bins.of[best.axis][b].box);
         return boxes;
     }
-    /// Whether a leaf costs no more than a split with `cost` as its sum of area·count over both sides.
+    /// Whether a leaf costs no more than a split with `cost` as its sum of area·tests over both sides.
     bool cheaper_as_leaf(const Range<T, D>& range, double cost) const {
         const double area = static_cast<double>(range.box.template half_area<D>());
         return options_.makes_leaf(range.size(), area,
                                    options_.traversal_cost * area + options_.intersection_cost * cost);
     }
 
-    /// The split with the least sum of area·count over both sides. Of equal ones it is the first, by axis and
+    /// The split with the least sum of area·tests over both sides. Of equal ones it is the first, by axis and
     /// then by border.
-    static Best cheapest(const Bins& bins, int count, std::uint32_t total) {
+    Best cheapest(const Bins& bins, int count, std::uint32_t total) const {
         Best best;
         for (int k = 0; k < D; ++k) sweep(bins.of[k], count, total, k, best);
         return best;
     }
-    static double cost(const LaneBox<T>& box, std::uint32_t count) {
-        return count == 0 ? 0 : static_cast<double>(box.template half_area<D>()) * count;
+    double cost(const LaneBox<T>& box, std::uint32_t count) const {
+        return count == 0 ? 0 : static_cast<double>(box.template half_area<D>()) * options_.tests(count);
     }
 
 private:
-    static void sweep(const Bin* bins, int count, std::uint32_t total, int axis, Best& best) {
+    void sweep(const Bin* bins, int count, std::uint32_t total, int axis, Best& best) const {
         // Compute the cost of the right side of each border, from the last border to the first.
         double right_cost[SahOptions::most_bins];
         auto box = LaneBox<T>::none();

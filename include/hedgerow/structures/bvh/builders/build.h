@@ -27,9 +27,11 @@ struct BvhOptions : SahOptions {
     /// most_search_radius.
     int search_radius = 10;
     static constexpr int most_search_radius = 128;
-    /// The most passes of improvement by reinsertion, after any builder; 0 for none. Each pass takes about as
-    /// long as the build itself. Passes end early once they gain too little (reinsertion.h).
+    /// The most passes of improvement by reinsertion, after any builder; 0 for none. A pass over all nodes
+    /// takes up to as long as the build itself. Passes end early once they gain too little (reinsertion.h).
     int reinsertion = 0;
+    /// Each pass searches this share of the nodes, the largest.
+    double reinsertion_share = 1;
     /// Spatial splits: how many references they may add, as a share of the primitives; and how much the sides
     /// of the best object split must overlap before a plane is tried, as a share of the root's area.
     double duplicates = 0.5;
@@ -51,6 +53,7 @@ protected:
         option("search_radius", search_radius, 1, most_search_radius,
                "neighbours that the ploc builder looks at, to either side");
         option("reinsertion", reinsertion, 0, 100, "most passes of improvement after the build");
+        option("reinsertion_share", reinsertion_share, 0, 1, "of the nodes, the largest, in each pass");
         option("duplicates", duplicates, 0, 10,
                "spatial splits: what they may add, as a share of the primitives");
         option("overlap", overlap, 0, 1,

@@ -160,8 +160,8 @@ private:
         slabs[at].box.expand(rest.lanes());
     }
     template <class Border>
-    static void sweep(const Range<T, D>& range, int axis, int count, Border border,
-                      const std::array<Slab, most_slabs>& slabs, Plane& best) {
+    void sweep(const Range<T, D>& range, int axis, int count, Border border,
+               const std::array<Slab, most_slabs>& slabs, Plane& best) const {
         // Gather the box of the right side of each border, from the last border to the first.
         std::array<LaneBox<T>, most_slabs> right_box;
         auto box = LaneBox<T>::none();
@@ -177,7 +177,7 @@ private:
             p.on_right -= slabs[b - 1].end;
             if (p.on_left == 0 || p.on_right == 0 || p.on_left + p.on_right > range.capacity()) continue;
             p.right = right_box[b];
-            p.cost = Base::cost(p.left, p.on_left) + Base::cost(p.right, p.on_right);
+            p.cost = this->cost(p.left, p.on_left) + this->cost(p.right, p.on_right);
             p.position = border(static_cast<int>(b));
             if (p.cost < best.cost) best = p;
         }
@@ -224,9 +224,9 @@ private:
             return box;
         };
         const double to_left =
-            Base::cost(with(plane.left), plane.on_left) + Base::cost(plane.right, plane.on_right - 1);
+            this->cost(with(plane.left), plane.on_left) + this->cost(plane.right, plane.on_right - 1);
         const double to_right =
-            Base::cost(plane.left, plane.on_left - 1) + Base::cost(with(plane.right), plane.on_right);
+            this->cost(plane.left, plane.on_left - 1) + this->cost(with(plane.right), plane.on_right);
         if (plane.cost <= std::min(to_left, to_right)) return both;
         return to_left <= to_right ? only_left : only_right;
     }

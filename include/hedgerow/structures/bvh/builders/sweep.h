@@ -72,12 +72,12 @@ private:
         auto box = LaneBox<T>::none();
         for (std::uint32_t i = range.last - 1; i > range.first; --i) {
             box.expand(references_[order[i]].lanes());
-            right_cost_[i] = area(box) * (range.last - i);
+            right_cost_[i] = area(box) * options_.tests(range.last - i);
         }
         box = LaneBox<T>::none();
         for (std::uint32_t i = range.first + 1; i < range.last; ++i) {
             box.expand(references_[order[i - 1]].lanes());
-            const double c = area(box) * (i - range.first) + right_cost_[i];
+            const double c = area(box) * options_.tests(i - range.first) + right_cost_[i];
             if (c < best) best = c, axis = k, border = i;
         }
     }
