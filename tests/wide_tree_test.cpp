@@ -141,4 +141,35 @@ TEST(Wide, CostsLessThanTheGreedyCollapse) {
         }
 }
 
+/// The number of leaves below a node.
+std::uint32_t leaves_below(const WideNodes<float, 3>& nodes, std::size_t node) {
+    std::uint32_t sum = 0;
+    for (int i = 0; i < nodes.children(node); ++i) {
+        const WideChild c = nodes.child(node, i);
+        sum += c.leaf() ? 1 : leaves_below(nodes, c.word);
+    }
+    return sum;
+}
+
+TEST(Wide, TheLikeliestChildToStopARayIsTheLast) {
+    for (const auto& mesh : {teapot_in_stadium<float>(5000), soup<float>(3000)})
+        for (const auto builder : wide_builders) {
+            WideOptions options;
+            options.builder = builder;
+            const auto index = build<WideBvh>(mesh, options);
+            const auto& nodes = index.structure().tree().nodes;
+            for (std::size_t n = 0; n < nodes.size(); ++n) {
+                // A child is at most a step of eight behind those before it.
+                double most = 0;
+                for (int i = 0; i < nodes.children(n); ++i) {
+                    const WideChild c = nodes.child(n, i);
+                    const double stops = double(nodes.boxes(n)[i].half_area()) /
+                                         std::sqrt(c.leaf() ? 1.0 : leaves_below(nodes, c.word));
+                    EXPECT_GE(stops, most / 8 * (1 - 1e-5));
+                    most = std::max(most, stops);
+                }
+            }
+        }
+}
+
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <hedgerow/all.h>
+#include <hedgerow/caster.h>
 #include <hedgerow/instances/instance_set.h>
 #include <hedgerow/mesh_index.h>
 #include <hedgerow/primitives/point_cloud.h>

@@ -12,6 +12,7 @@
 
 #include <hwy/highway.h>
 
+#include "prefetch-inl.h"
 #include "reader-inl.h"
 #include "tests-inl.h"
 #include "walk-inl.h"
@@ -26,11 +27,14 @@ class Batch {
 public:
     /// For the rays from `begin` to `end`, without `end`.
     Batch(const WideScene& scene, const RayArray<float, 3>& rays, std::size_t begin, std::size_t end)
-        : scene_(scene), asked_(rays), next_(begin), end_(end) {
+        : scene_(scene),
+          nodes_(scene.tree.nodes.data()),
+          prefetch_(scene),
+          asked_(rays),
+          next_(begin),
+          end_(end) {
         room_ = Stack::room(scene.tree.depth);
         slots_ = std::min(most_slots, stack_places / room_);
-        start_[0] = reinterpret_cast<const char*>(scene.tree.nodes.data());
-        start_[1] = reinterpret_cast<const char*>(scene.blocks);
     }
 
     template <class Answer>
@@ -43,9 +47,7 @@ private:
     // to 48 leaves differ by no more than noise (docs/design/008-wide-bvh.md).
     static constexpr int most_slots = 32, enough_leaves = 16;
     static constexpr int stack_places = most_slots * 256;
-    using Block = TriangleBlock<float>;
     using Stack = WalkStack<W, wanted>;
-    static constexpr std::size_t stride = WideNodes<float, 3>::stride_of(W);
 
     /// Whether there is a filter is a template parameter, since checking it at each leaf makes any hit 3%
     /// slower.
@@ -87,13 +89,6 @@ private:
         }
     }
 
-    /// The address of a node, or of a leaf where the highest bit is set. Found by arithmetic, since a branch
-    /// would have to be predicted.
-    HWY_INLINE const char* place_of(std::uint32_t word) const {
-        const std::uint32_t leaf = word >> 31;
-        return start_[leaf] + std::size_t(word & ~WideChild::leaf_bit) * step_[leaf];
-    }
-
     /// Starts the next usable ray in slot s. Rays that are not usable get their answers at once. False if no
     /// ray is left.
     template <class Answer>
@@ -122,13 +117,10 @@ private:
     HWY_INLINE void pop(int s, Stack& stack) {
         word_[s] = stack.pop();
         top_[s] = stack.top();
-        const char* const from = place_of(word_[s]);
-        // The lines that are read: 28·W bytes of a node are its planes and children, 5 lines are a leaf's
-        // block.
-        for (int line = 0; line < 28 * W / 64 || line < 5; ++line) __builtin_prefetch(from + 64 * line);
+        prefetch_(word_[s]);
     }
     HWY_INLINE void open_node(int s) {
-        const std::byte* const node = reinterpret_cast<const std::byte*>(start_[0] + word_[s] * stride);
+        const std::byte* const node = nodes_ + word_[s] * WideNodes<float, 3>::stride_of(W);
         Stack stack = stack_of(s);
         const Boxes<W> boxes(node, Slabs<W>(ray_[s]));
         if constexpr (wanted == Wanted::any)
@@ -154,11 +146,11 @@ private:
     }
 
     const WideScene& scene_;
+    const std::byte* const nodes_;
+    const Prefetch<W> prefetch_;
     RayReader asked_;
     std::size_t next_, end_;
     int slots_, room_;
-    const char* start_[2];  // of nodes and of leaves; step_: bytes from one to the next
-    std::size_t step_[2] = {stride, sizeof(Block)};
     alignas(64) WideRay ray_[most_slots];
     std::uint32_t word_[most_slots];
     int top_[most_slots];

@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "packet_hits-inl.h"
+#include "prefetch-inl.h"
 #include "stack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,7 +27,7 @@ class Packet {
 public:
     static constexpr int size = PacketRays::size;
 
-    explicit Packet(const WideScene& scene) : scene_(scene) {}
+    explicit Packet(const WideScene& scene) : scene_(scene), prefetch_(scene) {}
 
     /// Reads rays: see PacketRays::look.
     HWY_INLINE std::uint32_t look(const RayArray<float, 3>& rays, std::size_t first, std::size_t row) {
@@ -39,13 +40,10 @@ public:
         rays_.clear_hits();
         for (int k = 0; k < 3; ++k) near_row_[k] = static_cast<std::size_t>(2 * k + rays_.down[k]) * 4 * W;
         trace();
-        for (int i = 0; i < size; ++i) {
-            if (rays_.ways[i] != way) continue;
-            Answer& to = answers[rays_.number(i)];
-            if constexpr (wanted == Wanted::any)
-                to = rays_.element[i] != Hit<float>::none;
-            else
-                to = hit_of(scene_, rays_.t_limit[i], rays_.u[i], rays_.v[i], rays_.element[i]);
+        for (int row = 0; row < size; row += static_cast<int>(block_side)) {
+            Answer* const to = answers + rays_.number(row);
+            for (int c = 0; c < static_cast<int>(block_side); ++c)
+                if (rays_.ways[row + c] == way) to[c] = answer_of<Answer>(row + c);
         }
     }
 
@@ -60,8 +58,16 @@ private:
     using Rays = PacketHits<wanted>;
     using V = PacketRays::V;
     using M = PacketRays::M;
-    using Stack = WalkStack<W, Wanted::closest>;
+    using Stack = WalkStack<W, wanted>;
     static constexpr PacketRays::F f{};
+
+    template <class Answer>
+    HWY_INLINE Answer answer_of(int i) const {
+        if constexpr (wanted == Wanted::any)
+            return rays_.element[i] != Hit<float>::none;
+        else
+            return hit_of(scene_, rays_.t_limit[i], rays_.u[i], rays_.v[i], rays_.element[i]);
+    }
 
     /// The children that some ray may enter, and for each the s at which, by the intervals, the first ray
     /// does.
@@ -106,13 +112,19 @@ private:
     /// place in it, not the child, so that the child's box is found at the pop.
     HWY_INLINE void open(Stack& stack, std::uint32_t number) {
         const std::byte* const node = scene_.tree.nodes.at(number);
+        const Boxes<W> boxes = boxes_of(node);
+        for (unsigned left = boxes.bits(); left != 0; left &= left - 1)
+            prefetch_(children_of<W>(node)[std::countr_zero(left)]);
         alignas(64) std::uint32_t places[W];
         for (std::uint32_t i = 0; i < W; ++i) places[i] = number * W + i;
-        stack.push(boxes_of(node), places);
+        if constexpr (wanted == Wanted::any)
+            stack.push_unsorted(boxes, places);
+        else
+            stack.push(boxes, places);
     }
     HWY_INLINE void trace() {
         constexpr int room = Stack::room(bvh_max_depth + 1);
-        std::uint64_t places[room];
+        typename Stack::Place places[room];
         Stack stack(places, 0, 0);
         stack.clear();
         open(stack, 0);
@@ -122,7 +134,6 @@ private:
             const int child = static_cast<int>(place % W);
             const std::uint32_t word = children_of<W>(node)[child];
             const bool is_leaf = (word & WideChild::leaf_bit) != 0;
-            if (!is_leaf) __builtin_prefetch(scene_.tree.nodes.at(word));
             // Skip the child if no ray enters it.
             const std::uint64_t active = entering(node, child);
             ++counts_.boxes;
@@ -133,15 +144,19 @@ private:
                 open(stack, word);
                 continue;
             }
-            // A leaf: test the rays that enter it. After a hit, drop children beyond the greatest limit.
+            // A leaf: test the rays that enter it. After a hit, drop children beyond the greatest limit, or
+            // end where all rays have their answers.
             if (!rays_.test_leaf(scene_, scene_.blocks[word & ~WideChild::leaf_bit], active)) continue;
             rays_.take_last();
-            if (rays_.s_last < 0) return;  // any hit: all rays have their answers
-            stack.sweep(rays_.s_last);
+            if constexpr (wanted == Wanted::closest)
+                stack.sweep(rays_.s_last);
+            else if (rays_.s_last < 0)
+                return;
         }
     }
 
     const WideScene& scene_;
+    const Prefetch<W> prefetch_;
     Rays rays_;
     std::size_t near_row_[3];
     Counts counts_;

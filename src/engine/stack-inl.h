@@ -141,13 +141,14 @@ public:
             return static_cast<std::uint32_t>(push_others_each(boxes, children));
         }
     }
-    // `push` and `push_others` in any order, for walks that stop at the first hit.
+    // `push` and `push_others` without a sort, for walks that stop at the first hit. The last child comes on
+    // top: the likeliest to stop a ray (WideCollapse).
     HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
         if constexpr (compresses)
             for (int p = 0; p < Boxes<W>::parts; ++p)
                 put_unsorted(hn::RebindMask(i32, boxes.entered[p]), children + p * Boxes<W>::lanes);
         else if constexpr (Boxes<W>::parts == 1)
-            push(boxes, children);  // a sort takes less time than a compress by table
+            put_lanes_unsorted(boxes.bits(), children);
         else
             put_each_unsorted(boxes.bits(), children);
     }
@@ -253,6 +254,13 @@ private:
         const Lanes child = hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children));
         hn::StoreU(compressed(i32, child, entered), i32, reinterpret_cast<std::int32_t*>(places_ + top_));
         top_ += static_cast<int>(hn::CountTrue(i32, entered));
+    }
+    // Writes all children, and keeps those that are entered: no branch depends on which these are.
+    HWY_INLINE void put_lanes_unsorted(unsigned entered, const std::uint32_t* children) {
+        for (int i = 0; i < W; ++i) {
+            places_[top_] = children[i];
+            top_ += static_cast<int>(entered >> i & 1);
+        }
     }
     HWY_INLINE void put_each_unsorted(unsigned entered, const std::uint32_t* children) {
         for (; entered != 0; entered &= entered - 1) places_[top_++] = children[std::countr_zero(entered)];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <hedgerow/caster.h>
+
 namespace hedgerow::measure {
 
 Trial::Trial(const Asked& asked, const EngineOptions& options, RayKind kind, const std::vector<Ray3f>& rays,
@@ -28,10 +30,11 @@ bool Trial::by_sixteen() const {
 
 std::size_t Trial::one_by_one(const Engine& engine) const {
     std::size_t found = 0;
+    const Caster cast(engine);
     if (question_ == Question::closest)
-        for (const auto& r : rays_) found += bool(closest_hit(engine, r));
+        for (const auto& r : rays_) found += bool(cast.closest_hit(r));
     else
-        for (const auto& r : rays_) found += any_hit(engine, r);
+        for (const auto& r : rays_) found += cast.any_hit(r);
     return found;
 }
 KernelUse Trial::batch(const Engine& engine, Executor& executor) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 #include <hedgerow/engine/wide_tree.h>
 #include <hedgerow/structures/bvh/build_tree.h>
@@ -13,8 +15,8 @@ namespace hedgerow {
 /// through compressed wide BVHs, HPG 2017). Unlike theirs, leaves stay as they are and so cost nothing. The
 /// cost of a tree is the sum of its inner nodes' areas, as shares of the root's; if the root has no area,
 /// their number. O(n · width²), in parallel over subtrees; one thread then numbers the nodes. The children
-/// of a node, inner nodes and leaves alike, keep the order of the binary tree. The result is the same for
-/// any number of threads.
+/// of a node, inner nodes and leaves alike, lie in the order in which they may stop a ray, the likeliest
+/// last: any hits open the last entered child first. The result is the same for any number of threads.
 template <std::floating_point T, int D>
 class WideCollapse {
 public:
@@ -133,6 +135,7 @@ private:
             below.add(n);
         else
             divide(n, width_, below);
+        sort(below);
         // Append the children. Leaves are numbered here, inner nodes when they are opened.
         const std::size_t first = children_.size();
         opened_.push_back(first);
@@ -147,6 +150,24 @@ private:
             children_[first + i].to = {static_cast<std::uint32_t>(opened_.size())};
             open(below.list[i], level + 1);
         }
+    }
+    /// A child comes late if its box is large and has few leaves: as measured, area over the root of the
+    /// number of leaves orders the chance to stop a ray for the work that it takes to find out. Only steps of
+    /// a factor of eight count; else the children stay in the order of the binary tree, where neighbours lie
+    /// together (docs/design/018-occluders-first.md).
+    void sort(Children& below) const {
+        std::array<float, most_wide> stops;
+        float most = 0;
+        for (std::size_t i = 0; i < below.count; ++i) {
+            const BuildNode<T, D>& n = at(below.list[i]);
+            stops[i] = static_cast<float>(n.box().half_area()) / std::sqrt(static_cast<float>(n.leaves()));
+            most = std::max(most, stops[i]);
+        }
+        std::array<std::pair<int, std::size_t>, most_wide> keys;
+        for (std::size_t i = 0; i < below.count; ++i) keys[i] = {-(std::ilogb(most / stops[i]) / 3), i};
+        std::sort(keys.begin(), keys.begin() + below.count);
+        const Children unsorted = below;
+        for (std::size_t i = 0; i < below.count; ++i) below.list[i] = unsorted.list[keys[i].second];
     }
     /// Appends to `found` what a subtree becomes that may be up to `children` children of a node: the fewest
     /// nodes that reach the least cost.

@@ -2,6 +2,9 @@
 /// triangles in a WideBvh, and of instances of such indexes.
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include <hedgerow/engine/kernels.h>
 #include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/geometry/transform.h>
@@ -43,6 +46,20 @@ class RayKernel {
 public:
     explicit operator bool() const { return kernels_ != nullptr; }
 
+    /// Answers single rays, where there are kernels.
+    template <class I>
+    auto single(const I& index) const {
+        using Kernels = std::remove_cvref_t<decltype(std::declval<const WideKernels&>().*question)>;
+        const Kernels kernels = kernels_ != nullptr ? kernels_->*question : Kernels{};
+        if constexpr (TrianglesForKernels<I>)
+            return [one = kernels.one, scene = kernel_scene(index, {}, {})](const Ray<float, 3>& ray) {
+                return one(scene, ray);
+            };
+        else
+            return [one = kernels.among_instances, &index](const Ray<float, 3>& ray) {
+                return one(kernel_scene(index, ray, {}), ray);
+            };
+    }
     /// Answers rays[i], which is ray `first + i` of the batch, into answers[i].
     template <TrianglesForKernels I, class Answer, class Filter>
     KernelUse answer_many(const I& index, std::size_t first, const RayArray<float, 3>& rays, Answer* answers,

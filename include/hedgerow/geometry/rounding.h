@@ -156,13 +156,33 @@ template <class F>
     asm volatile("" ::: "memory");
     return f();
 }
+inline bool is_ieee_mode(FloatControl c) {
+    return (c & not_ieee) == 0;
+}
+}  // namespace detail
+
+/// While it exists, the calling thread computes with round-to-nearest and subnormals on; then its mode of
+/// before is restored. Calls of functions that are compiled elsewhere are sure to be in that mode; the
+/// compiler may move other arithmetic out of the scope (see in_ieee_mode).
+class IeeeMode {
+public:
+    IeeeMode() : saved_(detail::float_control()) {
+        if (!detail::is_ieee_mode(saved_)) detail::set_float_control(saved_ & ~detail::not_ieee);
+    }
+    ~IeeeMode() {
+        if (!detail::is_ieee_mode(saved_)) detail::set_float_control(saved_);
+    }
+    IeeeMode(const IeeeMode&) = delete;
+    IeeeMode& operator=(const IeeeMode&) = delete;
+
+private:
+    detail::FloatControl saved_;
+};
+
+namespace detail {
 template <class F>
-[[gnu::noinline]] decltype(auto) run_in_ieee_mode(F& f, FloatControl saved) {
-    struct Restore {
-        FloatControl saved;
-        ~Restore() { set_float_control(saved); }
-    } restore{saved};
-    set_float_control(saved & ~not_ieee);
+[[gnu::noinline]] decltype(auto) run_in_ieee_mode(F& f) {
+    const IeeeMode mode;
     return call(f);
 }
 }  // namespace detail
@@ -171,10 +191,9 @@ template <class F>
 /// mode afterwards.
 template <class F>
 decltype(auto) in_ieee_mode(F&& f) {
-    const auto saved = detail::float_control();
-    if ((saved & detail::not_ieee) == 0) [[likely]]
+    if (detail::is_ieee_mode(detail::float_control())) [[likely]]
         return f();
-    return detail::run_in_ieee_mode(f, saved);
+    return detail::run_in_ieee_mode(f);
 }
 
 }  // namespace hedgerow

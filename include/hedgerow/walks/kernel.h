@@ -13,6 +13,8 @@ namespace hedgerow {
 /// - `explicit operator bool()`: whether the kernel runs on this processor; if not, the walk answers;
 /// - `answer(index, arguments...)`: what `Q(index, arguments...)` answers after its walk.
 /// It may also have
+/// - `single(index)`: a function object that answers one probe after the other, without a filter, as long as
+///   the index stays at its address. The caller keeps the thread in IEEE mode;
 /// - `answer_many(index, first, probes, answers, filter)`: answers[i] is the answer to probes[i], which is
 ///   number `first + i` of the batch for the filter. Returns a KernelUse;
 /// - `offer_inside(index, probe, instance, geometry, query)`: for a query of a world in which `index` is an

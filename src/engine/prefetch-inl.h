@@ -1,0 +1,46 @@
+/// Prefetches the nodes and leaves that a walk will visit.
+#if defined(HEDGEROW_ENGINE_PREFETCH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HEDGEROW_ENGINE_PREFETCH_INL_H
+#undef HEDGEROW_ENGINE_PREFETCH_INL_H
+#else
+#define HEDGEROW_ENGINE_PREFETCH_INL_H
+#endif
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <hedgerow/engine/kernels.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <int W>
+class Prefetch {
+public:
+    explicit Prefetch(const WideScene& scene)
+        : start_{reinterpret_cast<const char*>(scene.tree.nodes.data()),
+                 reinterpret_cast<const char*>(scene.blocks)} {}
+
+    /// Prefetches what a child's word leads to: the lines that are read of a node, or of a leaf's block.
+    HWY_INLINE void operator()(std::uint32_t word) const {
+        // Found by arithmetic, since a branch would have to be predicted.
+        const std::uint32_t leaf = word >> 31;
+        const char* const from = start_[leaf] + std::size_t(word & ~WideChild::leaf_bit) * step_[leaf];
+        // 28·W bytes of a node are its planes and children, 5 lines are a leaf's block.
+        for (int line = 0; line < std::max(28 * W / 64, 5); ++line) __builtin_prefetch(from + 64 * line);
+    }
+
+private:
+    const char* start_[2];  // of nodes and of leaves; step_: bytes from one to the next
+    std::size_t step_[2] = {WideNodes<float, 3>::stride_of(W), sizeof(TriangleBlock<float>)};
+};
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
