@@ -23,6 +23,7 @@ void expect_same_answers(const I& index) {
     using T = typename I::Scalar;
     constexpr int D = I::dimension;
     std::vector<RayOf<I>> rays;
+    rays.reserve(501);
     Random random(3, 0);
     const auto box = index.bounds();
     for (int i = 0; i < 500; ++i) {
@@ -50,6 +51,7 @@ TEST(Caster, AnswersAsTheFunctionsDo) {
         const auto index = build(mesh);
         expect_same_answers(index);
         std::vector<Instance<MeshIndex<float>>> all;
+        all.reserve(5);
         for (int i = 0; i < 5; ++i)
             all.emplace_back(index, Transform<3>::translation({double(i) * 300, 0, 0}));
         const InstanceSet<MeshIndex<float>> placed(all);
