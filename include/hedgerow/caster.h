@@ -25,7 +25,7 @@ requires requires(const Kernel<Q, I>& kernel, const I& index) {
 }
 class SingleRays<Q, I> {
 public:
-    explicit SingleRays(const I& index) : index_(index), answer_(Kernel<Q, I>().single(index)) {}
+    explicit SingleRays(const I& index) : index_(index), answer_(kernel_.single(index)) {}
     auto operator()(const RayOf<I>& ray) const {
         if (kernel_) [[likely]]
             return answer_(ray);

@@ -244,10 +244,7 @@ private:
     template <class D, class V>
     HWY_INLINE void put(D d, int count, V keys, V children) {
         auto* const to = reinterpret_cast<std::int32_t*>(places_ + top_);
-        if constexpr (wanted == Wanted::any)
-            hn::StoreU(children, d, to);
-        else
-            hn::StoreInterleaved2(children, hn::AndNot(hn::Set(d, W - 1), keys), d, to);
+        hn::StoreInterleaved2(children, hn::AndNot(hn::Set(d, W - 1), keys), d, to);
         top_ += count;
     }
     HWY_INLINE void put_unsorted(hn::Mask<decltype(i32)> entered, const std::uint32_t* children) {

@@ -308,7 +308,7 @@ private:
 /// costs more than before, except where it grew so deep that subtrees are halved by count.
 template <std::floating_point T, int D>
 void reinsert(BuildTree<T, D>& tree, int passes, double share, Executor& executor) {
-    if (tree.leaves < 4) return;  // fewer have no other tree worth a search
+    if (passes == 0 || tree.leaves < 4) return;  // fewer leaves have no other tree worth a search
     Reinsertion<T, D> reinsertion(tree, share, executor);
     executor.expect(reinsertion.work(passes));
     reinsertion.improve(passes);
