@@ -2,6 +2,7 @@
 /// (bvh.h).
 #pragma once
 
+#include <bit>
 #include <vector>
 
 #include <hedgerow/base/bare_vector.h>
@@ -71,5 +72,10 @@ struct SahOptions {
 
 /// The greatest depth of a BVH. SAH splits stop early enough that halving by count can finish within it.
 inline constexpr int bvh_max_depth = 64;
+/// Whether a subtree over `count` leaves, whose root is at this depth, has to be halved by count from there
+/// on to end within that bound.
+constexpr bool bvh_must_halve(int depth, std::uint32_t count) {
+    return depth + static_cast<int>(std::bit_width(count)) >= bvh_max_depth;
+}
 
 }  // namespace hedgerow

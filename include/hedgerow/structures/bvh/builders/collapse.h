@@ -2,7 +2,6 @@
 /// and no leaf lies too deep.
 #pragma once
 
-#include <bit>
 #include <concepts>
 #include <span>
 
@@ -101,7 +100,7 @@ private:
         }
         // Halve the primitives by count where the tree would grow too deep otherwise.
         if constexpr (!is_halved<Tree>)
-            if (depth + static_cast<int>(std::bit_width(size)) >= bvh_max_depth) {
+            if (bvh_must_halve(depth, size)) {
                 const Halves<Tree> halves(tree, n);
                 return grow(halves, halves.root(), first, at, depth);
             }

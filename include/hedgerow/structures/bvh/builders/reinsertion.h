@@ -13,7 +13,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include <hedgerow/parallel/executor.h>
@@ -74,12 +73,7 @@ public:
         parents_[to] = joint;
         return gain + refit(joint);
     }
-    /// Whether so many leaves below a node of this level are so many that the tree may have to be halved by
-    /// count from there on, to be no deeper than bvh_max_depth.
-    static bool deep(int level, std::uint32_t leaves) {
-        return level + static_cast<int>(std::bit_width(leaves)) >= bvh_max_depth;
-    }
-    /// Halves subtrees where the tree is that deep.
+    /// Halves subtrees by count where the tree would be deeper than bvh_max_depth otherwise.
     void limit_depth() { limit_depth(root(), 1); }
 
 private:
@@ -115,7 +109,7 @@ private:
 
     void limit_depth(Node n, int level) {
         if (leaf(n)) return;
-        if (deep(level, leaves(n))) return halve(n);
+        if (bvh_must_halve(level, leaves(n))) return halve(n);
         const auto [left, right] = children(n);
         limit_depth(left, level + 1);
         limit_depth(right, level + 1);
@@ -268,7 +262,7 @@ private:
         while (!open.empty()) {
             const auto [gain, at, level] = open.back();
             open.pop_back();
-            if (!(gain - own > best.gain) || tree_.deep(level, tree_.leaves(at) + leaves)) continue;
+            if (!(gain - own > best.gain) || bvh_must_halve(level, tree_.leaves(at) + leaves)) continue;
             LaneBox<T> joint = tree_.box(at);
             joint.expand(box);
             const double left = gain - area(joint);

@@ -1,7 +1,6 @@
 /// Top-down building: one recursion for all splitters.
 #pragma once
 
-#include <bit>
 #include <concepts>
 
 #include <hedgerow/structures/bvh/build_tree.h>
@@ -109,9 +108,7 @@ private:
     bool divide_references(const Range<T, D>& range, int depth, Range<T, D>& left, Range<T, D>& right) {
         if (range.size() == 1) return false;
         // Only halve where the halvings that are still needed reach the bound on depth.
-        const int halvings = static_cast<int>(std::bit_width(range.size()));
-        const bool deep = depth + halvings >= bvh_max_depth;
-        if (!deep && splitter_.split(range, left, right)) return true;
+        if (!bvh_must_halve(depth, range.size()) && splitter_.split(range, left, right)) return true;
         if (range.size() <= max_leaf_size_) return false;
         splitter_.halve(range, left, right);
         return true;
