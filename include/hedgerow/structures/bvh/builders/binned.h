@@ -17,9 +17,9 @@ public:
         : ReferenceSplitter<T, D>(std::move(references)), options_(options) {}
 
     bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
-        Bins bins;
-        const Binning binning = fill(bins, range);
-        const Best best = cheapest(bins, binning.count, range.size());
+        const Binning binning = binning_of(range);
+        const Bins bins = filled(binning, range);
+        const Best best = cheapest(bins, range.size());
         if (best.axis < 0 || cheaper_as_leaf(range, best.cost)) return false;  // −1: all in one bin
         divide(range, binning, bins, best, left, right);
         return true;
@@ -36,6 +36,7 @@ protected:
             b.box = LaneBox<T>::none(), b.count = 0;
             return b;
         }
+        void add(const LaneBox<T>& b, std::uint32_t n) { box.expand(b), count += n; }
     };
     struct Best {
         double cost = std::numeric_limits<double>::infinity();
@@ -77,32 +78,51 @@ protected:
         }
     };
 
-    struct Bins {
-        Bin of[D][SahOptions::most_bins];
-    };
-    Binning fill(Bins& bins, const Range<T, D>& range) {
-        const Binning binning(range, std::clamp(options_.bins, 2, SahOptions::most_bins));
-        for (auto& axis : bins.of) std::fill_n(axis, binning.count, Bin::none());
-        for (std::uint32_t i = range.first; i < range.last; ++i) {
-            const auto& r = this->references_[i];
-            const auto at = binning.bin(r);
-            const LaneBox<T> box = r.lanes();
-            for (int k = 0; k < D; ++k) {
-                Bin& bin = bins.of[k][at[static_cast<std::size_t>(k)]];
-                bin.box.expand(box);
-                ++bin.count;
-            }
-        }
-        return binning;
+    Binning binning_of(const Range<T, D>& range) const {
+        return Binning(range, std::clamp(options_.bins, 2, SahOptions::most_bins));
     }
+
+    struct Bins {
+        int count;  // along each axis; the places behind are not used
+        Bin of[D][SahOptions::most_bins];
+
+        explicit Bins(int bins) : count(bins) {
+            for (auto& axis : of) std::fill_n(axis, count, Bin::none());
+        }
+        void add(const Binning& binning, const Reference<T, D>& r) {
+            const auto at = binning.bin(r);
+            for (int k = 0; k < D; ++k) of[k][at[static_cast<std::size_t>(k)]].add(r.lanes(), 1);
+        }
+        void add(const Bins& other) {
+            for (int k = 0; k < D; ++k)
+                for (int b = 0; b < count; ++b) of[k][b].add(other.of[k][b].box, other.of[k][b].count);
+        }
+    };
+    /// The bins of a range. A reference that enters the bin of the one before it waits until that is written,
+    /// and neighbors in the list are mostly neighbors in space: a large range fills two sets of bins in
+    /// turns.
+    Bins filled(const Binning& binning, const Range<T, D>& range) const {
+        const Reference<T, D>* const list = this->references_.data() + range.first;
+        const std::uint32_t pairs = range.size() < worth_two_sets ? 0 : range.size() / 2;
+        Bins bins(binning.count);
+        if (pairs > 0) {
+            Bins odd(binning.count);
+            for (std::uint32_t i = 0; i < pairs; ++i)
+                bins.add(binning, list[2 * i]), odd.add(binning, list[2 * i + 1]);
+            bins.add(odd);
+        }
+        for (std::uint32_t i = 2 * pairs; i < range.size(); ++i) bins.add(binning, list[i]);
+        return bins;
+    }
+    static constexpr std::uint32_t worth_two_sets = 512;
     void divide(const Range<T, D>& range, const Binning& binning, const Bins& bins, const Best& best,
                 Range<T, D>& left, Range<T, D>& right) {
         this->partition(range, left, right, binning.before(best.axis, best.border));
-        std::tie(left.box, right.box) = sides(bins, binning.count, best);
+        std::tie(left.box, right.box) = sides(bins, best);
     }
-    static std::pair<LaneBox<T>, LaneBox<T>> sides(const Bins& bins, int count, const Best& best) {
+    static std::pair<LaneBox<T>, LaneBox<T>> sides(const Bins& bins, const Best& best) {
         std::pair boxes(LaneBox<T>::none(), LaneBox<T>::none());
-        for (int b = 0; b < count; ++b)
+        for (int b = 0; b < bins.count; ++b)
             (b < best.border ? boxes.first : boxes.second).expand(bins.of[best.axis][b].box);
         return boxes;
     }
@@ -115,9 +135,9 @@ protected:
 
     /// The split with the least sum of area·tests over both sides. Of equal ones it is the first, by axis and
     /// then by border.
-    Best cheapest(const Bins& bins, int count, std::uint32_t total) const {
+    Best cheapest(const Bins& bins, std::uint32_t total) const {
         Best best;
-        for (int k = 0; k < D; ++k) sweep(bins.of[k], count, total, k, best);
+        for (int k = 0; k < D; ++k) sweep(bins.of[k], bins.count, total, k, best);
         return best;
     }
     double cost(const LaneBox<T>& box, std::uint32_t count) const {

@@ -46,13 +46,12 @@ public:
     }
 
     bool split(const Range<T, D>& range, Range<T, D>& left, Range<T, D>& right) {
-        typename Base::Bins bins;
-        const auto binning = this->fill(bins, range);
-        const auto objects = this->cheapest(bins, binning.count, range.size());
+        const auto binning = this->binning_of(range);
+        const auto bins = this->filled(binning, range);
+        const auto objects = this->cheapest(bins, range.size());
         Plane plane;
         // Try planes if there is room and the best split of objects overlaps much.
-        if (range.room > 0 && overlap_of(bins, binning.count, objects) >= worth_a_plane_)
-            plane = cheapest_plane(range);
+        if (range.room > 0 && overlap_of(bins, objects) >= worth_a_plane_) plane = cheapest_plane(range);
         // Make a leaf if that costs no more than the cheaper split; otherwise make that split.
         const double cost = std::min(objects.cost, plane.cost);
         if (!(cost < std::numeric_limits<double>::infinity()) || this->cheaper_as_leaf(range, cost))
@@ -79,9 +78,9 @@ private:
     };
     static constexpr int most_slabs = 32;
 
-    double overlap_of(const typename Base::Bins& bins, int count, const typename Base::Best& best) const {
+    double overlap_of(const typename Base::Bins& bins, const typename Base::Best& best) const {
         if (best.axis < 0) return std::numeric_limits<double>::infinity();
-        const auto [left, right] = Base::sides(bins, count, best);
+        const auto [left, right] = Base::sides(bins, best);
         const Box<T, D> shared = intersection(left.template box<D>(), right.template box<D>());
         return shared.empty() ? 0 : static_cast<double>(shared.half_area());
     }
