@@ -200,6 +200,40 @@ TEST(Wide, RaysThatGoSeveralWaysTogether) {
     }
 }
 
+/// Rays that go all ways from near one place: any hits of such rays are answered in bundles, as long as they
+/// share nodes. Some are short, some have no end or no length, and some components are 0 or -0.
+TEST(Wide, ShortRaysThatGoAllWays) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const auto& mesh : {teapot_in_stadium<float>(3000), soup<float>(3000)}) {
+        const auto index = build<WideBvh>(mesh);
+        const auto targets = targets_of(mesh);
+        const float size = length(index.bounds().extent());
+        std::vector<Ray3f> rays;
+        for (std::uint64_t bunch = 0; bunch < 96; ++bunch) {
+            Random random(31, bunch);
+            const float ends[] = {0.02f * size, 0.1f * size, 2 * size, infinity, 0, 1e-30f};
+            const float end = ends[bunch % 6], spread = bunch % 4 == 0 ? 0 : 0.01f * size;
+            const float far = bunch % 8 == 3 ? 1000 * size : 0;  // of the scene: few rays reach it
+            const Vec3f place = targets[bunch % targets.size()] + Vec3f(far, 0, -far);
+            for (int i = 0; i < 64; ++i) {
+                Vec3f d(random.direction<3>());
+                if (i % 9 == 4) d[static_cast<int>(bunch % 3)] = i % 2 == 0 ? 0.0f : -0.0f;
+                const float longer = i % 5 == 2 ? 1e12f : 1;  // the same ray, told in other units
+                rays.push_back({place + Vec3f(random.direction<3>()) * spread, d * longer, 0, end / longer});
+            }
+        }
+        const auto want = hits_of_the_walk(index, rays);
+        const auto found = std::make_unique<bool[]>(rays.size());
+        for (const auto set : instruction_sets()) {
+            SCOPED_TRACE(set);
+            const Using use(set);
+            expect_hits(want, Answers(index, rays));
+            const auto used = any_hits(index, rays, {found.get(), rays.size()}, serial_executor());
+            EXPECT_EQ(used.packets >= 64, set != "plain");
+        }
+    }
+}
+
 /// A batch returns the number of rays that each algorithm answered.
 TEST(Wide, KernelsAreChosenByWhatRaysDo) {
     const auto mesh = teapot_in_stadium<float>(3000);

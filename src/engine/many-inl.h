@@ -1,5 +1,5 @@
-/// Chooses kernels for the rays of a batch: packets for rays that go the same way, where packets pay, and
-/// the phased batch for all others.
+/// Chooses kernels for the rays of a batch: packets for rays that go the same way and bundles for rays that
+/// cross the same region, where these pay, and the phased batch for all others.
 #if defined(HEDGEROW_ENGINE_MANY_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HEDGEROW_ENGINE_MANY_INL_H
 #undef HEDGEROW_ENGINE_MANY_INL_H
@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include "batch-inl.h"
+#include "bundle-inl.h"
 #include "packet-inl.h"
 #include "picture-inl.h"
 #include "reader-inl.h"
@@ -22,42 +23,56 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Decides whether packets pay: they do where enough rays share each box that is tested. Where packets do not
-// pay, they rest for a while, twice as long each time.
-class PacketsPay {
+// Decides whether it pays to trace rays together: it does where enough rays share each box that is tested.
+// Where it does not pay, that way of tracing rests for a while, twice as long each time.
+class SharingPays {
 public:
-    bool rest(std::size_t ray) const { return ray < rest_until_; }
-    // Adds the counts of more boxes and returns whether packets still pay. If not, the rest begins at `ray`.
-    template <class Counts>
-    bool still(const Counts& counts, std::size_t ray) {
+    // `enough`: the least mean number of rays that share a box. `look`: boxes that are counted before each
+    // decision. `rest`: the shortest rest, in rays.
+    struct Terms {
+        double enough;
+        std::size_t look, rest;
+    };
+    explicit SharingPays(const Terms& terms) : terms_(terms), rest_(terms.rest) {}
+
+    bool rests(std::size_t ray) const { return ray < rest_until_; }
+    // Whether it still pays, by the counts since the last decision, which are cleared where there is a new
+    // one. If not, the rest begins at `ray`.
+    template <class Rays>
+    bool still(Rays& rays, std::size_t ray) {
+        const auto counts = rays.counts();
+        if (counts.boxes < terms_.look) return true;
+        rays.count_anew();
         const double now = double(counts.rays) / double(counts.boxes);
         rays_a_box_ = rays_a_box_ == 0 ? now : (3 * rays_a_box_ + now) / 4;
-        if (rays_a_box_ >= enough) {
-            rest_ = shortest;
+        if (rays_a_box_ >= terms_.enough) {
+            rest_ = terms_.rest;
             return true;
         }
         rays_a_box_ = 0;
         rest_until_ = ray + rest_;
-        rest_ = std::min(2 * rest_, longest);
+        rest_ = std::min(2 * rest_, longest * terms_.rest);
         return false;
     }
 
 private:
-    // The least mean number of rays that enter a box. Rays per box predicts whether packets pay; rays per
-    // leaf does not.
-    static constexpr double enough = 5.5;
-    // Length of a rest, in rays: it doubles from the shortest up to the longest.
-    static constexpr std::size_t shortest = 1 << 12, longest = 1 << 14;
+    static constexpr std::size_t longest = 4;  // times the shortest rest
 
+    const Terms terms_;
     double rays_a_box_ = 0;
-    std::size_t rest_ = shortest, rest_until_ = 0;
+    std::size_t rest_, rest_until_ = 0;
 };
+// A packet counts each box that it tests with all rays. Rays per box predicts whether packets pay; rays per
+// leaf does not.
+inline constexpr SharingPays::Terms packets_pay = {5.5, 256, 1 << 12};
+// A bundle counts each node that it opens. A short look is enough, and a long rest makes up for it.
+inline constexpr SharingPays::Terms bundles_pay = {10, 64, 1 << 14};
 
 template <int W, Wanted wanted, class Answer>
 class ManyRays {
 public:
     ManyRays(const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers)
-        : scene_(scene), rays_(rays), answers_(answers), packet_(scene) {}
+        : scene_(scene), rays_(rays), answers_(answers), packet_(scene), bundle_(scene) {}
 
     KernelUse answer() {
         const std::size_t n = rays_.size();
@@ -65,7 +80,7 @@ public:
         // Bands of 8 rows of the picture, then bands of 64 consecutive rays for what is left.
         for (const std::size_t row : {picture_row(rays_), block_side}) {
             for (const std::size_t band = block_side * row; n - at >= band; at += band) {
-                if (pay_.rest(at) || !answer_band(at, row)) continue;
+                if (packets_.rests(at) || !answer_band(at, row)) continue;
                 answer_phased(waiting, at);
                 waiting = at + band;
             }
@@ -78,23 +93,26 @@ private:
     /// Answers the rays of 8 rows from `first` on. False, and no ray is answered, if they make no packet. If
     /// a row is not a multiple of 8, the last block begins earlier, and some rays are answered twice.
     bool answer_band(std::size_t first, std::size_t row) {
-        constexpr int most_ways = 4;  // of 64 rays: a picture's go four ways where two axes change sign
         const bool is_last = rays_.size() - first < 2 * block_side * (row + block_side);
         std::size_t done = 0;  // columns before this have their answers
         bool any = false;
         // Answer blocks of 8 columns by packets, while packets pay.
-        for (std::size_t column = 0; column < row && pays(first); column += block_side) {
+        for (std::size_t column = 0; column < row && packets_.still(packet_, first); column += block_side) {
             const std::size_t from = std::min(column, row - block_side);
-            std::uint32_t ways = packet_.look(rays_, first + from, row);
-            // Leave blocks to the phased batch that have unusable rays, or rays that go too many ways.
-            if (ways == 0 || std::popcount(ways) > most_ways) continue;
+            const std::uint32_t ways = packet_.look(rays_, first + from, row);
+            // Leave blocks to the phased batch that have unusable rays, or rays that share too little.
+            const Shared shared = shared_by(ways, first + from);
+            if (shared == Shared::nothing) continue;
             if (!is_last) {  // prefetch the block a band later, while this packet computes
                 const std::size_t then = first + block_side * (row + column);
                 prefetch_rays(rays_, then, block_size);
                 prefetch_all(answers_ + then, block_size);
             }
-            for (; ways != 0; ways &= ways - 1)
-                packet_.answer(static_cast<std::uint32_t>(std::countr_zero(ways)), answers_);
+            if (shared == Shared::ways)
+                for (std::uint32_t left = ways; left != 0; left &= left - 1)
+                    packet_.answer(static_cast<std::uint32_t>(std::countr_zero(left)), answers_);
+            else if constexpr (wanted == Wanted::any)
+                bundle_.answer(packet_.rays(), rays_, answers_);
             any = true;
             // Answer the columns that were left since the packet before.
             answer_columns(first, row, done, column);
@@ -112,19 +130,21 @@ private:
     HWY_NOINLINE void answer_phased(std::size_t begin, std::size_t end) {
         if (begin < end) Batch<W, wanted>(scene_, rays_, begin, end).answer(answers_);
     }
-    bool pays(std::size_t ray) {
-        // Boxes that are counted before each decision.
-        constexpr std::size_t enough_boxes = 256;
-        if (packet_.counts().boxes < enough_boxes) return true;
-        const bool pays = pay_.still(packet_.counts(), ray);
-        packet_.count_anew();
-        return pays;
+    /// What the rays of a block share: ways, few enough for packets, or only the region that they cross.
+    enum class Shared { nothing, ways, region };
+    Shared shared_by(std::uint32_t ways, std::size_t ray) {
+        constexpr int most_ways = 4;  // of 64 rays: a picture's go four ways where two axes change sign
+        if (ways == 0) return Shared::nothing;
+        if (std::popcount(ways) <= most_ways) return Shared::ways;
+        const bool region = wanted == Wanted::any && !bundles_.rests(ray) && bundles_.still(bundle_, ray);
+        return region ? Shared::region : Shared::nothing;
     }
     const WideScene& scene_;
     const RayArray<float, 3>& rays_;
     Answer* const answers_;
     Packet<W, wanted> packet_;
-    PacketsPay pay_;
+    Bundle<W> bundle_;
+    SharingPays packets_{packets_pay}, bundles_{bundles_pay};
     std::size_t in_packets_ = 0;
 };
 

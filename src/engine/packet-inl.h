@@ -33,6 +33,7 @@ public:
     HWY_INLINE std::uint32_t look(const RayArray<float, 3>& rays, std::size_t first, std::size_t row) {
         return rays_.look(rays, first, row);
     }
+    const PacketRays& rays() const { return rays_; }
     /// Answers the rays that go this way.
     template <class Answer>
     HWY_INLINE void answer(std::uint32_t way, Answer* answers) {

@@ -37,7 +37,7 @@ struct InstanceKernel {
 
 /// The number of rays of a batch that each algorithm answered. `single` rays were answered one by one, by a
 /// kernel or by a walk; all rays against instances are. `phased` rays were answered in phases over the batch,
-/// the others in `packets` of rays that go the same way.
+/// the others in `packets` of rays that go the same way or, for any hits, through the same region.
 struct KernelUse {
     std::size_t single = 0, phased = 0, packets = 0;
 
