@@ -200,37 +200,78 @@ TEST(Wide, RaysThatGoSeveralWaysTogether) {
     }
 }
 
-/// Rays that go all ways from near one place: any hits of such rays are answered in bundles, as long as they
-/// share nodes. Some are short, some have no end or no length, and some components are 0 or -0.
-TEST(Wide, ShortRaysThatGoAllWays) {
+/// 64 rays that go all ways from near one place. Some bunches are short, some have no end or no length, and
+/// some components are 0 or -0.
+std::vector<Ray3f> bunch_of_rays(std::uint64_t bunch, const Vec3f& near, float size) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
+    const float ends[] = {0.02f * size, 0.1f * size, 2 * size, infinity, 0, 1e-30f};
+    const float end = ends[bunch % 6], spread = bunch % 4 == 0 ? 0 : 0.01f * size;
+    const float far = bunch % 8 == 3 ? 1000 * size : 0;  // of the scene: few rays reach it
+    Random random(31, bunch);
+    std::vector<Ray3f> rays;
+    for (int i = 0; i < 64; ++i) {
+        Vec3f d(random.direction<3>());
+        if (i % 9 == 4) d[static_cast<int>(bunch % 3)] = i % 2 == 0 ? 0.0f : -0.0f;
+        const float longer = i % 5 == 2 ? 1e12f : 1;  // the same ray, told in other units
+        const Vec3f origin = near + Vec3f(far, 0, -far) + Vec3f(random.direction<3>()) * spread;
+        rays.push_back({origin, d * longer, 0, end / longer});
+    }
+    return rays;
+}
+
+/// Any hits of rays that go all ways are answered in bundles, as long as they share nodes.
+TEST(Wide, ShortRaysThatGoAllWays) {
+    const std::uint64_t count = in_long_runs(80000, 96), at_once = 96;
     for (const auto& mesh : {teapot_in_stadium<float>(3000), soup<float>(3000)}) {
         const auto index = build<WideBvh>(mesh);
         const auto targets = targets_of(mesh);
         const float size = length(index.bounds().extent());
-        std::vector<Ray3f> rays;
-        for (std::uint64_t bunch = 0; bunch < 96; ++bunch) {
-            Random random(31, bunch);
-            const float ends[] = {0.02f * size, 0.1f * size, 2 * size, infinity, 0, 1e-30f};
-            const float end = ends[bunch % 6], spread = bunch % 4 == 0 ? 0 : 0.01f * size;
-            const float far = bunch % 8 == 3 ? 1000 * size : 0;  // of the scene: few rays reach it
-            const Vec3f place = targets[bunch % targets.size()] + Vec3f(far, 0, -far);
-            for (int i = 0; i < 64; ++i) {
-                Vec3f d(random.direction<3>());
-                if (i % 9 == 4) d[static_cast<int>(bunch % 3)] = i % 2 == 0 ? 0.0f : -0.0f;
-                const float longer = i % 5 == 2 ? 1e12f : 1;  // the same ray, told in other units
-                rays.push_back({place + Vec3f(random.direction<3>()) * spread, d * longer, 0, end / longer});
+        const auto found = std::make_unique<bool[]>(64 * at_once);
+        for (std::uint64_t begin = 0; begin < count; begin += at_once) {
+            std::vector<Ray3f> rays;
+            for (std::uint64_t b = begin; b < begin + at_once; ++b)
+                for (const auto& ray : bunch_of_rays(b, targets[b % targets.size()], size))
+                    rays.push_back(ray);
+            const auto want = hits_of_the_walk(index, rays);
+            for (const auto set : instruction_sets()) {
+                SCOPED_TRACE(set);
+                const Using use(set);
+                expect_hits(want, Answers(index, rays));
+                const auto used = any_hits(index, rays, {found.get(), rays.size()}, serial_executor());
+                EXPECT_EQ(used.packets >= 64, set != "plain") << "from bunch " << begin;
+                if (HasFatalFailure()) return;
             }
         }
-        const auto want = hits_of_the_walk(index, rays);
-        const auto found = std::make_unique<bool[]>(rays.size());
-        for (const auto set : instruction_sets()) {
-            SCOPED_TRACE(set);
-            const Using use(set);
-            expect_hits(want, Answers(index, rays));
-            const auto used = any_hits(index, rays, {found.get(), rays.size()}, serial_executor());
-            EXPECT_EQ(used.packets >= 64, set != "plain");
+    }
+}
+
+/// One ray of a bundle ends on a flat floor, where rounding decides on which side, and the others go up: the
+/// box around them all must not miss the floor.
+TEST(Wide, ShortRaysThatEndOnAFloor) {
+    Mesh mesh = soup<float>(300);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    constexpr float floor = -0.1f;
+    mesh.vertices.insert(mesh.vertices.end(), {{-9, floor, -9}, {9, floor, -9}, {0, floor, 9}});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    const auto index = build<WideBvh>(mesh);
+    std::vector<Ray3f> rays;
+    for (std::uint64_t bunch = 0; bunch < 200; ++bunch) {
+        Random random(37, bunch);
+        const Vec3f place(Vec3d(random.uniform(-2, 2), random.uniform(-0.09, 0.05), random.uniform(-2, 2)));
+        for (std::uint64_t i = 0; i < 64; ++i) {
+            Vec3f d(random.direction<3>());
+            d[1] = i == bunch % 64 ? -std::abs(d[1]) : std::abs(d[1]);
+            rays.push_back({place, d, 0, 0.05f});
+            if (d[1] > 0) continue;
+            rays.back().t_max = 9;
+            rays.back().t_max = closest_hit(index, rays.back()).t;
         }
+    }
+    const auto want = hits_of_the_walk(index, rays);
+    for (const auto set : instruction_sets()) {
+        SCOPED_TRACE(set);
+        const Using use(set);
+        expect_hits(want, Answers(index, rays));
     }
 }
 
