@@ -123,10 +123,7 @@ private:
         const std::byte* const node = nodes_ + word_[s] * WideNodes<float, 3>::stride_of(W);
         Stack stack = stack_of(s);
         const Boxes<W> boxes(node, Slabs<W>(ray_[s]));
-        if constexpr (wanted == Wanted::any)
-            stack.push_unsorted(boxes, children_of<W>(node));
-        else
-            stack.push(boxes, children_of<W>(node));
+        stack.push(boxes, children_of<W>(node));
         pop(s, stack);
     }
     /// Tests the leaf of slot s and pops the next word. False if the ray has its answer.

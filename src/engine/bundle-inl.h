@@ -145,7 +145,7 @@ private:
         std::uint32_t word;
     };
     /// Opens a node: pushes the children that active rays enter. The last child comes on top, as in
-    /// `WalkStack::push_unsorted`.
+    /// `WalkStack::push` for any hit.
     HWY_INLINE Place* open(Place* top, std::uint32_t number, std::uint64_t active) {
         const std::byte* const node = scene_.tree.nodes.at(number);
         const std::uint32_t* const children = children_of<W>(node);

@@ -118,10 +118,7 @@ private:
             prefetch_(children_of<W>(node)[std::countr_zero(left)]);
         alignas(64) std::uint32_t places[W];
         for (std::uint32_t i = 0; i < W; ++i) places[i] = number * W + i;
-        if constexpr (wanted == Wanted::any)
-            stack.push_unsorted(boxes, places);
-        else
-            stack.push(boxes, places);
+        stack.push(boxes, places);
     }
     HWY_INLINE void trace() {
         constexpr int room = Stack::room(bvh_max_depth + 1);

@@ -113,9 +113,12 @@ public:
     HWY_INLINE int top() const { return top_; }
     HWY_INLINE std::uint32_t pop() { return static_cast<std::uint32_t>(places_[--top_]); }
     HWY_INLINE void push(Place child) { places_[top_++] = child; }
-    // Pushes the entered children, the nearest on top.
+    // Pushes the entered children: the nearest on top, or for any hit the last, which is the likeliest to
+    // stop a ray (WideCollapse).
     HWY_INLINE void push(const Boxes<W>& boxes, const std::uint32_t* children) {
-        if constexpr (Boxes<W>::parts == 1) {
+        if constexpr (wanted == Wanted::any) {
+            push_unsorted(boxes, children);
+        } else if constexpr (Boxes<W>::parts == 1) {
             push_sorted(hn::RebindMask(i32, boxes.entered[0]), keys_of(boxes, 0), children);
         } else if constexpr (compresses && Boxes<W>::parts == 2) {
             const int count = std::popcount(boxes.bits());
@@ -127,10 +130,12 @@ public:
             push(push_others_each(boxes, children));
         }
     }
-    // Pushes the entered children except the nearest, whose word is returned. The nearest is known before
-    // the others are sorted, so the walk can continue meanwhile.
+    // Pushes the entered children except the one that would be on top, whose word is returned. It is known
+    // before the others are sorted, so the walk can continue meanwhile.
     HWY_INLINE std::uint32_t push_others(const Boxes<W>& boxes, const std::uint32_t* children) {
-        if constexpr (Boxes<W>::parts == 1) {
+        if constexpr (wanted == Wanted::any) {
+            return push_others_unsorted(boxes, children);
+        } else if constexpr (Boxes<W>::parts == 1) {
             const auto entered = hn::RebindMask(i32, boxes.entered[0]);
             const Lanes keys = keys_of(boxes, 0);
             const Lanes nearest = hn::MinOfLanes(
@@ -141,8 +146,23 @@ public:
             return static_cast<std::uint32_t>(push_others_each(boxes, children));
         }
     }
-    // `push` and `push_others` without a sort, for walks that stop at the first hit. The last child comes on
-    // top: the likeliest to stop a ray (WideCollapse).
+    // Removes children that a hit has put out of reach, so that a pop need not check them.
+    HWY_INLINE void sweep(float s_limit) requires(wanted == Wanted::closest) {
+        const std::uint64_t limit = waiting(s_limit, end);
+        const int top = top_;
+        top_ = bottom_ + 1;
+        for (int i = top_; i < top; ++i) {
+            const Place child = places_[i];
+            places_[top_] = child;
+            top_ += child <= limit;
+        }
+    }
+
+private:
+    static constexpr hn::RebindToSigned<Floats<W>> i32{};
+    using Lanes = hn::Vec<hn::RebindToSigned<Floats<W>>>;
+
+    // `push` and `push_others` for any hit.
     HWY_INLINE void push_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
         if constexpr (compresses)
             for (int p = 0; p < Boxes<W>::parts; ++p)
@@ -162,21 +182,6 @@ public:
             put_each_unsorted(static_cast<unsigned>(others), children);
         return children[last];
     }
-    // Removes children that a hit has put out of reach, so that a pop need not check them.
-    HWY_INLINE void sweep(float s_limit) requires(wanted == Wanted::closest) {
-        const std::uint64_t limit = waiting(s_limit, end);
-        const int top = top_;
-        top_ = bottom_ + 1;
-        for (int i = top_; i < top; ++i) {
-            const Place child = places_[i];
-            places_[top_] = child;
-            top_ += child <= limit;
-        }
-    }
-
-private:
-    static constexpr hn::RebindToSigned<Floats<W>> i32{};
-    using Lanes = hn::Vec<hn::RebindToSigned<Floats<W>>>;
 
     // A key is the entry of a child, with the child's number in the lowest bits.
     static HWY_INLINE Lanes keys_of(const Boxes<W>& boxes, int part) {

@@ -55,20 +55,20 @@ HWY_INLINE bool walk(const WideTree<float, 3>& tree, Asker asker) {
                 word = children[first];
                 continue;
             }
-            if constexpr (wanted == Wanted::any) {
-                word = stack.push_others_unsorted(boxes, children);
-            } else if ((others & (others - 1)) == 0) {
-                alignas(64) float at[W];
-                boxes.store(at);
-                const int second = std::countr_zero(others);
-                std::uint64_t nearer = waiting(at[first], children[first]),
-                              farther = waiting(at[second], children[second]);
-                order(nearer, farther);
-                stack.push(farther);
-                word = static_cast<std::uint32_t>(nearer);
-            } else {
-                word = stack.push_others(boxes, children);
+            if constexpr (wanted == Wanted::closest) {
+                if ((others & (others - 1)) == 0) {
+                    alignas(64) float at[W];
+                    boxes.store(at);
+                    const int second = std::countr_zero(others);
+                    std::uint64_t nearer = waiting(at[first], children[first]),
+                                  farther = waiting(at[second], children[second]);
+                    order(nearer, farther);
+                    stack.push(farther);
+                    word = static_cast<std::uint32_t>(nearer);
+                    continue;
+                }
             }
+            word = stack.push_others(boxes, children);
         }
         // A leaf, or the end of the stack.
         if (word == Stack::end) return asker.found();
