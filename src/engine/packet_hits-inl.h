@@ -303,15 +303,18 @@ private:
         if (scene.filter.keeps != nullptr) [[unlikely]]
             candidates = kept_of(scene, candidates, m, id, at);
         if (candidates == 0) return found;
-        // Store the new hits and limits.
-        better = mask_of(candidates);
-        hn::BlendedStore(t, better, f, t_limit + at);
-        hn::BlendedStore(hn::Load(f, m.u), better, f, u + at);
-        hn::BlendedStore(hn::Load(f, m.v), better, f, v + at);
-        hn::BlendedStore(hn::BitCast(f, hn::Set(u32, id)), better, f, reinterpret_cast<float*>(element) + at);
-        const V limited =
-            wanted == Wanted::any ? hn::Set(f, -1.0f) : s_limit_of(f, t, hn::Load(f, z_length + at));
-        hn::BlendedStore(limited, better, f, s_limit + at);
+        if constexpr (wanted == Wanted::any) {
+            end(candidates, id, at);
+        } else {
+            // Store the new hits and limits.
+            better = mask_of(candidates);
+            hn::BlendedStore(t, better, f, t_limit + at);
+            hn::BlendedStore(hn::Load(f, m.u), better, f, u + at);
+            hn::BlendedStore(hn::Load(f, m.v), better, f, v + at);
+            hn::BlendedStore(hn::BitCast(f, hn::Set(u32, id)), better, f,
+                             reinterpret_cast<float*>(element) + at);
+            hn::BlendedStore(s_limit_of(f, t, hn::Load(f, z_length + at)), better, f, s_limit + at);
+        }
         return true;
     }
 
