@@ -45,6 +45,16 @@ void expect_brute_force(const char* name, const Mesh& mesh, std::size_t count) {
         }
 }
 
+/// Compares all instruction sets with the plain walk.
+void expect_hits_of_the_walk(const MeshIndex<float>& index, const std::vector<Ray3f>& rays) {
+    const auto want = hits_of_the_walk(index, rays);
+    for (const auto set : instruction_sets()) {
+        SCOPED_TRACE(set);
+        const Using use(set);
+        expect_hits(want, Answers(index, rays));
+    }
+}
+
 /// Triangles each so much larger than the last that no box is shared: the deepest tree there is.
 Mesh chain(int count) {
     Mesh mesh;
@@ -163,12 +173,7 @@ TEST(Wide, CoherentRays) {
                 if (x % 16 == 5) ray.t_max = 0.9f;
                 rays.push_back(ray);
             }
-    const auto want = hits_of_the_walk(index, rays);
-    for (const auto set : instruction_sets()) {
-        SCOPED_TRACE(set);
-        const Using use(set);
-        expect_hits(want, Answers(index, rays));
-    }
+    expect_hits_of_the_walk(index, rays);
 }
 
 /// Rays of a picture whose components change sign, or whose longest axis changes. A packet has up to four
@@ -267,12 +272,7 @@ TEST(Wide, ShortRaysThatEndOnAFloor) {
             rays.back().t_max = closest_hit(index, rays.back()).t;
         }
     }
-    const auto want = hits_of_the_walk(index, rays);
-    for (const auto set : instruction_sets()) {
-        SCOPED_TRACE(set);
-        const Using use(set);
-        expect_hits(want, Answers(index, rays));
-    }
+    expect_hits_of_the_walk(index, rays);
 }
 
 /// A batch returns the number of rays that each algorithm answered.

@@ -21,6 +21,7 @@
 
 #include "packet_rays-inl.h"
 #include "prefetch-inl.h"
+#include "reader-inl.h"
 #include "tests-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -35,7 +36,8 @@ public:
 
     /// Answers the rays that `looked` has read from `rays`, whatever their ways.
     HWY_NOINLINE void answer(const PacketRays& looked, const RayArray<float, 3>& rays, bool* answers) {
-        for (int i = 0; i < size; ++i) take(i, rays, looked.number(i));
+        RayReader asked(rays);
+        for (int i = 0; i < size; ++i) take(i, asked.at(looked.number(i)));
         take_reach(looked);
         trace(looked);
         for (int i = 0; i < size; ++i) answers[looked.number(i)] = ray_[i].element != Hit<float>::none;
@@ -56,14 +58,9 @@ private:
     static constexpr PacketRays::F f{};
 
     /// Prepares a ray, and copies what the test of boxes needs.
-    HWY_INLINE void take(int i, const RayArray<float, 3>& rays, std::size_t number) {
+    HWY_INLINE void take(int i, const std::byte* ray_at) {
         WideRay& ray = ray_[i];
-        if (rays.together()) {
-            prepare<W>(rays.at(number), scene_.tree.bounds, 0.0f, ray);
-        } else {
-            const Ray<float, 3> copied = rays[number];
-            prepare<W>(reinterpret_cast<const std::byte*>(&copied), scene_.tree.bounds, 0.0f, ray);
-        }
+        prepare<W>(ray_at, scene_.tree.bounds, 0.0f, ray);
         for (int k = 0; k < 3; ++k) {
             inverse_[k][i] = ray.inverse[k];
             enter_at_[k][i] = ray.enter_at[k], leave_at_[k][i] = ray.leave_at[k];
@@ -97,7 +94,9 @@ private:
             reach = std::max({reach, scene.high[k] - origins.low[k], origins.high[k] - scene.low[k]});
             far_off = std::max({far_off, std::abs(origins.low[k]), std::abs(origins.high[k])});
         }
-        const float e = unit_roundoff<float> * (16 * reach + 4 * far_off) + underflow;
+        constexpr hn::CappedTag<float, 1> one;
+        const float e =
+            hn::GetLane(slack_of(one, hn::Set(one, reach), hn::Set(one, far_off), hn::Set(one, underflow)));
         for (int k = 0; k < 3; ++k) {
             reach_.low[k] = std::max(reach_.low[k] - 2 * e, scene.low[k]);
             reach_.high[k] = std::min(reach_.high[k] + 2 * e, scene.high[k]);
