@@ -72,7 +72,10 @@ LaneBox<T> box_of_centers2(std::span<const Reference<T, D>> references, Executor
 
 /// References in the order of the curve; those of one cell keep their own order. A key has the reference's
 /// place in its low bits and as much of its code as fits above. Keys are sorted by the first 33 bits of the
-/// code by radix, in O(n). The few keys that are still alike are sorted by comparing whole codes.
+/// code by radix, in O(n), and those that are still alike by comparison. Where three or more have the same
+/// code as far as keys hold it, their whole codes are compared. Two keep their own order: whichever comes
+/// first, the tree divides between them. Both halves of a flat quadrilateral are often such a pair, since
+/// they have one box.
 template <std::floating_point T, int D>
 class MortonOrder {
 public:
@@ -98,8 +101,9 @@ public:
     void prefetch(std::size_t i) const { __builtin_prefetch(&reference(i)); }
 
     /// Where the part [first, last), of at least two elements, divides: at the first element whose code has
-    /// the highest differing bit set; in the middle if all codes are equal.
+    /// the highest differing bit set; in the middle of two, or if all codes are equal.
     std::size_t split(std::size_t first, std::size_t last) const {
+        if (last - first == 2) return first + 1;
         const std::uint64_t differing = keys_[first] ^ keys_[last - 1];
         if (differing >> place_bits_ != 0)
             return first_set(first, last, std::bit_floor(differing), [&](std::size_t i) { return keys_[i]; });
@@ -126,10 +130,18 @@ private:
         return clear + 1;
     }
 
+    /// Whether the codes of two keys are equal, as far as keys hold them.
+    bool same_key(std::size_t i, std::size_t j) const { return (keys_[i] ^ keys_[j]) >> place_bits_ == 0; }
     bool begins_run(std::size_t i) const { return i == 0 || keys_[i - 1] >> 31 != keys_[i] >> 31; }
     void sort_run(std::size_t begin, std::size_t end) {
+        std::sort(keys_.data() + begin, keys_.data() + end);
+        for (std::size_t first = begin, last; first < end; first = last) {
+            for (last = first + 1; last < end && same_key(first, last);) ++last;
+            if (last - first > 2) sort_by_codes(first, last);
+        }
+    }
+    void sort_by_codes(std::size_t begin, std::size_t end) {
         std::sort(keys_.data() + begin, keys_.data() + end, [&](std::uint64_t a, std::uint64_t b) {
-            if (((a ^ b) >> place_bits_) != 0) return a < b;
             const std::uint64_t x = code_of(a), y = code_of(b);
             return x != y ? x < y : a < b;
         });
