@@ -92,7 +92,7 @@ public:
                            i;
         });
         const auto key = [](std::uint64_t k) { return k; };
-        if (size() > few) radix_sort(keys_, key, 31, 3, executor);
+        if (size() > few) radix_sort(keys_, key, sorted_from, 3, executor);
         sort_rest(executor);
     }
 
@@ -114,6 +114,7 @@ public:
 
 private:
     static constexpr std::size_t few = 1024;
+    static constexpr int sorted_from = 31;  // the lowest bit that the radix sort orders
 
     std::size_t place(std::uint64_t key) const { return key & ((std::uint64_t(1) << place_bits_) - 1); }
     std::uint64_t code_of(std::uint64_t key) const { return cells_.code(references_[place(key)].center2()); }
@@ -130,13 +131,17 @@ private:
         return clear + 1;
     }
 
-    /// Whether the codes of two keys are equal, as far as keys hold them.
-    bool same_key(std::size_t i, std::size_t j) const { return (keys_[i] ^ keys_[j]) >> place_bits_ == 0; }
-    bool begins_run(std::size_t i) const { return i == 0 || keys_[i - 1] >> 31 != keys_[i] >> 31; }
+    /// The end of the elements from `first` on, within [first, last), whose keys are alike above their low
+    /// `ignored` bits.
+    std::size_t end_of_alike(std::size_t first, std::size_t last, int ignored) const {
+        std::size_t i = first + 1;
+        while (i < last && (keys_[i] ^ keys_[first]) >> ignored == 0) ++i;
+        return i;
+    }
     void sort_run(std::size_t begin, std::size_t end) {
         std::sort(keys_.data() + begin, keys_.data() + end);
         for (std::size_t first = begin, last; first < end; first = last) {
-            for (last = first + 1; last < end && same_key(first, last);) ++last;
+            last = end_of_alike(first, end, place_bits_);
             if (last - first > 2) sort_by_codes(first, last);
         }
     }
@@ -155,12 +160,12 @@ private:
         for (std::size_t b = blocks.number(); b-- > 0;) {
             std::size_t i = b * blocks.size;
             const std::size_t end = std::min(size(), i + blocks.size);
-            while (i < end && !begins_run(i)) ++i;
+            if (i > 0) i = end_of_alike(i - 1, end, sorted_from);
             first[b] = i < end ? i : first[b + 1];
         }
         blocks.each(executor, [&](std::size_t b, std::size_t, std::size_t) {
             for (std::size_t begin = first[b], end; begin < first[b + 1]; begin = end) {
-                for (end = begin + 1; end < first[b + 1] && !begins_run(end);) ++end;
+                end = end_of_alike(begin, first[b + 1], sorted_from);
                 if (end - begin > 1) sort_run(begin, end);
             }
         });
