@@ -199,8 +199,8 @@ private:
     }
     HWY_INLINE void push_sorted(hn::Mask<decltype(i32)> entered, Lanes keys, const std::uint32_t* children) {
         const int count = static_cast<int>(hn::CountTrue(i32, entered));
-        if constexpr (compresses && W == 16)
-            if (count <= 8) [[likely]]
+        if constexpr (compresses && W >= 8)
+            if (W == 8 || count <= 8) [[likely]]
                 return push_few(compressed(i32, keys, entered), count, children);
         const Lanes sorted = sorted_descending(i32, hn::IfThenElse(entered, keys, hn::Set(i32, -1)));
         put(i32, count, sorted, ordered(children, sorted));
