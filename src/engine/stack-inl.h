@@ -123,7 +123,7 @@ public:
         } else if constexpr (compresses && Boxes<W>::parts == 2) {
             const int count = std::popcount(boxes.bits());
             if (count <= Boxes<W>::lanes) [[likely]]
-                push_few(keys_in_front(boxes), count, children);
+                push_compressed<4>(keys_in_front(boxes), count, children);
             else
                 push(push_others_each(boxes, children));
         } else if (boxes.bits() != 0) {
@@ -199,18 +199,20 @@ private:
     }
     HWY_INLINE void push_sorted(hn::Mask<decltype(i32)> entered, Lanes keys, const std::uint32_t* children) {
         const int count = static_cast<int>(hn::CountTrue(i32, entered));
-        if constexpr (compresses && W >= 8)
-            if (W == 8 || count <= 8) [[likely]]
-                return push_few(compressed(i32, keys, entered), count, children);
-        const Lanes sorted = sorted_descending(i32, hn::IfThenElse(entered, keys, hn::Set(i32, -1)));
-        put(i32, count, sorted, ordered(children, sorted));
+        if constexpr (compresses && W > 4) {
+            push_compressed<4>(compressed(i32, keys, entered), count, children);
+        } else {
+            const Lanes sorted = sorted_descending(i32, hn::IfThenElse(entered, keys, hn::Set(i32, -1)));
+            put(i32, count, sorted, ordered(children, sorted));
+        }
     }
-    // Sorts and pushes up to eight keys, which are in front, in as few lanes as have room for them.
-    HWY_INLINE void push_few(Lanes keys, int count, const std::uint32_t* children) {
-        if (count <= 4) [[likely]]
-            put_sorted(hn::CappedTag<std::int32_t, 4>(), keys, count, children);
-        else
-            put_sorted(hn::CappedTag<std::int32_t, 8>(), keys, count, children);
+    // Sorts and pushes compressed keys, in as few lanes as have room for them, but at least `lanes`.
+    template <int lanes>
+    HWY_INLINE void push_compressed(Lanes keys, int count, const std::uint32_t* children) {
+        if constexpr (lanes < Boxes<W>::lanes)
+            if (count > lanes) [[unlikely]]
+                return push_compressed<2 * lanes>(keys, count, children);
+        put_sorted(hn::CappedTag<std::int32_t, lanes>(), keys, count, children);
     }
     template <class D>
     HWY_INLINE void put_sorted(D d, Lanes keys, int count, const std::uint32_t* children) {
