@@ -3,6 +3,7 @@
 #include "engine.h"
 
 #include <hedgerow/engine/wide_bvh.h>
+#include <hedgerow/mesh_index.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
 #include <hedgerow/structures/bvh/bvh.h>
