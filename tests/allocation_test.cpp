@@ -165,5 +165,31 @@ TYPED_TEST(Allocation, WideBuildsStayWithinTheirBound) {
     EXPECT_THROW(build<WideBvh>(equal, bad), InputError);
 }
 
+/// Scratch is what a build takes beyond the index that it leaves; RecordProperty keeps each ratio.
+TYPED_TEST(Allocation, ScratchOfABuildIsAtMostOneAndAHalfIndexes) {
+    using T = TypeParam;
+    const std::pair<const char*, TriangleMesh<T>> scenes[] = {{"interior", interior<T>(100000)},
+                                                              {"boulder", boulder<T>(100000)},
+                                                              {"hairball", hairball<T>(100000)},
+                                                              {"soup", soup<T>(100000)},
+                                                              {"stadium", teapot_in_stadium<T>(50000)}};
+    for (const auto& [name, mesh] : scenes)
+        for (const auto builder : wide_builders) {
+            WideOptions options;
+            options.builder = builder;
+            const auto view = mesh.view();
+            double left = 0;
+            const auto build_it = [&] {
+                const auto index = build<WideBvh>(view, options, serial_executor());
+                left = static_cast<double>(index.bytes());
+            };
+            const double ratio = static_cast<double>(most_bytes_of(build_it)) / left - 1;
+            EXPECT_LE(ratio, 1.5) << name << " " << name_of(builder);
+            EXPECT_GT(ratio, 0.1) << name << " " << name_of(builder);
+            this->RecordProperty(std::string(name) + "-" + std::string(name_of(builder)),
+                                 std::to_string(ratio));
+        }
+}
+
 }  // namespace
 #endif
