@@ -48,7 +48,7 @@ struct Capsules {
     /// Returns the closest point of the solid capsule. The point is within the bounds, as structures require.
     Vec3f closest_point(std::size_t i, const Vec3f& p) const {
         const auto& [a, b, radius] = all[i];
-        const Vec3f on_axis = hedgerow::closest_point(p, Segment<float, 3>{a, b});
+        const Vec3f on_axis = hedgerow::closest_point(p, Segment<float, 3>{a, b}).point;
         const float away = length(p - on_axis);
         return away <= radius ? clamped(p, bounds(i))
                               : clamped(on_axis + (p - on_axis) * (radius / away), bounds(i));

@@ -159,24 +159,36 @@ Real distance_to(Real3 p, Real3 a, Real3 b) {
     const Real l = dot(ab, ab);
     return size(p - a - ab * (l > 0 ? std::clamp(dot(p - a, ab) / l, Real(0), Real(1)) : Real(0)));
 }
-/// The distance to the nearest edge, or to the foot on the plane if it is inside and nearer.
+/// The distance to the nearest edge, or to the foot on the plane if it is inside and nearer. The side ac is
+/// split into a part along ab and a height, so that in slivers all errors are those of a long double, too.
 Real distance_to(Real3 p, Real3 a, Real3 b, Real3 c) {
     const Real3 ab = b - a, ac = c - a, ap = p - a;
-    const Real xx = dot(ab, ab), xy = dot(ab, ac), yy = dot(ac, ac), x = dot(ap, ab), y = dot(ap, ac);
-    const Real area2 = xx * yy - xy * xy, v = (yy * x - xy * y) / area2, w = (xx * y - xy * x) / area2;
+    const Real l = dot(ab, ab), along_c = dot(ac, ab) / l, along_p = dot(ap, ab) / l;
+    const Real3 height = ac - ab * along_c;
+    const Real w = dot(ap - ab * along_p, height) / dot(height, height), v = along_p - w * along_c;
     const Real edges = std::min({distance_to(p, a, b), distance_to(p, a, c), distance_to(p, b, c)});
     return v >= 0 && w >= 0 && v + w <= 1 ? std::min(edges, size(ap - ab * v - ac * w)) : edges;
 }
 
-/// Expects that the closest point of a shape is right. `distance` measures to the shape in long double.
+/// Expects that the closest point of a shape is right, within `slack`, and its distance within 2^-22 of
+/// itself, or in double within 2^-48 of itself and of `longest`, the shape's longest edge. `distance`
+/// measures to the shape in long double.
 template <class T, int D, class Shape, class Distance>
-void expect_closest(const Vec<T, D>& p, const Shape& shape, Real slack, Distance distance) {
-    const Vec<T, D> q = closest_point(p, shape);
+void expect_closest(const Vec<T, D>& p, const Shape& shape, Real longest, Real slack, Distance distance) {
+    const auto [d2, q] = closest_point(p, shape);
     const Box<T, D> box = shape.bounds();
     EXPECT_TRUE(box.contains(q));
     EXPECT_LE(distance(real(q)), slack);
-    EXPECT_LE(std::fabs(size(real(p) - real(q)) - distance(real(p))), slack);
-    EXPECT_LE(distance2(p, box), distance2(p, q));
+    const Real true_distance = distance(real(p)), found = std::sqrt(Real(d2));
+    EXPECT_LE(std::fabs(size(real(p) - real(q)) - true_distance), slack);
+    const Real share = std::is_same_v<T, float> ? 0x1p-22 : 0x1p-48;
+    const Real least = std::is_same_v<T, float> ? Real(0x1p-48) : share;  // of the longest edge
+    const Real underflow = 2 * std::sqrt(Real(std::numeric_limits<T>::denorm_min()));
+    EXPECT_LE(std::fabs(found - true_distance), share * true_distance + least * longest + underflow);
+    // The distance to the box may be more by roundings in T.
+    const Real boxes = std::is_same_v<T, float> ? 0x1p-20 : 0x1p-48;
+    EXPECT_LE(Real(distance2(p, box)),
+              Real(d2) * (1 + boxes) + 4 * Real(std::numeric_limits<T>::denorm_min()));
     EXPECT_LE(distance2(p, merged(box, Box<T, D>().expand(p * T(0.5)))), distance2(p, box));
 }
 
@@ -205,14 +217,15 @@ void expect_closest_points(int scale, bool slivers) {
         const Real3 a = real(tri.a), b = real(tri.b), c = real(tri.c);
         const Real largest = max_component(max(max(abs(p), abs(tri.a)), max(abs(tri.b), abs(tri.c))));
         const Real slack = 16 * unit_roundoff<T> * largest;
-        expect_closest(p, Segment<T, D>{tri.a, tri.b}, slack, [&](Real3 x) { return distance_to(x, a, b); });
+        expect_closest(p, Segment<T, D>{tri.a, tri.b}, size(b - a), slack,
+                       [&](Real3 x) { return distance_to(x, a, b); });
         // Allow a sliver to err by its thickness, and other triangles by 2^16 roundings in double of the
         // query's distance.
         const Real longest = std::max({size(b - a), size(c - a), size(c - b)});
         const Real thickness = longest > 0 ? size(cross(b - a, c - a)) / longest : 0;
         const Real slip =
             thickness < longest / 16 ? thickness : 0x1p16 * unit_roundoff<double> * size(real(p) - a);
-        expect_closest(p, tri, slack + slip, [&](Real3 x) { return distance_to(x, a, b, c); });
+        expect_closest(p, tri, longest, slack + slip, [&](Real3 x) { return distance_to(x, a, b, c); });
     }
 }
 TYPED_TEST(Geometry, ClosestPointsOfTrianglesAndSegments) {
@@ -238,7 +251,21 @@ TYPED_TEST(Geometry, ClosestPointsLieInTheBoxOfTheirTriangle) {
         const auto any = [&] { return T(random.uniform()); };
         const Triangle<T, 3> tri{{any(), any(), 0}, {1, -1, 0}, {1, 2, 0}};
         const Vec<T, 3> p(1 - static_cast<T>(random.bits() % 8) * unit_roundoff<T>, any(), any());
-        ASSERT_TRUE(tri.bounds().contains(closest_point(p, tri))) << i;
+        ASSERT_TRUE(tri.bounds().contains(closest_point(p, tri).point)) << i;
+    }
+}
+
+/// The triangles on both sides of a fold, in every order of corners: off the fold both are equally far away.
+TYPED_TEST(Geometry, TrianglesAreEquallyFarWhereTheirCommonEdgeIsClosest) {
+    using T = TypeParam;
+    for (std::uint64_t i = 0; i < 50000; ++i) {
+        Random random(16, i);
+        const auto any = [&] { return T(random.uniform(-1, 1)); };
+        const Vec<T, 3> a(any(), T(-1), T(0)), b(any(), T(1), T(0));
+        const Vec<T, 3> left(T(-5), any(), T(-6)), right(T(5), any(), T(-7)), p(any(), 2 * any(), T(9));
+        const T one = closest_point(p, Triangle<T, 3>{a, b, left}).distance2;
+        for (const auto& other : {Triangle<T, 3>{b, a, right}, {right, b, a}, {a, right, b}})
+            ASSERT_EQ(closest_point(p, other).distance2, one) << i;
     }
 }
 
@@ -250,7 +277,7 @@ void expect_closest_on_spheres_and_boxes() {
         const Sphere<T, D> ball{in_ball<T, D>(random, 9),
                                 i % 9 == 0 ? T(0) : T(std::exp2(random.uniform(-9, 3)))};
         const Vec<T, D> p = i % 7 == 0 ? ball.center : in_ball<T, D>(random, 20);
-        expect_closest(p, ball, 200 * unit_roundoff<T>,
+        expect_closest(p, ball, 30, 200 * unit_roundoff<T>,
                        [&](Real3 x) { return std::fabs(size(x - real(ball.center)) - ball.radius); });
         // Compare the box with a distance in long double.
         const auto box = box_of(in_ball<T, D>(random, 9), in_ball<T, D>(random, 9));

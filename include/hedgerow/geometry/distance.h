@@ -1,10 +1,11 @@
-/// Closest points of shapes, and squared distances. Squares are always summed in the order of the axes. The
-/// computed distance to a box therefore never exceeds the computed distance to a shape inside it: rounding is
-/// monotone, and closest points are clamped into the box of their shape.
+/// Closest points of shapes, and squared distances. Squares are always summed in the order of the axes.
 #pragma once
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <type_traits>
+#include <utility>
 
 #include <hedgerow/geometry/shapes.h>
 
@@ -33,6 +34,15 @@ constexpr Vec<T, D> clamped(const Vec<T, D>& p, const Box<T, D>& box) {
     return min(max(p, box.low), box.high);
 }
 
+/// The closest point of a shape, and its squared distance. The distance is that of the shape as it is given:
+/// it is computed in double and rounded once. `point` is rounded to T, and may be farther or nearer than that
+/// by a rounding of a coordinate, which is much of a small distance.
+template <std::floating_point T, int D>
+struct Foot {
+    T distance2;
+    Vec<T, D> point;
+};
+
 namespace detail {
 /// A power of two that scales the vectors so that fourth powers of their lengths neither overflow nor
 /// underflow. Returns 1 for floats, which need no scaling in double.
@@ -41,60 +51,98 @@ double safe_scale(const Vec<double, D>& first, const More&... more) {
     if constexpr (std::is_same_v<T, float>) return 1;
     return scale_to_one(std::max({max_component(abs(first)), max_component(abs(more))...}));
 }
+
+/// A foot in double. The squared distance is in scaled units: that of scaled vectors.
+template <int D>
+using ExactFoot = Foot<double, D>;
+
+/// The closest point of the segment from a to b, whose distance is measured to the point that is found, so it
+/// errs by the square of the point's error along the segment, and never by much more than that error.
+/// Measures from the same end for ab and ba, and from an end itself where that is closest: triangles with a
+/// common edge are equally far away where it is closest.
+template <int D>
+ExactFoot<D> foot_on_segment(const Vec<double, D>& p, const Vec<double, D>& a, const Vec<double, D>& b,
+                             double scale) {
+    const bool turned = std::lexicographical_compare(std::begin(b.data), std::end(b.data), std::begin(a.data),
+                                                     std::end(a.data));
+    const Vec<double, D>&from = turned ? b : a, &to = turned ? a : b;
+    const Vec<double, D> along = (to - from) * scale, x = (p - from) * scale;
+    const double l = length2(along), t = l > 0 ? dot(x, along) / l : 0;
+    if (!(t > 0)) return {length2(x), from};
+    if (t >= 1) return {length2((p - to) * scale), to};
+    return {length2(x - along * t), from + (to - from) * t};
+}
+
+/// Rounds a foot to T. The distance is at least that to the shape's box, which is exact but for roundings in
+/// T, so that a structure that measures to boxes finds the shape by the same limit as brute force
+/// (probes/point.h).
+template <class T, int D>
+Foot<T, D> rounded_foot(const Vec<T, D>& query, const ExactFoot<D>& foot, double scale,
+                        const Box<T, D>& box) {
+    const Box<double, D> around{Vec<double, D>(box.low), Vec<double, D>(box.high)};
+    const double d2 = std::is_same_v<T, float> ? foot.distance2 : foot.distance2 / scale / scale;
+    return {rounded_to<T>(std::max(d2, distance2(Vec<double, D>(query), around))),  // NaN stays NaN
+            clamped(Vec<T, D>(foot.point), box)};
+}
 }  // namespace detail
 
-/// The closest point of a segment, in double.
 template <class T, int D>
-Vec<T, D> closest_point(const Vec<T, D>& query, const Segment<T, D>& s) {
-    using V = Vec<double, D>;
-    V ab = V(s.b) - V(s.a), ap = V(query) - V(s.a);
-    const double scale = detail::safe_scale<T>(ab, ap);
-    ab = ab * scale, ap = ap * scale;
-    const double l = length2(ab);
-    const double u = l > 0 ? std::clamp(dot(ap, ab) / l, 0.0, 1.0) : 0;
-    return clamped(Vec<T, D>(V(s.a) + (V(s.b) - V(s.a)) * u), s.bounds());
+Foot<T, D> closest_point(const Vec<T, D>& query, const Vec<T, D>& point) {
+    return {rounded_to<T>(distance2(Vec<double, D>(query), Vec<double, D>(point))), point};
 }
 
-/// The closest point of a triangle, in double: the foot of the perpendicular to its plane if the foot is
-/// inside, else the closest point of the edges. In a sliver, rounding may decide whether the foot is inside,
-/// so the edges are tried in either case. The point then errs by no more than the sliver's width.
 template <class T, int D>
-Vec<T, D> closest_point(const Vec<T, D>& query, const Triangle<T, D>& tri) {
+Foot<T, D> closest_point(const Vec<T, D>& query, const Segment<T, D>& s) {
     using V = Vec<double, D>;
-    const V whole_ab = V(tri.b) - V(tri.a), whole_ac = V(tri.c) - V(tri.a);
-    V ab = whole_ab, ac = whole_ac, ap = V(query) - V(tri.a);
-    const double scale = detail::safe_scale<T>(ab, ac, ap);
-    ab = ab * scale, ac = ac * scale, ap = ap * scale;
-    // Least squares for ap = v·ab + w·ac, by Cramer's rule.
-    const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
-    const double area2 = product(bb, cc) - product(bc, bc);
-    const double v = (product(cc, pb) - product(bc, pc)) / area2;
-    const double w = (product(bb, pc) - product(bc, pb)) / area2;
+    const V p(query), a(s.a), b(s.b);
+    const double scale = detail::safe_scale<T>(b - a, p - a);
+    return detail::rounded_foot(query, detail::foot_on_segment(p, a, b, scale), scale, s.bounds());
+}
+
+/// The foot of the perpendicular to the triangle's plane, if it is inside, else the closest point of the
+/// edges. All errors are those of double, of the distance plus the longest edge: the side ac is split into a
+/// part along ab and a height (Gram and Schmidt), which keeps slivers in order, and the distance is measured
+/// to the foot that is found. In a sliver the foot may slip along the height, so the edges are tried too;
+/// either is a point of the triangle, and one of the two is right.
+template <class T, int D>
+Foot<T, D> closest_point(const Vec<T, D>& query, const Triangle<T, D>& tri) {
+    using V = Vec<double, D>;
+    const V p(query), a(tri.a), b(tri.b), c(tri.c);
+    const V whole_ab = b - a, whole_ac = c - a;
+    const double scale = detail::safe_scale<T>(whole_ab, whole_ac, p - a);
+    const V ab = whole_ab * scale, ac = whole_ac * scale, ap = (p - a) * scale;
+    // Write ap = v·ab + w·ac + a rest that is perpendicular to both.
+    const double length_ab2 = length2(ab), along_c = dot(ac, ab) / length_ab2;
+    const double along_p = dot(ap, ab) / length_ab2;
+    const V height = ac - ab * along_c, across = ap - ab * along_p;
+    const double height2 = length2(height);
+    const double w = dot(across, height) / height2, v = along_p - product(w, along_c);
     const bool inside = v >= 0 && w >= 0 && v + w <= 1;  // false if there is no area
-    const Vec<T, D> foot =
-        inside ? clamped(Vec<T, D>(V(tri.a) + whole_ab * v + whole_ac * w), tri.bounds()) : tri.a;
-    // Return a foot that is inside unless the triangle is a sliver: sin² of its angle at a is at most 2^-8.
-    if (inside && area2 > 0x1p-8 * product(bb, cc)) return foot;
-
-    // Take the closest of the foot, if it is inside, and the edges.
-    Vec<T, D> best = foot;
-    for (const auto& edge : {Segment<T, D>{tri.a, tri.b}, {tri.b, tri.c}, {tri.c, tri.a}}) {
-        const auto q = clamped(closest_point(query, edge), tri.bounds());
-        if (distance2(query, q) < distance2(query, best)) best = q;
-    }
-    return best;
+    detail::ExactFoot<D> best{std::numeric_limits<double>::infinity(), a};
+    if (inside)
+        best = D == 2 ? detail::ExactFoot<D>{0, p}
+                      : detail::ExactFoot<D>{length2(ap - ab * v - ac * w), a + whole_ab * v + whole_ac * w};
+    // Try the edges, unless the foot is inside of a triangle that is no sliver.
+    if (!(inside && height2 > 0x1p-8 * length2(ac)))
+        for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+            const auto foot = detail::foot_on_segment(p, from, to, scale);
+            if (!(foot.distance2 >= best.distance2)) best = foot;
+        }
+    return detail::rounded_foot(query, best, scale, tri.bounds());
 }
 
-/// The closest point of the sphere's surface, in double. For the center itself, the point along the first
-/// axis.
+/// The closest point of the sphere's surface. For the center itself, the point along the first axis.
 template <class T, int D>
-Vec<T, D> closest_point(const Vec<T, D>& p, const Sphere<T, D>& s) {
-    Vec<double, D> from = Vec<double, D>(p) - Vec<double, D>(s.center);
-    from = from * detail::safe_scale<T>(from);
+Foot<T, D> closest_point(const Vec<T, D>& query, const Sphere<T, D>& s) {
+    using V = Vec<double, D>;
+    const V p(query), center(s.center);
+    const double scale = detail::safe_scale<T>(p - center);
+    V from = (p - center) * scale;
     double l = length(from);
+    const double radius = static_cast<double>(s.radius), away = l - product(radius, scale);
     if (!(l > 0)) from = {}, from[0] = l = 1;
-    return clamped(Vec<T, D>(Vec<double, D>(s.center) + from * (static_cast<double>(s.radius) / l)),
-                   s.bounds());
+    return detail::rounded_foot(query, {product(away, away), center + from * (radius / l)}, scale,
+                                s.bounds());
 }
 
 }  // namespace hedgerow

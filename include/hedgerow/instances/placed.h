@@ -36,8 +36,8 @@ public:
     Flow test_leaf(const PointProbe<T, D>&, const Leaf& leaf, Query& query) const {
         const Vec<T, D>& p = query.world().point();
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
-            const auto q = closest_point(leaf.ids[i], p);
-            if (query.offer(PointCandidate<T, D>{distance2(p, q), leaf.ids[i], q}) == Flow::stop)
+            const Foot<T, D> foot = closest_point(leaf.ids[i], p);
+            if (query.offer(PointCandidate<T, D>{foot.distance2, leaf.ids[i], foot.point}) == Flow::stop)
                 return Flow::stop;
         }
         return Flow::go_on;
@@ -71,18 +71,20 @@ private:
             return Box<T, D>{p, p};
         }
     }
-    Vec<T, D> closest_point(PrimitiveId i, const Vec<T, D>& p) const {
+    Foot<T, D> closest_point(PrimitiveId i, const Vec<T, D>& p) const {
         if constexpr (has_shape) {
             return closest_to(p, shape(i));
         } else {
             static_cast<void>(similarity());
-            return clamped(transformed(there_, set_.closest_point(i, transformed(back_, p))), bounds(i));
+            const Vec<T, D> inside = transformed(back_, p);
+            const Vec<T, D> closest = foot_of(inside, set_.closest_point(i, inside)).point;
+            return foot_of(p, clamped(transformed(there_, closest), bounds(i)));
         }
     }
     template <class Shape>
-    static Vec<T, D> closest_to(const Vec<T, D>& p, const Shape& s) {
+    static Foot<T, D> closest_to(const Vec<T, D>& p, const Shape& s) {
         if constexpr (std::is_same_v<Shape, Box<T, D>>)
-            return s.low;
+            return hedgerow::closest_point(p, s.low);
         else
             return hedgerow::closest_point(p, s);
     }

@@ -33,12 +33,22 @@ concept MeetsRays = PrimitiveSet<P> &&
     requires(const P& p, std::size_t i, const Ray<typename P::Scalar, P::dimension>& ray) {
     { p.meet(i, ray) } -> std::same_as<std::optional<Meeting<typename P::Scalar>>>;
 };
+/// What a set's `closest_point` may return: a Foot, or a point alone, whose distance is then measured in T.
+template <std::floating_point T, int D>
+constexpr Foot<T, D> foot_of(const Vec<T, D>& p, const Vec<T, D>& closest) {
+    return {distance2(p, closest), closest};
+}
+template <std::floating_point T, int D>
+constexpr const Foot<T, D>& foot_of(const Vec<T, D>&, const Foot<T, D>& closest) {
+    return closest;
+}
 /// A set that answers distance queries. `closest_point` returns the closest point of a primitive, which must
-/// lie within the primitive's bounds.
+/// lie within the primitive's bounds, or a Foot, whose distance may be at most some roundings less than that
+/// to the bounds.
 template <class P>
 concept HasClosestPoint = PrimitiveSet<P> &&
     requires(const P& p, std::size_t i, const Vec<typename P::Scalar, P::dimension>& x) {
-    { p.closest_point(i, x) } -> std::same_as<Vec<typename P::Scalar, P::dimension>>;
+    { foot_of(x, p.closest_point(i, x)) } -> std::convertible_to<Foot<typename P::Scalar, P::dimension>>;
 };
 /// A set that answers box queries. `overlaps` may be true only if the primitive's bounds overlap the box.
 template <class P>
@@ -178,8 +188,8 @@ Flow test_one(const P& set, const RayProbe<typename P::Scalar, P::dimension>& pr
 template <HasClosestPoint P, class Query>
 Flow test_one(const P& set, const PointProbe<typename P::Scalar, P::dimension>& probe, PrimitiveId id,
               Query& query) {
-    const auto q = set.closest_point(id, probe.point());
-    return query.offer({distance2(probe.point(), q), id, q});
+    const auto foot = foot_of(probe.point(), set.closest_point(id, probe.point()));
+    return query.offer({foot.distance2, id, foot.point});
 }
 template <OverlapsBoxes P, class Query>
 Flow test_one(const P& set, const BoxProbe<typename P::Scalar, P::dimension>& probe, PrimitiveId id,

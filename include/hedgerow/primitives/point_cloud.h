@@ -22,7 +22,9 @@ public:
     std::size_t size() const { return points_.size(); }
     Vec<T, D> point(std::size_t i) const { return points_[i]; }
     Box<T, D> bounds(std::size_t i) const { return {points_[i], points_[i]}; }
-    Vec<T, D> closest_point(std::size_t i, const Vec<T, D>&) const { return points_[i]; }
+    Foot<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
+        return hedgerow::closest_point(p, points_[i]);
+    }
     bool overlaps(std::size_t i, const Box<T, D>& box) const { return box.contains(points_[i]); }
 
 private:

@@ -27,7 +27,7 @@ public:
     bool finite(std::size_t i) const {
         return hedgerow::finite(segments_[i].a) && hedgerow::finite(segments_[i].b);
     }
-    Vec<T, 2> closest_point(std::size_t i, const Vec<T, 2>& p) const {
+    Foot<T, 2> closest_point(std::size_t i, const Vec<T, 2>& p) const {
         return hedgerow::closest_point(p, segments_[i]);
     }
     bool overlaps(std::size_t i, const Box<T, 2>& box) const { return overlap(segments_[i], box); }

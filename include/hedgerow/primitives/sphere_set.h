@@ -22,7 +22,7 @@ public:
     std::size_t size() const { return spheres_.size(); }
     Sphere<T, D> sphere(std::size_t i) const { return spheres_[i]; }
     Box<T, D> bounds(std::size_t i) const { return spheres_[i].bounds(); }
-    Vec<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
+    Foot<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
         return hedgerow::closest_point(p, spheres_[i]);
     }
     bool overlaps(std::size_t i, const Box<T, D>& box) const { return overlap(spheres_[i], box); }

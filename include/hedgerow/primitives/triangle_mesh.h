@@ -54,7 +54,7 @@ public:
     }
     Vec<T, 3> normal(std::size_t i) const { return triangle(i).normal(); }
 
-    Vec<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
+    Foot<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
         return hedgerow::closest_point(p, triangle(i));
     }
     bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }

@@ -17,7 +17,7 @@ public:
     ClosestPoint(const Index& index, const Vec<Scalar, Base::dimension>& p, Scalar max_distance2)
         : Base(index, p), best_{max_distance2, no_primitive, {}, no_primitive} {}
 
-    Scalar limit() const { return best_.distance2; }
+    Scalar limit() const { return limit_of_boxes(best_.distance2); }
     Flow offer(const Candidate& c) {
         if (nearer(c, best_)) best_ = c;
         return Flow::go_on;

@@ -26,7 +26,8 @@ public:
     }
 
     Scalar limit() const {
-        return k_ == 0 ? Scalar(-1) : (found_.size() < k_ ? max_ : found_.front().distance2);
+        if (k_ == 0) return Scalar(-1);
+        return limit_of_boxes(found_.size() < k_ ? max_ : found_.front().distance2);
     }
     Flow offer(const Candidate& c) {
         const Found f = this->found(c);

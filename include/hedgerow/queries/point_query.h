@@ -25,6 +25,15 @@ bool nearer(const A& a, const B& b) {
     return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : comes_before(a, b);
 }
 
+/// The limit of a walk for primitives within `distance2`. A primitive's distance is rounded once, but squares
+/// and sums of its distance to a box are rounded in T, six times, and where they underflow by subnormal
+/// steps; so the box may seem farther away than the primitive in it. Negative limits stay negative.
+template <std::floating_point T>
+T limit_of_boxes(T distance2) {
+    constexpr T more = std::is_same_v<T, float> ? T(0x1p-20) : T(0x1p-48);
+    return distance2 + product(distance2, more) + 4 * std::numeric_limits<T>::denorm_min();
+}
+
 /// `Set` gives the ids that answers report.
 template <class Set>
 class PointQuery {

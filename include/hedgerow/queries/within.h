@@ -24,7 +24,7 @@ public:
         found_.clear();
     }
 
-    Scalar limit() const { return max_; }
+    Scalar limit() const { return limit_of_boxes(max_); }
     Flow offer(const Candidate& c) {
         if (c.distance2 <= max_) found_.push_back(this->found(c));
         return Flow::go_on;
