@@ -189,6 +189,7 @@ void expect_closest(const Vec<T, D>& p, const Shape& shape, Real longest, Real s
     const Real boxes = std::is_same_v<T, float> ? 0x1p-20 : 0x1p-48;
     EXPECT_LE(Real(distance2(p, box)),
               Real(d2) * (1 + boxes) + 4 * Real(std::numeric_limits<T>::denorm_min()));
+    EXPECT_LE(distance2(p, box), distance2(p, q));
     EXPECT_LE(distance2(p, merged(box, Box<T, D>().expand(p * T(0.5)))), distance2(p, box));
 }
 

@@ -10,10 +10,9 @@
 
 namespace hedgerow {
 
-/// A point as a probe. Distances to boxes are exact but for roundings in T, which a query's limit has room
-/// for
-/// (`limit_of_boxes`). The distance to a box is never more than that to a box inside it: squares are summed
-/// in one order, and rounding is monotone.
+/// A point as a probe. Distances to boxes are exact but for roundings in T. A query's limit must leave room
+/// for these (`limit_of_boxes`). The distance to a box is never more than that to a box inside it: squares
+/// are summed in one order, and rounding is monotone.
 template <std::floating_point T, int D>
 class PointProbe {
 public:
