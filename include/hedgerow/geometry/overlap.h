@@ -1,11 +1,11 @@
 /// Overlap tests of shapes and boxes. Sets are closed: touching counts. The results are those of exact
-/// arithmetic on the given coordinates: ExactSum decides where rounding leaves a sign in doubt. So a box that
-/// overlaps a shape always overlaps the shape's own box, and the cells that contain a common point of a shape
-/// and a box are always among the cells that the shape is inserted into.
+/// arithmetic on the given coordinates (orientation.h). So a box that overlaps a shape always
+/// overlaps the shape's own box, and the cells that contain a common point of a shape and a box are always
+/// among the cells that the shape is inserted into.
 #pragma once
 
 #include <hedgerow/geometry/distance.h>
-#include <hedgerow/geometry/exact_sum.h>
+#include <hedgerow/geometry/orientation.h>
 
 namespace hedgerow {
 
@@ -17,9 +17,6 @@ constexpr bool overlap(const Box<T, D>& a, const Box<T, D>& b) {
 }
 
 namespace detail {
-/// A bound of what underflow may add to a sum of few products. Far below what any filter must resolve.
-inline constexpr double underflow = 0x1p-1000;
-
 /// An edge from p to q, for tests in the planes across the axes.
 template <int D>
 struct Edge {
@@ -27,19 +24,9 @@ struct Edge {
 
     Edge(const Vec<double, D>& from, const Vec<double, D>& to) : p(from), q(to), along(to - from) {}
 
-    /// Returns 1 if p, q, x turn counterclockwise in the plane of axes u and v, −1 if clockwise, 0 if x is on
-    /// the line. With ε the unit roundoff, the sum errs by at most (3 + 16ε)ε of the products' magnitudes
-    /// (Shewchuk 1997, section 4.2); the filter takes 4ε.
-    int turn(const Vec<double, D>& x, int u, int v) const {
-        const double left = product(along[u], x[v] - p[v]), right = product(along[v], x[u] - p[u]);
-        const double sum = left - right;
-        const double error = product(4 * unit_roundoff<double>, std::abs(left) + std::abs(right)) + underflow;
-        if (std::abs(sum) > error) [[likely]]
-            return sum > 0 ? 1 : -1;
-        // Edges along an axis and corners on the edge are common; both products are then exactly 0.
-        if ((along[u] == 0 || x[v] == p[v]) && (along[v] == 0 || x[u] == p[u])) return 0;
-        return exact_turn(p, q, x, u, v);
-    }
+    /// 1 if p, q, x turn counterclockwise in the plane of axes u and v, −1 if clockwise, 0 if x is on the
+    /// line.
+    int turn(const Vec<double, D>& x, int u, int v) const { return hedgerow::turn(p, q, along, x, u, v); }
     /// Whether the whole box is beyond the edge's line: clockwise of it (sign 1) or counterclockwise (sign
     /// −1). Tests the box's corner that is farthest the other way (Schwarz and Seidel 2010).
     bool beyond(const Box<double, D>& box, int u, int v, int sign) const {
