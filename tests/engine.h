@@ -23,16 +23,16 @@ private:
 };
 
 /// Calls f(index, instruction set) for the index of each width, with each instruction set in use.
-template <class F>
-void for_each_kernel(const TriangleMesh<float>& mesh, F f) {
+template <class Set, class F>
+void for_each_kernel(const Set& set, F f) {
     for (const int width : wide_widths) {
         WideOptions options;
         options.width = width;
-        const auto index = build<WideBvh>(mesh, options);
-        for (const auto set : instruction_sets()) {
-            SCOPED_TRACE(std::string(set) + ", width " + std::to_string(width));
-            const Using use(set);
-            f(index, set);
+        const auto index = build<WideBvh>(set, options);
+        for (const auto name : instruction_sets()) {
+            SCOPED_TRACE(std::string(name) + ", width " + std::to_string(width));
+            const Using use(name);
+            f(index, name);
             if (testing::Test::HasFatalFailure()) return;
         }
     }

@@ -17,9 +17,9 @@
 
 namespace hedgerow {
 
-/// An index of any structure. A batch of closest or any hits costs one virtual call, inside which the
-/// structure is known at compile time. All other queries share one walk a probe, in which each candidate
-/// costs a virtual call. Const use is thread-safe.
+/// An index of any structure. A batch of closest or any hits or closest points costs one virtual call, inside
+/// which the structure is known at compile time. All other queries share one walk a probe, in which each
+/// candidate costs a virtual call. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
@@ -78,12 +78,13 @@ public:
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits = nullptr) const {
         return counted<AllHits<AnyIndex>>(visits, ray, hits);
     }
-    /// Writes the closest point for each of `points`, false where there is no primitive.
+    /// Writes the closest point for each of `points`, false where there is no primitive. With `visits`, adds
+    /// to one count a point, and no kernel answers.
     void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
                         std::span<Visits> visits = {}) const {
+        if (visits.empty()) return closest_points_uncounted(points, found);
         for (std::size_t i = 0; i < points.size(); ++i)
-            found[i] =
-                counted<ClosestPoint<AnyIndex>>(visits.empty() ? nullptr : &visits[i], points[i], anywhere);
+            found[i] = answer<ClosestPoint<AnyIndex>>(visits[i], points[i], anywhere);
     }
     std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
                         Visits* visits = nullptr) const {
@@ -121,6 +122,8 @@ public:
 protected:
     virtual KernelUse closest_hits_uncounted(const RayArray<T, D>& rays, std::span<Hit<T>> hits) const = 0;
     virtual KernelUse any_hits_uncounted(const RayArray<T, D>& rays, std::span<bool> hits) const = 0;
+    virtual void closest_points_uncounted(std::span<const Vec<T, D>> points,
+                                          std::span<Near<T, D>> found) const = 0;
     virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
     virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;

@@ -58,6 +58,10 @@ public:
         else
             refuse_rays();
     }
+    void closest_points_uncounted(std::span<const Vec<T, D>> points,
+                                  std::span<Near<T, D>> found) const override {
+        hedgerow::closest_points(index_, points, found, serial_executor());
+    }
     void walk(VirtualQuery<RayProbe<T, D>>& query, TraceLog<T, D>& log) const override {
         if constexpr (rays)
             index_.ask(query, log);

@@ -110,7 +110,8 @@ private:
         for (int p = 0; p < B::parts; ++p) {
             auto overlap = hn::Eq(hn::Zero(B::f), hn::Zero(B::f));
             for (std::size_t k = 0; k < 3; ++k) {
-                const auto low = B::row(node, 2 * k * 4 * W, p), high = B::row(node, (2 * k + 1) * 4 * W, p);
+                const auto low = row_of<W>(node, 2 * k * 4 * W, p),
+                           high = row_of<W>(node, (2 * k + 1) * 4 * W, p);
                 overlap = hn::And(overlap, hn::And(hn::Le(low, hn::Set(B::f, reach_.high[int(k)])),
                                                    hn::Ge(high, hn::Set(B::f, reach_.low[int(k)]))));
             }

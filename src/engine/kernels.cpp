@@ -1,11 +1,9 @@
-/// The kernels, compiled for each instruction set: Highway's foreach_target includes this file once for
-/// each. Only Highway's headers are used; nothing is linked.
+/// The kernels of rays, compiled for each instruction set: Highway's foreach_target includes this file once
+/// for each. The table of each instruction set, with the kernels of point_kernels.cpp.
 #if HEDGEROW_HAS_HIGHWAY
+#include "targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/kernels.cpp"
-// Not worth their code: SSSE3 beside SSE4, and what AVX-512 has gained since its beginnings. Not possible:
-// SVE, whose vectors have no known length and so cannot be members.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -52,6 +50,8 @@ template <Wanted wanted, class Answer>
 inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, answer_ray<wanted, Answer>,
                                                    answer_rays<wanted, Answer>};
 
+extern const AllPointKernels point_kernels;  // in point_kernels.cpp
+
 inline constexpr WideKernels kernels {
 #if HWY_TARGET == HWY_AVX3
     "avx512", 16,
@@ -62,7 +62,7 @@ inline constexpr WideKernels kernels {
 #else
     "neon", 4,
 #endif
-        ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>
+        ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>, &point_kernels
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -79,8 +79,8 @@ private:
         for (int p = 0; p < Boxes<W>::parts; ++p) {
             hn::Vec<B> near_s[3], far_s[3];
             for (int k = 0; k < 3; ++k) {
-                near_s[k] = rays_.earliest(b, k, Boxes<W>::row(node, near_row_[k], p));
-                far_s[k] = rays_.latest(b, k, Boxes<W>::row(node, near_row_[k] ^ (4 * W), p));
+                near_s[k] = rays_.earliest(b, k, row_of<W>(node, near_row_[k], p));
+                far_s[k] = rays_.latest(b, k, row_of<W>(node, near_row_[k] ^ (4 * W), p));
             }
             boxes.entry[p] =
                 hn::Max(hn::Max(near_s[0], near_s[1]), hn::Max(near_s[2], hn::Set(b, rays_.s_first)));

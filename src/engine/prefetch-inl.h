@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include <hwy/highway.h>
 
@@ -19,10 +20,10 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-template <int W>
+template <int W, class Scene = WideScene>
 class Prefetch {
 public:
-    explicit Prefetch(const WideScene& scene)
+    explicit Prefetch(const Scene& scene)
         : start_{reinterpret_cast<const char*>(scene.tree.nodes.data()),
                  reinterpret_cast<const char*>(scene.blocks)} {}
 
@@ -31,13 +32,14 @@ public:
         // Found by arithmetic, since a branch would have to be predicted.
         const std::uint32_t leaf = word >> 31;
         const char* const from = start_[leaf] + std::size_t(word & ~WideChild::leaf_bit) * step_[leaf];
-        // 28·W bytes of a node are its planes and children, 5 lines are a leaf's block.
-        for (int line = 0; line < std::max(28 * W / 64, 5); ++line) __builtin_prefetch(from + 64 * line);
+        // 28·W bytes of a node are its planes and children; a leaf's block is read whole.
+        constexpr int lines = std::max<int>(28 * W, sizeof(*std::declval<Scene>().blocks)) / 64;
+        for (int line = 0; line < lines; ++line) __builtin_prefetch(from + 64 * line);
     }
 
 private:
     const char* start_[2];  // of nodes and of leaves; step_: bytes from one to the next
-    std::size_t step_[2] = {WideNodes<float, 3>::stride_of(W), sizeof(TriangleBlock<float>)};
+    std::size_t step_[2] = {WideNodes<float, 3>::stride_of(W), sizeof(*std::declval<Scene>().blocks)};
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

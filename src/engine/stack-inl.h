@@ -14,7 +14,7 @@
 
 #include <hwy/highway.h>
 
-#include "tests-inl.h"
+#include "boxes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
@@ -95,8 +95,9 @@ HWY_INLINE void order(std::uint64_t& nearer, std::uint64_t& farther) {
     farther = a < b ? b : a;
 }
 
-// A ray's stack of waiting children, in memory of the caller. A walk that stops at the first hit needs no s:
-// its places store words alone. The lowest place stores the word that ends the walk, at s = 0.
+// A stack of waiting children, in memory of the caller, with the s (or the squared distance) at which each is
+// entered. A walk that stops at the first hit needs no s: its places store words alone. The lowest place
+// stores the word that ends the walk, at s = 0.
 template <int W, Wanted wanted>
 class WalkStack {
 public:
@@ -112,6 +113,13 @@ public:
     }
     HWY_INLINE int top() const { return top_; }
     HWY_INLINE std::uint32_t pop() { return static_cast<std::uint32_t>(places_[--top_]); }
+    // The next child that is within the limit.
+    HWY_INLINE std::uint32_t pop_within(float limit) requires(wanted != Wanted::any) {
+        const std::uint64_t last = waiting(limit, end);
+        do --top_;
+        while (places_[top_] > last);
+        return static_cast<std::uint32_t>(places_[top_]);
+    }
     HWY_INLINE void push(Place child) { places_[top_++] = child; }
     // Pushes the entered children: the nearest on top, or for any hit the last, which is the likeliest to
     // stop a ray (WideCollapse).
@@ -140,7 +148,12 @@ public:
             const Lanes keys = keys_of(boxes, 0);
             const Lanes nearest = hn::MinOfLanes(
                 i32, hn::IfThenElse(entered, keys, hn::Set(i32, std::numeric_limits<std::int32_t>::max())));
-            push_sorted(hn::And(entered, hn::Ne(keys, nearest)), keys, children);
+            const auto others = hn::And(entered, hn::Ne(keys, nearest));
+            if constexpr (wanted == Wanted::near && compresses)
+                put(i32, static_cast<int>(hn::CountTrue(i32, others)), compressed(i32, keys, others),
+                    compressed(i32, hn::LoadU(i32, reinterpret_cast<const std::int32_t*>(children)), others));
+            else
+                push_sorted(others, keys, children);
             return children[hn::GetLane(nearest) & (W - 1)];
         } else {
             return static_cast<std::uint32_t>(push_others_each(boxes, children));

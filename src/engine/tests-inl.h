@@ -14,26 +14,13 @@
 
 #include <hedgerow/engine/kernels.h>
 
+#include "boxes-inl.h"
 #include "rays-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-// Whether the asker wants the nearest of all answers, or stops at the first.
-enum class Wanted { closest, any };
-
-template <class D>
-HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
-    std::uint64_t bits = 0;
-    hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(&bits));
-    return static_cast<unsigned>(bits);
-}
-
-// Vectors for a row of W floats: all of the row, or as much of it as a vector has room for.
-template <int W>
-using Floats = hn::CappedTag<float, W>;
 
 // The numbers of a ray that the test of boxes needs, each in all lanes. The axes have names, since g++ keeps
 // arrays of vectors in memory.
@@ -60,49 +47,20 @@ struct Slabs {
           z(ray, 2),
           s_min(hn::Set(Floats<W>(), ray.s_min)),
           s_limit(hn::Set(Floats<W>(), ray.s_limit)) {}
-};
 
-// The boxes of W children: a mask of those that the ray enters, and the s at which it does.
-template <int W>
-struct Boxes {
-    static constexpr Floats<W> f{};
-    using V = hn::Vec<Floats<W>>;
-    static constexpr int lanes = static_cast<int>(hn::MaxLanes(f)), parts = W / lanes;
-
-    V entry[parts];
-    hn::Mask<Floats<W>> entered[parts];
-
-    HWY_INLINE Boxes() = default;
-    HWY_INLINE Boxes(const std::byte* node, const Slabs<W>& ray) {
-        for (int p = 0; p < parts; ++p) {
-            const auto near_s = [&](const typename Slabs<W>::Axis& axis) __attribute__((always_inline)) {
-                return hn::MulSub(row(node, axis.near_row, p), axis.inverse, axis.enter_at);
-            };
-            const auto far_s = [&](const typename Slabs<W>::Axis& axis) __attribute__((always_inline)) {
-                return hn::MulSub(row(node, axis.near_row ^ (4 * W), p), axis.inverse, axis.leave_at);
-            };
-            const V exit = hn::Min(hn::Min(far_s(ray.x), far_s(ray.y)), hn::Min(far_s(ray.z), ray.s_limit));
-            entry[p] = hn::Max(hn::Max(near_s(ray.x), near_s(ray.y)), hn::Max(near_s(ray.z), ray.s_min));
-            entered[p] = hn::Le(entry[p], exit);
-        }
-    }
-    HWY_INLINE unsigned bits() const {
-        unsigned all = 0;
-        for (int p = 0; p < parts; ++p) all |= bits_of(f, entered[p]) << (p * lanes);
-        return all;
-    }
-    HWY_INLINE void store(float* at) const {
-        for (int p = 0; p < parts; ++p) hn::Store(entry[p], f, at + p * lanes);
-    }
-    static HWY_INLINE V row(const std::byte* node, std::size_t at, int part) {
-        return hn::Load(f, reinterpret_cast<const float*>(node + at) + part * lanes);
+    // Which boxes of a part of a node's row the ray enters, and at which s.
+    HWY_INLINE hn::Mask<Floats<W>> enter(const std::byte* node, int part, V& entry) const {
+        const auto near_s = [&](const Axis& axis) __attribute__((always_inline)) {
+            return hn::MulSub(row_of<W>(node, axis.near_row, part), axis.inverse, axis.enter_at);
+        };
+        const auto far_s = [&](const Axis& axis) __attribute__((always_inline)) {
+            return hn::MulSub(row_of<W>(node, axis.near_row ^ (4 * W), part), axis.inverse, axis.leave_at);
+        };
+        const V exit = hn::Min(hn::Min(far_s(x), far_s(y)), hn::Min(far_s(z), s_limit));
+        entry = hn::Max(hn::Max(near_s(x), near_s(y)), hn::Max(near_s(z), s_min));
+        return hn::Le(entry, exit);
     }
 };
-
-template <int W>
-HWY_INLINE const std::uint32_t* children_of(const std::byte* node) {
-    return reinterpret_cast<const std::uint32_t*>(node + 24 * W);
-}
 
 // Corners of triangles in the sheared space of a ray. The lanes are triangles as one ray sees them, one
 // triangle as several rays see it, or pairs of a triangle and a ray.

@@ -52,7 +52,14 @@ void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scal
                     std::span<Near<typename P::Scalar, P::dimension>> found, Threads threads = {},
                     typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
     detail::expect_room("points", points.size(), found.size());
-    threads.over(points.size()).for_each_piece(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        const Kernel<ClosestPoint<P>, Index<S, P>> kernel;
+        if constexpr (requires { kernel.answer_many(index, points, max_distance2, found.data()); })
+            if (kernel)
+                return in_ieee_mode([&] {
+                    kernel.answer_many(index, points.part(begin, end - begin), max_distance2,
+                                       found.data() + begin);
+                });
         for (std::size_t i = begin; i < end; ++i) found[i] = closest_point(index, points[i], max_distance2);
     });
 }

@@ -30,6 +30,8 @@ public:
     std::size_t stride() const { return stride_; }
     /// The address of element i, which need not be aligned.
     const std::byte* at(std::size_t i) const { return data_ + i * stride_; }
+    /// `count` elements from number `first` on.
+    Strided part(std::size_t first, std::size_t count) const { return {at(first), count, stride_}; }
     T operator[](std::size_t i) const {
         assert(i < size_);
         T element;

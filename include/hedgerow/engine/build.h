@@ -5,12 +5,14 @@
 
 #include <hedgerow/engine/wide_tree.h>
 #include <hedgerow/structures/bvh/build_tree.h>
+#include <hedgerow/structures/references.h>
 
 namespace hedgerow {
 
 /// The builder of the binary tree that a wide tree is collapsed from, fastest first: linear (LBVH), binned
 /// SAH with up to three passes of reinsertion over the largest nodes (3%), and binned SAH with passes over
-/// three tenths of the nodes until they gain too little.
+/// three tenths of the nodes until they gain too little. Over points `medium` halves by number instead
+/// (`build_wide_tree_of_points`).
 enum class WideBuilder { fast, medium, high };
 inline constexpr std::string_view wide_builder_names[] = {"fast", "medium", "high"};
 constexpr std::string_view name_of(WideBuilder builder) {
@@ -56,5 +58,28 @@ WideOptions resolved(const WideOptions& options);
 template <std::floating_point T, int D>
 WideTree<T, D> build_wide_tree(ReferenceList<T, D> references, const WideOptions& options,
                                std::uint32_t block, Executor& executor);
+
+/// A point in a builder: its coordinates, and its id in the fourth lane.
+template <std::floating_point T, int D>
+struct PointItem {
+    T lane[4];
+
+    PointItem() = default;  // bare, to be filled
+    PointItem(const Vec<T, D>& p, PrimitiveId id) : lane{} {
+        for (int k = 0; k < D; ++k) lane[k] = p[k];
+        lane[3] = number_as_lane<T>(id);
+    }
+    PrimitiveId id() const { return number_of_lane(lane[3]); }
+};
+template <std::floating_point T, int D>
+using PointItems = BareVector<PointItem<T, D>>;
+
+/// Builds the tree over points: halved by number along the longest side of their box, until leaves are full
+/// (a kd-tree in wide nodes; Bentley 1975). O(n log n), in place. Only the last leaf, and the nodes that lead
+/// to it, may have room left. Throws UsageError for an option out of its range. Compiled in core
+/// (src/engine/build_points.cpp), for float and double, in 2D and 3D.
+template <std::floating_point T, int D>
+WideTree<T, D> build_wide_tree_of_points(PointItems<T, D> points, const WideOptions& options,
+                                         Executor& executor);
 
 }  // namespace hedgerow

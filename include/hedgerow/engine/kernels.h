@@ -1,5 +1,5 @@
-/// Kernels: rays against triangles in a wide BVH, and against instances of such indexes, with the
-/// processor's vectors. This header says which instruction sets there are, and what each offers.
+/// Kernels: rays and points against triangles in a wide BVH, and rays against instances of such indexes, with
+/// the processor's vectors. This header says which instruction sets there are, and what each offers.
 ///
 /// The kernels are one source (src/engine/), compiled for every instruction set that the compiler knows
 /// (AVX-512, AVX2, SSE4; NEON) and chosen at run time. All give the same bits as the plain walk. Where there
@@ -10,9 +10,11 @@
 #include <vector>
 
 #include <hedgerow/engine/hit_filter.h>
+#include <hedgerow/engine/point_blocks.h>
 #include <hedgerow/engine/triangle_blocks.h>
 #include <hedgerow/engine/wide_tree.h>
 #include <hedgerow/probes/ray_array.h>
+#include <hedgerow/queries/point_query.h>
 #include <hedgerow/walks/kernel.h>
 
 namespace hedgerow {
@@ -60,6 +62,43 @@ struct RayKernels {
     KernelUse (*many)(const WideScene&, const RayArray<float, 3>&, Answer*);
 };
 
+/// What a kernel needs to know of an index of points: the tree, and the points of its leaves.
+struct WidePoints {
+    const WideTree<float, 3>& tree;
+    const PointBlock<float, 3>* blocks;
+};
+
+/// A primitive at a distance from a point, in one number: the bits of the squared distance above the element.
+/// The order of the numbers is that of answers, by (distance², element).
+using NearKey = std::uint64_t;
+/// A list of keys in the caller's memory. `grow` makes room for at least eight more.
+struct NearKeys {
+    NearKey* keys;
+    std::size_t size, room;
+    void (*grow)(NearKeys&);
+};
+
+/// The kernels of points over leaves of one kind, where `Scene` is a WideScene or WidePoints. Distances are
+/// squared, and a maximum is included. No coordinate of a point may be NaN or beyond `largest_coordinate`.
+template <class Scene>
+struct PointKernels {
+    /// The closest point; false if there is none.
+    Near<float, 3> (*closest)(const Scene&, const Vec<float, 3>&, float max_distance2);
+    /// Writes found[i] for each of the points.
+    void (*closest_of_many)(const Scene&, const Strided<Vec<float, 3>>&, float max_distance2,
+                            Near<float, 3>* found);
+    /// Writes the k nearest to `keys`, ascending. Returns how many there are.
+    std::size_t (*nearest)(const Scene&, const Vec<float, 3>&, std::size_t k, float max_distance2,
+                           NearKey* keys);
+    /// Appends all within the distance to the keys, in no order.
+    void (*within)(const Scene&, const Vec<float, 3>&, float max_distance2, NearKeys& keys);
+};
+/// The kernels of points of one instruction set.
+struct AllPointKernels {
+    PointKernels<WideScene> triangles;
+    PointKernels<WidePoints> points;
+};
+
 /// The kernels of one instruction set.
 struct WideKernels {
     std::string_view instruction_set;
@@ -67,6 +106,7 @@ struct WideKernels {
     int width;
     RayKernels<Hit<float>> closest;
     RayKernels<bool> any;
+    const AllPointKernels* points;
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses them: those that the

@@ -5,6 +5,7 @@
 
 #include <hedgerow/engine/budget.h>
 #include <hedgerow/engine/build.h>
+#include <hedgerow/engine/point_blocks.h>
 #include <hedgerow/engine/triangle_blocks.h>
 
 namespace hedgerow {
@@ -40,7 +41,19 @@ public:
         Options all = resolved(options);
         refuse_beyond_budget<T, D>(set.size(), all);
         if constexpr (Instanced<P>) all.intersection_cost *= instance_cost;
-        constexpr bool in_blocks = D == 3 && std::same_as<P, TriangleMeshView<T>>;  // see pack()
+        if constexpr (PointSet<P>) {
+            if (all.builder == WideBuilder::medium) {
+                PointItems<T, D> points(detail::count_of(set));
+                detail::for_each_sound_box(set, executor, [&](std::size_t i, const Box<T, D>& box) {
+                    points[i] = {box.low, static_cast<PrimitiveId>(i)};
+                });
+                return WideBvh(all, set.size(),
+                               build_wide_tree_of_points<T, D>(std::move(points), all, executor), -1);
+            }
+        }
+        constexpr bool in_blocks = requires(const WideBvh& bvh) {
+            bvh.pack(set, executor);
+        };
         return WideBvh(references_of(set, executor), all, in_blocks ? wide_leaf_size : 1, executor);
     }
 
@@ -66,6 +79,11 @@ public:
     /// Copies the triangles into the blocks of the leaves, for rays.
     TriangleBlocks<T> pack(const TriangleMeshView<T>& mesh, Executor& executor) const requires(D == 3) {
         return pack_blocks(mesh, items(), executor);
+    }
+
+    /// Copies the points into the blocks of the leaves, for points.
+    PointBlocks<T, D> pack(const PointCloudView<T, D>& cloud, Executor& executor) const {
+        return pack_blocks(cloud, items(), executor);
     }
 
     // For the walk and `fold`.

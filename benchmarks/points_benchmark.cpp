@@ -1,0 +1,178 @@
+/// Questions of points, one thread, beside peers in turns.
+///
+/// Closest points of triangles, beside CGAL's tree of boxes with its hint: near the surface (1% of the
+/// diagonal off it) and far (in the doubled box). k nearest of a million points, beside nanoflann: uniform in
+/// a cube, in a hundred clusters of many sizes, and on a sphere; queries are drawn like the points.
+///
+///   points_benchmark [SCENE ...]     default: gen:terrain:200000 gen:soup:60000 gen:teapot-in-stadium:50000;
+///                                    a mesh file is a scene
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/queries/nearest.h>
+
+#include "peers/points.h"
+#include "scene.h"
+
+using namespace hedgerow;
+using namespace hedgerow::measure;
+
+namespace {
+
+constexpr int rounds = 5;
+constexpr std::size_t query_count = 100000;
+constexpr float anywhere = std::numeric_limits<float>::max();
+
+/// Places on triangles, chosen by area, moved off by up to 1% of the diagonal.
+std::vector<Vec3f> near_points(const TriangleMesh<float>& mesh, const Box3f& box, std::size_t count) {
+    const TriangleMeshView<float> view = mesh.view();
+    std::vector<double> areas;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        areas.push_back(static_cast<double>(length(view.normal(i))));
+    std::mt19937 random(1);
+    std::discrete_distribution<std::size_t> triangle(areas.begin(), areas.end());
+    std::uniform_real_distribution<float> share(0, 1), off(-1, 1);
+    const float way = 0.01f * length(box.extent()) / std::sqrt(3.0f);
+    std::vector<Vec3f> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto t = view.triangle(triangle(random));
+        float v = share(random), w = share(random);
+        if (v + w > 1) v = 1 - v, w = 1 - w;
+        const Vec3f p = t.a + (t.b - t.a) * v + (t.c - t.a) * w;
+        points.push_back(p + Vec3f(off(random), off(random), off(random)) * way);
+    }
+    return points;
+}
+std::vector<Vec3f> far_points(const Box3f& box, std::size_t count) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> at(-0.5f, 1.5f);
+    std::vector<Vec3f> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        Vec3f p;
+        for (int k = 0; k < 3; ++k) p[k] = box.low[k] + box.extent()[k] * at(random);
+        points.push_back(p);
+    }
+    return points;
+}
+
+/// The greatest share by which squared distances differ.
+double disagreement(const std::vector<float>& ours, const std::vector<float>& theirs) {
+    double most = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+        const double a = double(ours[i]), b = double(theirs[i]);
+        most = std::max(most, std::abs(a - b) / std::max({a, b, 1e-30}));
+    }
+    return most;
+}
+
+/// Measures finding the k nearest to each point: the peer, the plain walk, one by one, and (for k = 1) in a
+/// batch.
+template <class I>
+void measure_queries(const I& index, const PointPeer* peer, const std::string& kind, std::size_t k,
+                     const std::vector<Vec3f>& points) {
+    std::vector<float> ours(points.size()), theirs(points.size());
+    std::vector<Near<float, 3>> found, all(points.size());
+    Visits visits;
+    const auto each = [&](auto find) {
+        for (std::size_t i = 0; i < points.size(); ++i) ours[i] = find(points[i]);
+        return points.size();
+    };
+    Contest contest;
+    if (peer != nullptr) contest.add(peer->name(), [&] { return peer->nearest(points, k, theirs); });
+    contest.add("walk", [&] {
+        visits = {};
+        return each([&](const Vec3f& p) {
+            if (k == 1) return closest_point(index, p, anywhere, visits).distance2;
+            nearest(index, p, k, found, anywhere, visits);
+            return found.back().distance2;
+        });
+    });
+    contest.add("one by one", [&] {
+        return each([&](const Vec3f& p) {
+            if (k == 1) return closest_point(index, p).distance2;
+            nearest(index, p, k, found);
+            return found.back().distance2;
+        });
+    });
+    if (k == 1)
+        contest.add("batch", [&] {
+            closest_points(index, Strided<Vec3f>(points), std::span(all), serial_executor());
+            return points.size();
+        });
+    const auto times =
+        measured_in_turn(rounds, contest, Clock::wall, [](const std::string&) { return true; });
+    const double n = static_cast<double>(points.size());
+    std::printf("%s: the walk sees %.1f nodes, %.1f leaves, %.1f primitives a query\n", kind.c_str(),
+                double(visits.nodes) / n, double(visits.leaves) / n, double(visits.primitives) / n);
+    for (std::size_t c = 0; c < times.size(); ++c)
+        std::printf("    %-12s %8.3f M/s, %6.2f times the first\n", contest.names[c].c_str(),
+                    n / times[c].median * 1e-6, times[0].median / times[c].median);
+    if (peer != nullptr)
+        std::printf("    squared distances differ by %.0e at most\n", disagreement(ours, theirs));
+}
+
+void measure_mesh(const std::string& name) {
+    const TriangleMesh<float> mesh = scene(name);
+    const MeshIndex<float> index = build(mesh, serial_executor());
+    const auto peer = cgal_points(mesh);
+    std::printf("\nclosest points, %s: %zu triangles\n", name.c_str(), mesh.size());
+    measure_queries(index, peer.get(), "near", 1, near_points(mesh, index.bounds(), query_count));
+    measure_queries(index, peer.get(), "far", 1, far_points(index.bounds(), query_count / 4));
+}
+
+/// Draws points of a kind: "uniform", "clustered" or "on a sphere".
+std::vector<Vec3f> drawn(const std::string& kind, std::size_t count, unsigned seed) {
+    std::mt19937 random(seed), of_clusters(3);
+    std::uniform_real_distribution<float> share(0, 1);
+    std::normal_distribution<float> normal(0, 1);
+    std::vector<std::pair<Vec3f, float>> clusters;  // where, and how wide
+    for (int i = 0; i < 100; ++i) {
+        const Vec3f at(share(of_clusters), share(of_clusters), share(of_clusters));
+        clusters.emplace_back(at, 0.001f * std::pow(100.0f, share(of_clusters)));
+    }
+    std::vector<Vec3f> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3f away(normal(random), normal(random), normal(random));
+        if (kind == "uniform") {
+            points.emplace_back(share(random), share(random), share(random));
+        } else if (kind == "clustered") {
+            const auto& [at, width] = clusters[random() % clusters.size()];
+            points.push_back(at + away * width);
+        } else {
+            points.push_back(normalized(away));
+        }
+    }
+    return points;
+}
+
+void measure_cloud(const std::string& kind) {
+    const PointCloud<float, 3> cloud{drawn(kind, 1000000, 4)};
+    const auto queries = drawn(kind, query_count / 2, 5);
+    auto index = build(cloud, serial_executor());
+    std::unique_ptr<PointPeer> peer;
+    Contest builds;
+    builds.add("ours", [&] { return index = build(cloud, serial_executor()), std::size_t(0); });
+    builds.add("peer", [&] { return peer = nanoflann_points(cloud), std::size_t(0); });
+    const auto times = measured_in_turn(rounds, builds, Clock::wall, [](const std::string&) { return true; });
+    std::printf("\nk nearest, a million points %s: built in %.0f ms, %.1f bytes a point\n", kind.c_str(),
+                times[0].median * 1e3,
+                static_cast<double>(index.bytes()) / static_cast<double>(cloud.size()));
+    if (peer != nullptr)
+        std::printf("    %.2f of the time of %s\n", times[0].median / times[1].median, peer->name().c_str());
+    for (const std::size_t k : {1, 8, 32})
+        measure_queries(index, peer.get(), "k = " + std::to_string(k), k, queries);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::printf("%s, %s, %s\n", processor().c_str(), avx512_rate().c_str(), compiler().c_str());
+    std::vector<std::string> names(argv + 1, argv + argc);
+    if (names.empty()) names = {"gen:terrain:200000", "gen:soup:60000", "gen:teapot-in-stadium:50000"};
+    for (const std::string& name : names) measure_mesh(name);
+    for (const char* kind : {"uniform", "clustered", "on a sphere"}) measure_cloud(kind);
+}

@@ -1,0 +1,136 @@
+/// The engine's specialisations of Kernel (walks/kernel.h) for points: the kernels answer closest points, k
+/// nearest and all within a distance, of float triangles and points in a WideBvh in space.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <hedgerow/engine/ray_kernels.h>
+#include <hedgerow/queries/closest_point.h>
+#include <hedgerow/queries/nearest.h>
+#include <hedgerow/queries/within.h>
+
+namespace hedgerow {
+
+namespace detail {
+
+/// Indexes of points that the kernels can search.
+template <class I>
+concept CloudForKernels = requires(const I& index) {
+    { index.structure().tree() } -> std::same_as<const WideTree<float, 3>&>;
+    { index.packed() } -> std::same_as<const PointBlocks<float, 3>&>;
+};
+template <class I>
+concept NearForKernels = TrianglesForKernels<I> || CloudForKernels<I>;
+
+/// The kernels of points over indexes I that are in use when the object is made.
+template <NearForKernels I>
+class PointKernel {
+public:
+    explicit operator bool() const { return kernels_ != nullptr; }
+
+protected:
+    const auto& kernels() const {
+        if constexpr (TrianglesForKernels<I>)
+            return kernels_->points->triangles;
+        else
+            return kernels_->points->points;
+    }
+    static auto scene(const I& index) {
+        if constexpr (TrianglesForKernels<I>)
+            return kernel_scene(index, {}, {});
+        else
+            return WidePoints{index.structure().tree(), index.packed().data()};
+    }
+    // Squared distances of farther points may overflow; NaN is no nearer to anything.
+    static bool takes(const Vec<float, 3>& point) {
+        return finite(point) && max_component(abs(point)) <= largest_coordinate<float>;
+    }
+    template <class Q, class... Arguments>
+    static auto answer_of_walk(const I& index, Arguments&&... arguments) {
+        Q query(index, arguments...);
+        index.ask(query);
+        return query.answer();
+    }
+    /// Replaces what `found` holds by the primitives that the keys name.
+    template <class Found>
+    static std::size_t read(const I& index, const Vec<float, 3>& point, std::span<const NearKey> keys,
+                            Found& found) {
+        found.clear();
+        for (const NearKey key : keys) {
+            const auto element = static_cast<PrimitiveId>(key);
+            const auto foot = index.primitives().closest_point(element, point);
+            found.push_back(
+                {foot.distance2, reported_id(index.primitives(), element, 0), element, foot.point});
+        }
+        return found.size();
+    }
+    /// Memory for keys, which the thread keeps.
+    static std::vector<NearKey>& keys() {
+        static thread_local std::vector<NearKey> kept;
+        return kept;
+    }
+
+private:
+    const WideKernels* kernels_ = wide_kernels();
+};
+
+}  // namespace detail
+
+template <class Set, detail::NearForKernels I>
+struct Kernel<ClosestPoint<Set>, I> : detail::PointKernel<I> {
+    Near<float, 3> answer(const I& index, const Vec<float, 3>& point, float max_distance2) const {
+        if (!this->takes(point)) [[unlikely]]
+            return this->template answer_of_walk<ClosestPoint<Set>>(index, point, max_distance2);
+        return this->kernels().closest(this->scene(index), point, max_distance2);
+    }
+    /// Writes found[i] for each of the points.
+    void answer_many(const I& index, const Strided<Vec<float, 3>>& points, float max_distance2,
+                     Near<float, 3>* found) const {
+        bool takes_all = true;
+        for (std::size_t i = 0; i < points.size(); ++i) takes_all = takes_all && this->takes(points[i]);
+        if (takes_all)
+            return this->kernels().closest_of_many(this->scene(index), points, max_distance2, found);
+        for (std::size_t i = 0; i < points.size(); ++i) found[i] = answer(index, points[i], max_distance2);
+    }
+};
+
+template <class Set, detail::NearForKernels I>
+struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
+    std::size_t answer(const I& index, const Vec<float, 3>& point, std::size_t k, float max_distance2,
+                       std::vector<Near<float, 3>>& found) const {
+        if (k > most || !this->takes(point)) [[unlikely]]
+            return this->template answer_of_walk<Nearest<Set>>(index, point, k, max_distance2, found);
+        NearKey keys[most];
+        const std::size_t count = this->kernels().nearest(this->scene(index), point, k, max_distance2, keys);
+        return this->read(index, point, {keys, count}, found);
+    }
+
+private:
+    /// The kernel inserts into a sorted list; the walk has a heap, which is better for more than these.
+    static constexpr std::size_t most = 256;
+};
+
+template <class Set, detail::NearForKernels I>
+struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
+    std::size_t answer(const I& index, const Vec<float, 3>& point, float max_distance2,
+                       std::vector<Near<float, 3>>& found) const {
+        if (!this->takes(point)) [[unlikely]]
+            return this->template answer_of_walk<Within<Set>>(index, point, max_distance2, found);
+        // Collect the keys in memory that the thread keeps.
+        std::vector<NearKey>& kept = this->keys();
+        kept.resize(std::max<std::size_t>(kept.capacity(), 64));
+        NearKeys keys{kept.data(), 0, kept.size(), [](NearKeys& full) {
+                          kept_by_thread().resize(2 * full.room);
+                          full.keys = kept_by_thread().data(), full.room = kept_by_thread().size();
+                      }};
+        this->kernels().within(this->scene(index), point, max_distance2, keys);
+        std::sort(keys.keys, keys.keys + keys.size);
+        return this->read(index, point, {keys.keys, keys.size}, found);
+    }
+
+private:
+    static std::vector<NearKey>& kept_by_thread() { return Kernel::keys(); }
+};
+
+}  // namespace hedgerow

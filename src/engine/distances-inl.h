@@ -1,0 +1,195 @@
+/// The distances of a point: to the boxes of a node, and bounds of those to the triangles of a leaf.
+#if defined(HEDGEROW_ENGINE_DISTANCES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HEDGEROW_ENGINE_DISTANCES_INL_H
+#undef HEDGEROW_ENGINE_DISTANCES_INL_H
+#else
+#define HEDGEROW_ENGINE_DISTANCES_INL_H
+#endif
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include <hwy/highway.h>
+
+#include <hedgerow/engine/kernels.h>
+
+#include "boxes-inl.h"
+#include "coordinates-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// A point and the squared distance to which it looks. Boxes are entered at their squared distance, which is
+// that of PointProbe but for roundings.
+template <int W>
+class Reach {
+public:
+    using V = hn::Vec<Floats<W>>;
+
+    HWY_INLINE Reach(const Vec<float, 3>& p, float limit2)
+        : p_(all_lanes(Floats<W>(), p)), limit2_(hn::Set(Floats<W>(), limit2)) {}
+
+    HWY_INLINE hn::Mask<Floats<W>> enter(const std::byte* node, int part, V& distance2) const {
+        const auto outside = [&](std::size_t axis, V at) __attribute__((always_inline)) {
+            const V below = hn::Sub(row_of<W>(node, axis * 8 * W, part), at);
+            const V above = hn::Sub(at, row_of<W>(node, axis * 8 * W + 4 * W, part));
+            return hn::Max(hn::Max(below, above), hn::Zero(Floats<W>()));
+        };
+        const Coordinates<Floats<W>> d{outside(0, p_.x), outside(1, p_.y), outside(2, p_.z)};
+        distance2 = dot(d, d);
+        return hn::Le(distance2, limit2_);
+    }
+
+private:
+    Coordinates<Floats<W>> p_;
+    V limit2_;
+};
+
+// Bounds of the squared distances from a point to the triangles of a block, in the lanes of F.
+//
+// Any point f of the triangle bounds its distance d from both sides: with r = p − f, |r| is at least d, and a
+// plane across r that has the whole triangle behind it is at most d away, r·(p − corner) / |r| for the corner
+// that makes it least. If f is the closest point, both are d. So f may be found in any way, and errors of its
+// computation, large ones in slivers, only move the bounds apart.
+//
+// Roundings: x = p − a, ab and ac have relative errors of ε a component, r of 5ε·(|x| + |ab| + |ac|), and so
+// have the products with r for each |r|. With S² = x² + ab² + ac² both bounds err by less than E = 32ε·S. To
+// spare roots they are squared: (d + E)² is at most (1 + 2^-16)·d² + (1 + 2^16)·E², whatever d is. What
+// underflows is less than 2^-120 of a squared distance. Where squares come near to overflow E is infinite;
+// bounds that are infinite or NaN exclude nothing.
+template <class F>
+class TriangleDistances {
+public:
+    using V = hn::Vec<F>;
+
+    HWY_INLINE TriangleDistances(F f, const TriangleBlock<float>& block, int at, const Coordinates<F>& p) {
+        const auto corner = [&](int c) __attribute__((always_inline)) {
+            const auto row = [&](int axis) __attribute__((always_inline)) {
+                return hn::Load(f, block.corner[axis][c] + at);
+            };
+            return Coordinates<F>{row(0), row(1), row(2)};
+        };
+        const Coordinates<F> a = corner(0), x = minus(p, a), ab = minus(corner(1), a),
+                             ac = minus(corner(2), a);
+        there_ = hn::Eq(a.x, a.x);
+        const V abab = dot(ab, ab), acac = dot(ac, ac);
+        // 16·S² overflows before any other square does.
+        const V scale = hn::Mul(hn::Set(f, 16.0f), hn::Add(hn::Add(abab, acac), dot(x, x)));
+        const V error = hn::MulAdd(hn::Set(f, 0x1.01p-26f), scale, hn::Set(f, 0x1p-120f));
+        const auto [v, w] = foot(f, x, ab, ac, abab, acac);
+        const Coordinates<F> r = minus(minus(x, v, ab), w, ac);
+        const V length2 = dot(r, r), zero = hn::Zero(f);
+        most_ = hn::MulAdd(length2, hn::Set(f, 1 + 0x1p-16f), error);
+        const V ahead = hn::Max(hn::Max(dot(r, ab), dot(r, ac)), zero);
+        const V height = hn::Max(hn::Sub(dot(r, x), ahead), zero);
+        const V least = hn::Mul(height, hn::Div(height, hn::Max(length2, hn::Set(f, 0x1p-120f))));
+        least_ = hn::Mul(hn::Sub(least, error), hn::Set(f, 1 - 0x1.1p-16f));
+    }
+    // The least of the upper bounds; infinite if there is none.
+    HWY_INLINE float least_most(F f) const {
+        const V none = hn::Set(f, std::numeric_limits<float>::infinity());
+        return hn::GetLane(hn::MinOfLanes(f, hn::IfThenElse(there_, most_, none)));
+    }
+    // The triangles that may be within a squared distance, a bit each.
+    HWY_INLINE unsigned within(F f, float distance2) const {
+        return bits_of(f, hn::AndNot(hn::Gt(least_, hn::Set(f, distance2)), there_));
+    }
+    // A lower bound of each squared distance.
+    HWY_INLINE V least() const { return least_; }
+
+private:
+    struct Foot {
+        V v, w;
+    };
+    // About the closest point of the triangle, as a + v·ab + w·ac: the region of the plane in which the foot
+    // of the perpendicular lies says whether that is the foot, or the nearest point of an edge (Ericson 2005,
+    // section 5.1.5). In any case a point of the triangle: v and w are clamped.
+    static HWY_INLINE Foot foot(F f, const Coordinates<F>& x, const Coordinates<F>& ab,
+                                const Coordinates<F>& ac, V abab, V acac) {
+        const V zero = hn::Zero(f), one = hn::Set(f, 1.0f);
+        const V abac = dot(ab, ac), abx = dot(ab, x), acx = dot(ac, x);
+        // The perpendicular's foot, as multiples of the determinant: negative v beyond the line through a and
+        // c, negative w beyond that through a and b, and v + w > det beyond that through b and c.
+        const V det = hn::NegMulAdd(abac, abac, hn::Mul(abab, acac));
+        V v = hn::NegMulAdd(abac, acx, hn::Mul(acac, abx));
+        V w = hn::NegMulAdd(abac, abx, hn::Mul(abab, acx));
+        const auto beyond_ab = hn::Lt(w, zero), beyond_ac = hn::Lt(v, zero);
+        const auto beyond_bc = hn::Gt(hn::Add(v, w), det);
+        // How far x lies from b towards c, and from c towards b, as multiples of bc².
+        const V from_b = hn::Sub(hn::Sub(acx, abac), hn::Sub(abx, abab));
+        const V from_c = hn::Sub(hn::Sub(abx, abac), hn::Sub(acx, acac));
+        // Beyond two lines, the edge is the one along which the foot is not outside their common corner.
+        const auto on_ac = hn::AndNot(hn::And(beyond_ab, hn::Le(acx, zero)), beyond_ac);
+        const auto on_bc = hn::AndNot(
+            hn::Or(hn::And(beyond_ab, hn::Le(from_b, zero)), hn::And(beyond_ac, hn::Le(from_c, zero))),
+            beyond_bc);
+        V whole = hn::IfThenElse(beyond_ab, abab, det);
+        v = hn::IfThenElse(beyond_ab, abx, v), w = hn::IfThenZeroElse(beyond_ab, w);
+        whole = hn::IfThenElse(on_ac, acac, whole);
+        v = hn::IfThenZeroElse(on_ac, v), w = hn::IfThenElse(on_ac, acx, w);
+        whole = hn::IfThenElse(on_bc, hn::Add(from_b, from_c), whole);
+        v = hn::IfThenElse(on_bc, from_c, v), w = hn::IfThenElse(on_bc, from_b, w);
+        const V share = hn::Div(one, whole);
+        v = hn::Min(hn::Max(hn::Mul(v, share), zero), one);
+        return {v, hn::Min(hn::Max(hn::Mul(w, share), zero), hn::Sub(one, v))};
+    }
+
+    hn::Mask<F> there_;
+    V least_, most_;
+};
+
+HWY_INLINE NearKey key_of(float distance2, std::uint32_t element) {
+    return NearKey(std::bit_cast<std::uint32_t>(distance2)) << 32 | element;
+}
+HWY_INLINE float distance2_of(NearKey key) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
+}
+HWY_INLINE std::uint32_t element_of(NearKey key) {
+    return static_cast<std::uint32_t>(key);
+}
+
+// The squared distances of the points of a block from `at` on, in the lanes of F: computed in double and
+// rounded once, as by `closest_point` (geometry/distance.h).
+template <class F>
+HWY_INLINE hn::Vec<F> distances2_of(F f, const PointBlock<float, 3>& block, int at, const Vec<double, 3>& p) {
+    constexpr hn::CappedTag<double, static_cast<int>(hn::MaxLanes(f))> d;
+    constexpr hn::Rebind<float, std::remove_const_t<decltype(d)>> part;
+    const auto some = [&](int from) __attribute__((always_inline)) {
+        const auto row = [&](int axis) __attribute__((always_inline)) {
+            return hn::PromoteTo(d, hn::Load(part, block.at[axis] + from));
+        };
+        const auto away = minus<std::remove_const_t<decltype(d)>>(all_lanes(d, p), {row(0), row(1), row(2)});
+        return hn::DemoteTo(part, product(away, away));
+    };
+    if constexpr (hn::MaxLanes(d) == hn::MaxLanes(f))
+        return some(at);
+    else
+        return hn::Combine(f, some(at + static_cast<int>(hn::MaxLanes(d))), some(at));
+}
+// Calls take(key, place) for the points of a block that are within a squared distance.
+template <class Take>
+HWY_INLINE void for_each_within(const PointBlock<float, 3>& block, const Vec<float, 3>& p, float distance2,
+                                Take take) {
+    constexpr Floats<8> f;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
+    for (int at = 0; at < 8; at += lanes) {
+        const auto distances2 = distances2_of(f, block, at, Vec<double, 3>(p));
+        unsigned near = bits_of(f, hn::Le(distances2, hn::Set(f, distance2)));
+        if (near == 0) continue;
+        alignas(64) float all[lanes];
+        hn::Store(distances2, f, all);
+        for (; near != 0; near &= near - 1) {
+            const int i = std::countr_zero(near);
+            take(key_of(all[i], block.id[at + i]), at + i);
+        }
+    }
+}
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

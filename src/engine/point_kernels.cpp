@@ -1,0 +1,91 @@
+/// The kernels of points, compiled for each instruction set: Highway's foreach_target includes this file once
+/// for each. The tables of kernels.cpp point to them.
+#if HEDGEROW_HAS_HIGHWAY
+#include "targets.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/point_kernels.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "compiled.h"
+#if HWY_TARGET != HWY_SCALAR
+#include "closest-inl.h"
+#include "nearest-inl.h"
+#include "width-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+template <class Search>
+struct Closest {
+    using Scene = typename Search::Scene;
+
+    template <int W>
+    struct Answer {
+        static Near<float, 3> answer(const Scene& scene, const Vec<float, 3>* p, float max_distance2) {
+            return closest_one<W, Search>(scene, *p, max_distance2);
+        }
+        static void answer(const Scene& scene, const Strided<Vec<float, 3>>* points, float max_distance2,
+                           Near<float, 3>* found) {
+            closest_many<W, Search>(scene, *points, max_distance2, found);
+        }
+    };
+    static Near<float, 3> one(const Scene& scene, const Vec<float, 3>& p, float max_distance2) {
+        return by_width<Answer>(scene, &p, max_distance2);
+    }
+    static void many(const Scene& scene, const Strided<Vec<float, 3>>& points, float max_distance2,
+                     Near<float, 3>* found) {
+        by_width<Answer>(scene, &points, max_distance2, found);
+    }
+};
+
+template <template <class> class Search, class Scene>
+struct Keys {
+    template <int W>
+    struct Answer {
+        template <class Sink>
+        static void answer(const Scene& scene, const Vec<float, 3>* p, Sink* sink) {
+            search_keys<W, Search>(scene, *p, *sink);
+        }
+    };
+    static std::size_t nearest(const Scene& scene, const Vec<float, 3>& p, std::size_t k, float max_distance2,
+                               NearKey* keys) {
+        if (k == 0 || !(max_distance2 >= 0)) return 0;
+        LeastKeys sink(k, max_distance2, keys);
+        by_width<Answer>(scene, &p, &sink);
+        return sink.size();
+    }
+    static void within(const Scene& scene, const Vec<float, 3>& p, float max_distance2, NearKeys& keys) {
+        if (!(max_distance2 >= 0)) return;
+        KeysWithin sink(max_distance2, keys);
+        by_width<Answer>(scene, &p, &sink);
+    }
+};
+
+template <class Closest, class Keys, class Scene>
+inline constexpr PointKernels<Scene> kernels_of = {Closest::one, Closest::many, Keys::nearest, Keys::within};
+
+extern const AllPointKernels point_kernels;  // for kernels.cpp
+const AllPointKernels point_kernels{
+    kernels_of<Closest<ClosestTriangle>, Keys<KeysOfTriangles, WideScene>, WideScene>,
+    kernels_of<Closest<ClosestOfCloud>, Keys<KeysOfCloud, WidePoints>, WidePoints>};
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif  // HWY_TARGET != HWY_SCALAR
+
+#if HWY_ONCE
+namespace hedgerow::detail {
+
+Vec<float, 3> clamped_into(const TriangleBlock<float>& block, std::uint32_t place,
+                           const Vec<double, 3>& foot) {
+    const auto corner = [&](int c) {
+        return Vec<float, 3>(block.corner[0][c][place], block.corner[1][c][place], block.corner[2][c][place]);
+    };
+    return clamped(Vec<float, 3>(foot), Triangle<float, 3>{corner(0), corner(1), corner(2)}.bounds());
+}
+
+}  // namespace hedgerow::detail
+#endif
+#endif
