@@ -76,6 +76,30 @@ public:
         return Flow::go_on;
     }
 
+    /// Calls f(triangle, id) for the triangles of a leaf whose boxes overlap a region. Four are compared at
+    /// once.
+    template <class F>
+    void for_each_overlapping(const Leaf& leaf, const Box<T, 3>& region, F f) const {
+        using L = Lanes<T>;
+        const Block& b = blocks_[leaf.first / Block::size];
+        for (std::uint32_t k = 0; k < leaf.count; k += 4) {
+            unsigned left = (1u << std::min(4u, leaf.count - k)) - 1;
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto& rows = b.corner[axis];
+                const L p = L::load(rows[0] + k), q = L::load(rows[1] + k), r = L::load(rows[2] + k);
+                left &= less_equal(min(min(p, q), r), L::all(region.high[axis]));
+                left &= less_equal(L::all(region.low[axis]), max(max(p, q), r));
+            }
+            for (; left != 0; left &= left - 1) {
+                const std::uint32_t i = k + static_cast<std::uint32_t>(std::countr_zero(left));
+                const auto corner = [&](int c) {
+                    return Vec<T, 3>(b.corner[0][c][i], b.corner[1][c][i], b.corner[2][c][i]);
+                };
+                f(Triangle<T, 3>{corner(0), corner(1), corner(2)}, b.id[i]);
+            }
+        }
+    }
+
 private:
     /// Bit i is set if the ray's line may meet triangle k + i, for i < 4. Higher bits mean nothing.
     static unsigned may_meet(const WatertightRay<T>& ray, const Block& b, std::uint32_t k) {

@@ -1,0 +1,103 @@
+/// Pairs of triangles, builds included, on one thread: the self-intersections of a mesh, and the crossings of
+/// a mesh and its moved copy. Beside CGAL in the same run, if CGAL was found.
+///
+///   pairs_benchmark [SCENE ...]     a mesh file or gen:NAME[:SIZE]; default: gen:teapot:70000
+///   gen:terrain:70000
+#include <cstdio>
+
+#include <hedgerow/ask/pairs.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/structures/bvh/bvh.h>
+
+#include "peers/pairs.h"
+#include "scene.h"
+
+using namespace hedgerow;
+using namespace hedgerow::measure;
+
+namespace {
+
+constexpr int repeats = 7;
+
+/// Builds an index as a contender does: for one walk a fast build is best.
+template <template <class, int> class S>
+auto built(const TriangleMesh<float>& mesh) {
+    typename S<float, 3>::Options options;
+    if constexpr (requires { options.budget; })
+        options.builder = WideBuilder::fast;
+    else
+        options.builder = BvhBuilder::lbvh;
+    return build<S>(mesh, options, serial_executor());
+}
+template <template <class, int> class S>
+Contender self_intersections_of(const TriangleMesh<float>& mesh) {
+    return [&mesh, found = std::vector<ElementPair>()]() mutable {
+        return self_intersections(built<S>(mesh), found, serial_executor());
+    };
+}
+template <template <class, int> class S>
+Contender crossings_of(const TriangleMesh<float>& a, const TriangleMesh<float>& b) {
+    return [&a, &b, found = std::vector<ElementPair>()]() mutable {
+        return crossing_pairs(built<S>(a), built<S>(b), found, serial_executor());
+    };
+}
+
+/// Times the contenders in turn. Prints the counts beside the medians, and the ratio to the first.
+void print(const char* question, const Contest& contest) {
+    std::vector<std::size_t> found;
+    for (const auto& run : contest.contenders) found.push_back(run());
+    const auto times =
+        measured_in_turn(repeats, contest, Clock::thread, [](const std::string&) { return true; });
+    for (std::size_t i = 0; i < times.size(); ++i)
+        std::printf("  %-20s %-24s %9zu pairs %9.2f ms %6.2f x\n", question, contest.names[i].c_str(),
+                    found[i], times[i].median * 1e3, times[i].median / times[0].median);
+}
+
+void measure_scene(const TriangleMesh<float>& mesh) {
+    Contest self;
+    self.add("wide, fast", self_intersections_of<WideBvh>(mesh));
+    self.add("bvh, lbvh", self_intersections_of<Bvh>(mesh));
+    add_cgal_self_intersections(self, mesh);
+    print("self-intersections", self);
+
+    // Move the copy askew to all axes, by a thousandth of the extent.
+    auto moved = mesh;
+    Box3f box;
+    for (const auto& v : mesh.vertices) box.expand(v);
+    const Vec3f by = Vec3f(0.7f, 1.1f, -0.4f) * (0.001f * length(box.extent()));
+    for (auto& v : moved.vertices) v = v + by;
+    Contest crossings;
+    crossings.add("wide, fast", crossings_of<WideBvh>(mesh, moved));
+    crossings.add("bvh, lbvh", crossings_of<Bvh>(mesh, moved));
+    add_cgal_crossings(crossings, mesh, moved);
+    print("crossings", crossings);
+
+    // The distance to a copy that is moved by three times the extent.
+    auto far = mesh;
+    for (auto& v : far.vertices) v = v + box.extent() * 3.f;
+    const auto a = built<WideBvh>(mesh), b = built<WideBvh>(far), c = built<WideBvh>(moved);
+    const auto time = [&](const auto& other) {
+        return median_seconds(
+                   repeats, [&] { minimum_distance(a, other); }, Clock::thread) *
+               1e3;
+    };
+    std::printf("  minimum distance, without builds: %.3f ms to a far copy, %.3f ms to the crossing one\n",
+                time(b), time(c));
+}
+
+}  // namespace
+
+int main(int count, char** arguments) try {
+    std::printf("%s, %s, one thread, medians of %d\n", processor().c_str(), compiler().c_str(), repeats);
+    std::vector<std::string> names(arguments + 1, arguments + count);
+    if (names.empty()) names = {"gen:teapot:70000", "gen:terrain:70000"};
+    for (const auto& name : names) {
+        const auto mesh = scene(name);
+        std::printf("%s: %zu triangles\n", name.substr(name.rfind('/') + 1).c_str(), mesh.size());
+        measure_scene(mesh);
+    }
+} catch (const InputError& error) {
+    std::fprintf(stderr, "pairs_benchmark: %s\n", error.what());
+    return 3;
+}

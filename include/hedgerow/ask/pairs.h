@@ -1,0 +1,140 @@
+/// The questions of two indexes, or of one and itself: how far apart, what meets what.
+///
+/// Both indexes have the same scalar and dimension; their structures may differ. A structure that is not a
+/// BVH of boxes has its boxes computed in each call, in O(n) time and memory (walks/hierarchy.h).
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <hedgerow/ask/asking.h>
+#include <hedgerow/queries/crossings.h>
+#include <hedgerow/queries/minimum_distance.h>
+
+namespace hedgerow {
+
+/// The closest points of two sets within `max_distance2` (squared, included), their squared distance, and the
+/// primitives that they are on; an Apart that is false if there are none so close. Equal distances go to the
+/// lowest (element_a, element_b). Triangles that meet are at distance 0 exactly. For triangles in space, and
+/// for points and any primitives with a closest point. `count` may be a Visits, of pairs.
+template <class SA, class A, class SB, class B, class Count = const NoVisits>
+Apart<typename A::Scalar, A::dimension> minimum_distance(
+    const Index<SA, A>& a, const Index<SB, B>& b,
+    typename A::Scalar max_distance2 = std::numeric_limits<typename A::Scalar>::max(),
+    Count& count = no_visits) {
+    return in_ieee_mode([&] {
+        MinimumDistance query(a.primitives(), b.primitives(), max_distance2);
+        walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
+                   query, count);
+        return query.answer();
+    });
+}
+
+namespace detail {
+
+/// Appends the pairs that a walk finds to `found`. The walk is cut into parts over the executor; the order of
+/// the pairs may depend on that. `make(f)` makes the query that calls f(i, j) for each pair.
+template <class A, class B, class Make>
+void collect_pairs(const A& a, const B& b, const NodePair<A, B>& whole, Executor& executor, Make make,
+                   std::vector<ElementPair>& found) {
+    const auto collector = [](std::vector<ElementPair>& list) {
+        return [&list](PrimitiveId i, PrimitiveId j) { return list.push_back({i, j}), Flow::go_on; };
+    };
+    auto query = make(collector(found));
+    if (&executor == &serial_executor()) {
+        walk_part(a, b, whole, query, no_visits);
+        return;
+    }
+    const auto parts = parts_of_walk(a, b, whole, query, 1024);
+    std::vector<std::vector<ElementPair>> lists(parts.size());
+    IeeeExecutor threads(executor);
+    threads.for_each_piece(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            auto part = make(collector(lists[i]));
+            walk_part(a, b, parts[i], part, no_visits);
+        }
+    });
+    for (const auto& list : lists) found.insert(found.end(), list.begin(), list.end());
+}
+/// Sorts pairs, and drops those that a structure offered again.
+inline std::size_t sort_pairs(std::vector<ElementPair>& found) {
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found.size();
+}
+/// The whole walk over two hierarchies.
+template <class A, class B>
+NodePair<A, B> whole_of(const A& a, const B& b) {
+    return {a.root(), b.root()};
+}
+template <class A>
+NodePair<A, A> whole_of(const A& a) {
+    return {a.root(), a.root(), true};
+}
+
+/// A function for queries that stop at the first pair.
+struct StopAtFirst {
+    bool* any;
+    Flow operator()(PrimitiveId, PrimitiveId) const { return *any = true, Flow::stop; }
+};
+
+}  // namespace detail
+
+/// Writes the pairs of triangles of two meshes that share a point to `found`, ascending: positions in both
+/// sets. Touching counts; the answers are those of exact arithmetic (geometry/triangles_meet.h). Returns how
+/// many there are. Large sets are walked on all cores, unless an executor is given (Threads).
+template <class SA, TriangleSet A, class SB, TriangleSet B>
+std::size_t crossing_pairs(const Index<SA, A>& a, const Index<SB, B>& b, std::vector<ElementPair>& found,
+                           Threads threads = {}) {
+    found.clear();
+    return in_ieee_mode([&] {
+        const auto of_a = hierarchy_of(a.structure(), a.primitives());
+        const auto of_b = hierarchy_of(b.structure(), b.primitives());
+        if (of_a.empty() || of_b.empty()) return std::size_t(0);
+        detail::collect_pairs(
+            of_a, of_b, detail::whole_of(of_a, of_b), threads.over(a.size() + b.size()),
+            [&](auto f) { return Crossings(triangles_of(a), triangles_of(b), f); }, found);
+        return detail::sort_pairs(found);
+    });
+}
+/// Whether any triangles of two meshes share a point. Stops at the first pair.
+template <class SA, TriangleSet A, class SB, TriangleSet B>
+bool any_crossing(const Index<SA, A>& a, const Index<SB, B>& b) {
+    return in_ieee_mode([&] {
+        bool any = false;
+        Crossings query(triangles_of(a), triangles_of(b), detail::StopAtFirst{&any});
+        walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
+                   query, no_visits);
+        return any;
+    });
+}
+
+/// Writes the pairs (i, j), i < j, of triangles of one mesh that intersect to `found`, ascending. Neighbours,
+/// which share corners by position, intersect only if they meet beyond these: folded onto each other,
+/// overlapping, piercing (geometry/meet_beyond_shared.h). Exact. Returns how many pairs there are. Large
+/// meshes are walked on all cores, unless an executor is given (Threads).
+template <class S, TriangleSet P>
+std::size_t self_intersections(const Index<S, P>& index, std::vector<ElementPair>& found,
+                               Threads threads = {}) {
+    found.clear();
+    return in_ieee_mode([&] {
+        const auto tree = hierarchy_of(index.structure(), index.primitives());
+        if (tree.empty()) return std::size_t(0);
+        detail::collect_pairs(
+            tree, tree, detail::whole_of(tree), threads.over(index.size()),
+            [&](auto f) { return SelfCrossings(triangles_of(index), f); }, found);
+        return detail::sort_pairs(found);
+    });
+}
+/// Whether any triangles of a mesh intersect. Stops at the first pair.
+template <class S, TriangleSet P>
+bool any_self_intersection(const Index<S, P>& index) {
+    return in_ieee_mode([&] {
+        bool any = false;
+        SelfCrossings query(triangles_of(index), detail::StopAtFirst{&any});
+        walk_pairs(hierarchy_of(index.structure(), index.primitives()), query, no_visits);
+        return any;
+    });
+}
+
+}  // namespace hedgerow
