@@ -103,6 +103,12 @@ void measure_queries(const I& index, const PointPeer* peer, const std::string& k
             closest_points(index, Strided<Vec3f>(points), std::span(all), serial_executor());
             return points.size();
         });
+    std::vector<PrimitiveId> ids(k * points.size());
+    std::vector<float> distances2(k * points.size());
+    contest.add("columns", [&] {
+        nearest(index, points, k, {ids, distances2}, serial_executor());
+        return points.size();
+    });
     const auto times =
         measured_in_turn(rounds, contest, Clock::wall, [](const std::string&) { return true; });
     const double n = static_cast<double>(points.size());

@@ -73,6 +73,27 @@ void expect_lists(const Index& index, const Brute& brute, const Vec3f& p, std::s
     ASSERT_EQ(want, found) << "within " << within2;
 }
 
+/// Expects a batch of k nearest to write what `nearest` finds, point by point.
+template <class Index>
+void expect_columns(const Index& index, const std::vector<Vec3f>& points, std::size_t k, float within2) {
+    std::vector<PrimitiveId> ids(k * points.size(), 7), only_ids = ids;
+    std::vector<float> distances2(k * points.size(), -1), only_distances2 = distances2;
+    nearest(index, points, k, {ids, distances2}, {}, within2);
+    nearest(index, points, k, {only_ids, {}}, {}, within2);
+    nearest(index, points, k, {{}, only_distances2}, {}, within2);
+    ASSERT_EQ(ids, only_ids);
+    ASSERT_EQ(distances2, only_distances2);
+    Found found;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        nearest(index, points[i], k, found, within2);
+        found.resize(k);
+        for (std::size_t j = 0; j < k; ++j) {
+            ASSERT_EQ(ids[k * i + j], found[j].element) << "place " << j << " of point " << i;
+            ASSERT_EQ(distances2[k * i + j], found[j].distance2) << "place " << j << " of point " << i;
+        }
+    }
+}
+
 /// Compares all instruction sets and widths with brute force, at `count` points of every kind.
 template <class Set>
 void expect_brute_force(const char* name, const Set& set, std::size_t count) {
@@ -92,6 +113,7 @@ void expect_brute_force(const char* name, const Set& set, std::size_t count) {
         for (auto& near : within)
             if (!(near.distance2 <= middle)) near = {};
         expect_found(index, points, within, middle);
+        for (const std::size_t k : {1, 5, 20}) expect_columns(index, points, k, k == 5 ? middle : anywhere);
         // Lists: none, some, as many as there are and more, also where many are equally far away.
         constexpr std::size_t ks[] = {0, 1, 2, 8, 33, 300, 100000};
         for (std::size_t i = 0; i < points.size() && !testing::Test::HasFatalFailure(); i += 17) {
@@ -166,6 +188,61 @@ TEST(WidePoints, BatchesOfEverySizeAndStride) {
     }
 }
 
+/// Points in a ball, in clusters, on a lattice (most of them at equal distances), on a line, and in one
+/// place.
+PointCloud<float, 3> cloud_of(int kind, std::size_t count, float scale) {
+    PointCloud<float, 3> cloud;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        Random random(5, i), cluster(6, i % 7);
+        const auto in_cube = [](Random& from) {
+            return Vec3f(float(from.uniform()), float(from.uniform()), float(from.uniform()));
+        };
+        Vec3f p = in_cube(random);
+        if (kind == 1) p = in_cube(cluster) + p * 1e-3f;
+        if (kind == 2)
+            for (int k = 0; k < 3; ++k) p[k] = std::floor(p[k] * 6);
+        if (kind == 3) p = {0.3f, p[1], 0.7f};
+        if (kind == 4) p = {0.3f, -0.1f, 0.7f};
+        cloud.points.push_back(p * scale);
+    }
+    return cloud;
+}
+
+/// A batch over a large index is asked along a curve.
+TEST(WidePoints, LargeBatchesInAnyOrderAsOneByOne) {
+    const std::size_t count = in_long_runs(1000000, 6000);
+    const auto expect_alike = [&](const auto& set) {
+        const auto brute = build<Bvh>(set);
+        auto points = points_of(set, brute.bounds(), count);
+        const float nan = std::numeric_limits<float>::quiet_NaN();
+        points[count / 2] = {nan, 0, 0}, points[count / 3] = {0, -anywhere, 0};
+        Found want, got(count);
+        for (const Vec3f& p : points) want.push_back(closest_point(brute, p));
+        for_each_kernel(set, [&](const auto& index, std::string_view) {
+            ASSERT_GE(index.bytes(), std::size_t(1) << 18);
+            closest_points(index, points, got);
+            ASSERT_EQ(want, got);
+            std::fill(got.begin(), got.end(), Near<float, 3>());
+            closest_points(index, points, got, serial_executor());
+            ASSERT_EQ(want, got);
+            expect_columns(index, points, 3, anywhere);
+        });
+    };
+    expect_alike(cloud_of(1, 30000, 1));
+    expect_alike(terrain<float>(12000));
+}
+
+TEST(WidePoints, NearestOfManyNeedsRoomForItsRows) {
+    const auto index = build<WideBvh>(cloud_of(0, 100, 1));
+    const std::vector<Vec3f> points(10);
+    std::vector<PrimitiveId> ids(29);
+    std::vector<float> distances2(30);
+    EXPECT_THROW(nearest(index, points, 3, {ids, distances2}), InputError);
+    EXPECT_NO_THROW(nearest(index, points, 3, {{}, distances2}));
+    EXPECT_NO_THROW(nearest(index, points, 0, {ids, {}}));
+    EXPECT_NO_THROW(nearest(index, std::vector<Vec3f>(), 3, {ids, {}}));
+}
+
 TEST(WidePoints, FindsNothingForWhatIsNoPoint) {
     const Mesh mesh = terrain<float>(500);
     const float nan = std::numeric_limits<float>::quiet_NaN(),
@@ -195,26 +272,6 @@ TEST(WidePoints, ReportsTheFacesOfTheFile) {
     Mesh mesh = terrain<float>(500);
     for (std::uint32_t i = 0; i < mesh.size(); ++i) mesh.faces.push_back(i / 2 + 7);
     expect_brute_force("faces", mesh, 300);
-}
-
-/// Points in a ball, in clusters, on a lattice (most of them at equal distances), on a line, and in one
-/// place.
-PointCloud<float, 3> cloud_of(int kind, std::size_t count, float scale) {
-    PointCloud<float, 3> cloud;
-    for (std::uint64_t i = 0; i < count; ++i) {
-        Random random(5, i), cluster(6, i % 7);
-        const auto in_cube = [](Random& from) {
-            return Vec3f(float(from.uniform()), float(from.uniform()), float(from.uniform()));
-        };
-        Vec3f p = in_cube(random);
-        if (kind == 1) p = in_cube(cluster) + p * 1e-3f;
-        if (kind == 2)
-            for (int k = 0; k < 3; ++k) p[k] = std::floor(p[k] * 6);
-        if (kind == 3) p = {0.3f, p[1], 0.7f};
-        if (kind == 4) p = {0.3f, -0.1f, 0.7f};
-        cloud.points.push_back(p * scale);
-    }
-    return cloud;
 }
 
 TEST(WidePoints, CloudsAsBruteForce) {

@@ -177,18 +177,22 @@ Near<float, 3> closest_one(const typename Search::Scene& scene, const Vec<float,
     return reported(scene, best);
 }
 template <int W, class Search>
-void closest_many(const typename Search::Scene& scene, const Strided<Vec<float, 3>>& points,
+void closest_many(const typename Search::Scene& scene, const PointBatch<float, 3>& points,
                   float max_distance2, Near<float, 3>* found) {
-    for (std::size_t i = 0; i < points.size(); ++i) found[i] = nothing_within(max_distance2);
+    for (std::size_t i = 0; i < points.size(); ++i) found[points.number(i)] = nothing_within(max_distance2);
     if (!scene.tree.empty() && max_distance2 >= 0) {
         typename Search::Shared shared(scene);
         Flights<W, Search>(scene, shared)
             .make(
-                points.size(), [&](std::size_t i)
-                                   __attribute__((always_inline)) { return Search(points[i], found[i]); });
+                points.size(), [&](std::size_t i, int) __attribute__((always_inline)) {
+                    return Search(points[i], found[points.number(i)]);
+                });
         shared.end();
     }
-    for (std::size_t i = 0; i < points.size(); ++i) found[i] = reported(scene, found[i]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Near<float, 3>& near = found[points.number(i)];
+        near = reported(scene, near);
+    }
 }
 
 }  // namespace hedgerow::HWY_NAMESPACE

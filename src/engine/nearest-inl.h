@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include <hwy/highway.h>
 
@@ -26,6 +27,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // small as a rule, and most keys that count late in a search are among the last.
 class LeastKeys {
 public:
+    LeastKeys() = default;
     HWY_INLINE LeastKeys(std::size_t k, float max_distance2, NearKey* keys)
         : keys_(keys), k_(k), max_(key_of(max_distance2, no_primitive)) {}
 
@@ -37,14 +39,38 @@ public:
         for (; place > 0 && keys_[place - 1] > key; --place) keys_[place] = keys_[place - 1];
         keys_[place] = key;
     }
+    HWY_INLINE void end() const {}
+
+protected:
+    NearKey* keys_ = nullptr;
+    std::size_t k_ = 0, size_ = 0;
 
 private:
     // What a key must be less than.
     HWY_INLINE NearKey last() const { return size_ < k_ ? max_ : keys_[k_ - 1]; }
 
-    NearKey* keys_;
-    std::size_t k_, size_ = 0;
-    NearKey max_;
+    NearKey max_ = 0;
+};
+// The k least keys, which are written to a row of each of a caller's columns at the end.
+class LeastKeysInRow : public LeastKeys {
+public:
+    LeastKeysInRow() = default;
+    HWY_INLINE LeastKeysInRow(std::size_t k, float max_distance2, NearKey* keys, PrimitiveId* ids,
+                              float* distances2)
+        : LeastKeys(k, max_distance2, keys), ids_(ids), distances2_(distances2) {}
+
+    HWY_INLINE void end() const {
+        const NearKey none = key_of(std::numeric_limits<float>::infinity(), no_primitive);
+        for (std::size_t i = size_; i < k_; ++i) keys_[i] = none;
+        if (ids_ != nullptr)
+            for (std::size_t i = 0; i < k_; ++i) ids_[i] = element_of(keys_[i]);
+        if (distances2_ != nullptr)
+            for (std::size_t i = 0; i < k_; ++i) distances2_[i] = distance2_of(keys_[i]);
+    }
+
+private:
+    PrimitiveId* ids_ = nullptr;
+    float* distances2_ = nullptr;
 };
 // All keys within a distance.
 class KeysWithin {
@@ -56,6 +82,7 @@ public:
         if (keys_.size == keys_.room) keys_.grow(keys_);
         keys_.keys[keys_.size++] = key;
     }
+    HWY_INLINE void end() const {}
 
 private:
     NearKeys& keys_;
@@ -73,22 +100,24 @@ public:
         HWY_INLINE explicit Shared(const WidePoints& scene) : blocks(scene.blocks) {}
     };
 
-    HWY_INLINE KeysOfCloud(const Vec<float, 3>& p, Sink& sink) : p_(p), sink_(&sink) {
+    KeysOfCloud() = default;
+    HWY_INLINE KeysOfCloud(const Vec<float, 3>& p, const Sink& sink) : p_(p), sink_(sink) {
         limit_.set(sink.distance2());
     }
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
     HWY_INLINE const Limit& limit() const { return limit_; }
+    HWY_INLINE const Sink& sink() const { return sink_; }
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         for_each_within(
             shared.blocks[leaf], p_,
-            limit_.distance2(), [&](NearKey key, int) __attribute__((always_inline)) { sink_->take(key); });
-        if (sink_->distance2() < limit_.distance2()) limit_.set(sink_->distance2());
+            limit_.distance2(), [&](NearKey key, int) __attribute__((always_inline)) { sink_.take(key); });
+        if (sink_.distance2() < limit_.distance2()) limit_.set(sink_.distance2());
     }
-    HWY_INLINE void end(Shared&) {}
+    HWY_INLINE void end(Shared&) { sink_.end(); }
 
 private:
     Vec<float, 3> p_;
-    Sink* sink_;
+    Sink sink_;
     Limit limit_;
 };
 
@@ -112,11 +141,13 @@ public:
         HWY_INLINE explicit Shared(const WideScene& scene) : blocks(scene.blocks), tests(scene.blocks) {}
     };
 
-    HWY_INLINE KeysOfTriangles(const Vec<float, 3>& p, Sink& sink) : p_(p), sink_(&sink) {
+    KeysOfTriangles() = default;
+    HWY_INLINE KeysOfTriangles(const Vec<float, 3>& p, const Sink& sink) : p_(p), sink_(sink) {
         limit_.set(sink.distance2());
     }
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
     HWY_INLINE const Limit& limit() const { return limit_; }
+    HWY_INLINE const Sink& sink() const { return sink_; }
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         using F = Floats<8>;
         constexpr F f;
@@ -125,24 +156,46 @@ public:
             const TriangleDistances<F> distances(f, shared.blocks[leaf], at, all_lanes(f, p_));
             for (unsigned near = distances.within(f, limit_.distance2()); near != 0; near &= near - 1)
                 shared.tests.add(p_, 8 * leaf + static_cast<std::uint32_t>(at + std::countr_zero(near)),
-                                 {sink_});
+                                 {&sink_});
         }
         shared.tests.flush();
-        if (sink_->distance2() < limit_.distance2()) limit_.set(sink_->distance2());
+        if (sink_.distance2() < limit_.distance2()) limit_.set(sink_.distance2());
     }
-    HWY_INLINE void end(Shared&) {}
+    HWY_INLINE void end(Shared&) { sink_.end(); }
 
 private:
     Vec<float, 3> p_;
-    Sink* sink_;
+    Sink sink_;
     Limit limit_;
 };
 
+// The sink when a search for a point is over.
 template <int W, template <class> class Search, class Sink, class Scene>
-void search_keys(const Scene& scene, const Vec<float, 3>& p, Sink& sink) {
+Sink search_keys(const Scene& scene, const Vec<float, 3>& p, const Sink& sink) {
     typename Search<Sink>::Shared shared(scene);
     Search<Sink> search(p, sink);
     search_through<W>(scene, search, shared);
+    return search.sink();
+}
+template <int W, template <class> class Search, class Scene>
+void nearest_many(const Scene& scene, const PointBatch<float, 3>& points, std::size_t k, float max_distance2,
+                  PrimitiveId* ids, float* distances2) {
+    using Searches = Flights<W, Search<LeastKeysInRow>>;
+    NearKey keys[Searches::most][most_nearest];
+    const auto sink = [&](std::size_t i, int flight) __attribute__((always_inline)) {
+        const std::size_t first = k * points.number(i);
+        return LeastKeysInRow(k, max_distance2, keys[flight], ids == nullptr ? nullptr : ids + first,
+                              distances2 == nullptr ? nullptr : distances2 + first);
+    };
+    if (scene.tree.empty() || !(max_distance2 >= 0)) {
+        for (std::size_t i = 0; i < points.size(); ++i) sink(i, 0).end();
+        return;
+    }
+    typename Search<LeastKeysInRow>::Shared shared(scene);
+    Searches(scene, shared).make(
+        points.size(), [&](std::size_t i, int flight) __attribute__((always_inline)) {
+            return Search<LeastKeysInRow>(points[i], sink(i, flight));
+        });
 }
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -26,7 +26,7 @@ struct Closest {
         static Near<float, 3> answer(const Scene& scene, const Vec<float, 3>* p, float max_distance2) {
             return closest_one<W, Search>(scene, *p, max_distance2);
         }
-        static void answer(const Scene& scene, const Strided<Vec<float, 3>>* points, float max_distance2,
+        static void answer(const Scene& scene, const PointBatch<float, 3>* points, float max_distance2,
                            Near<float, 3>* found) {
             closest_many<W, Search>(scene, *points, max_distance2, found);
         }
@@ -34,7 +34,7 @@ struct Closest {
     static Near<float, 3> one(const Scene& scene, const Vec<float, 3>& p, float max_distance2) {
         return by_width<Answer>(scene, &p, max_distance2);
     }
-    static void many(const Scene& scene, const Strided<Vec<float, 3>>& points, float max_distance2,
+    static void many(const Scene& scene, const PointBatch<float, 3>& points, float max_distance2,
                      Near<float, 3>* found) {
         by_width<Answer>(scene, &points, max_distance2, found);
     }
@@ -45,26 +45,34 @@ struct Keys {
     template <int W>
     struct Answer {
         template <class Sink>
-        static void answer(const Scene& scene, const Vec<float, 3>* p, Sink* sink) {
-            search_keys<W, Search>(scene, *p, *sink);
+        static Sink answer(const Scene& scene, const Vec<float, 3>* p, const Sink* sink) {
+            return search_keys<W, Search>(scene, *p, *sink);
+        }
+        static void answer(const Scene& scene, const PointBatch<float, 3>* points, std::size_t k,
+                           float max_distance2, PrimitiveId* ids, float* distances2) {
+            nearest_many<W, Search>(scene, *points, k, max_distance2, ids, distances2);
         }
     };
     static std::size_t nearest(const Scene& scene, const Vec<float, 3>& p, std::size_t k, float max_distance2,
                                NearKey* keys) {
         if (k == 0 || !(max_distance2 >= 0)) return 0;
-        LeastKeys sink(k, max_distance2, keys);
-        by_width<Answer>(scene, &p, &sink);
-        return sink.size();
+        const LeastKeys sink(k, max_distance2, keys);
+        return by_width<Answer>(scene, &p, &sink).size();
+    }
+    static void nearest_of_many(const Scene& scene, const PointBatch<float, 3>& points, std::size_t k,
+                                float max_distance2, PrimitiveId* ids, float* distances2) {
+        by_width<Answer>(scene, &points, k, max_distance2, ids, distances2);
     }
     static void within(const Scene& scene, const Vec<float, 3>& p, float max_distance2, NearKeys& keys) {
         if (!(max_distance2 >= 0)) return;
-        KeysWithin sink(max_distance2, keys);
+        const KeysWithin sink(max_distance2, keys);
         by_width<Answer>(scene, &p, &sink);
     }
 };
 
 template <class Closest, class Keys, class Scene>
-inline constexpr PointKernels<Scene> kernels_of = {Closest::one, Closest::many, Keys::nearest, Keys::within};
+inline constexpr PointKernels<Scene> kernels_of = {Closest::one, Closest::many, Keys::nearest,
+                                                       Keys::nearest_of_many, Keys::within};
 
 extern const AllPointKernels point_kernels;  // for kernels.cpp
 const AllPointKernels point_kernels{

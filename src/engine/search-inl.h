@@ -74,18 +74,22 @@ HWY_INLINE void search_through(const typename Search::Scene& scene, Search& sear
 template <int W, class Search>
 class Flights {
 public:
+    static constexpr int most = 8;
+
     HWY_INLINE Flights(const typename Search::Scene& scene, typename Search::Shared& shared)
         : scene_(scene), shared_(shared), prefetch_(scene) {}
 
-    // Makes `count` searches of a tree that is not empty: `begin(i)` is search i.
+    // Makes `count` searches of a tree that is not empty: `begin(i, flight)` is search i, in the flight of that
+    // number, of which there are `most`.
     template <class Begin>
     HWY_INLINE void make(std::size_t count, Begin begin) {
-        const auto take_off = [&](Flight & flight) __attribute__((always_inline)) {
+        const auto take_off = [&](int i) __attribute__((always_inline)) {
+            Flight& flight = flights_[i];
             flight.stack.clear();
             flight.word = 0;
-            flight.search = begin(next_++);
+            flight.search = begin(next_++, i);
         };
-        for (int i = 0; i < most && next_ < count; ++i) order_[i] = i, take_off(flights_[active_++]);
+        for (int i = 0; i < most && next_ < count; ++i) order_[active_++] = i, take_off(i);
         while (active_ > 0) {
             for (int i = 0; i < active_; ++i) go_down(flights_[order_[i]]);
             for (int i = active_; i-- > 0;) {
@@ -96,7 +100,7 @@ public:
                 }
                 flight.search.end(shared_);
                 if (next_ < count)
-                    take_off(flight);
+                    take_off(order_[i]);
                 else
                     std::swap(order_[i], order_[--active_]);
             }
@@ -105,8 +109,6 @@ public:
 
 private:
     using Stack = WalkStack<W, Wanted::near>;
-    static constexpr int most = 8;
-
     struct Flight {
         typename Stack::Place places[Stack::room(bvh_max_depth + 1)];
         Stack stack;

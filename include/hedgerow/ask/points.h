@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/probes/point_batch.h>
 #include <hedgerow/queries/closest_point.h>
 #include <hedgerow/queries/nearest.h>
 #include <hedgerow/queries/within.h>
@@ -44,6 +45,22 @@ std::size_t within(const I& index, const PointOf<I>& point, typename I::Scalar m
     return index.template answer<Within<typename I::Primitives>>(count, point, max_distance2, found);
 }
 
+namespace detail {
+/// Answers a question Q of each of many points: by many(kernel, part), unless there is no kernel or it returns
+/// false; then by one(i).
+template <class Q, class S, class P, class Many, class One>
+void ask_in_parts(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
+                  Threads threads, Many many, One one) {
+    for_each_part(points, index.bounds(), index.bytes(), threads.over(points.size()), [&](const auto& part) {
+        if constexpr (HasKernel<Q, Index<S, P>>) {
+            const Kernel<Q, Index<S, P>> kernel;
+            if (kernel && in_ieee_mode([&] { return many(kernel, part); })) return;
+        }
+        for (std::size_t i = 0; i < part.size(); ++i) one(part.number(i));
+    });
+}
+}  // namespace detail
+
 /// Writes the closest point for each of `points`, as `closest_point` finds it. The points may have any layout
 /// in memory (base/strided.h); a vector or a span of points will do. Throws InputError, and writes nothing,
 /// if there are fewer places for answers than points.
@@ -52,16 +69,47 @@ void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scal
                     std::span<Near<typename P::Scalar, P::dimension>> found, Threads threads = {},
                     typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
     detail::expect_room("points", points.size(), found.size());
-    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        const Kernel<ClosestPoint<P>, Index<S, P>> kernel;
-        if constexpr (requires { kernel.answer_many(index, points, max_distance2, found.data()); })
-            if (kernel)
-                return in_ieee_mode([&] {
-                    kernel.answer_many(index, points.part(begin, end - begin), max_distance2,
-                                       found.data() + begin);
-                });
-        for (std::size_t i = begin; i < end; ++i) found[i] = closest_point(index, points[i], max_distance2);
-    });
+    detail::ask_in_parts<ClosestPoint<P>>(
+        index, points, threads,
+        [&](const auto& kernel, const auto& part) {
+            return kernel.answer_many(index, part, max_distance2, found.data());
+        },
+        [&](std::size_t i) { found[i] = closest_point(index, points[i], max_distance2); });
+}
+
+/// The arrays of a caller in which a batch of k nearest writes its answers: k places for each point, in the
+/// order of (distance², instance, element). Places beyond what is found have no primitive and an infinite
+/// distance. An array that is empty is not written.
+template <class P>
+struct NearestColumns {
+    std::span<IdOf<P>> ids;
+    std::span<typename P::Scalar> distances2;
+};
+/// Writes the k nearest primitives for each of `points`, as `nearest` finds them: their positions in the set,
+/// or PlacedIds among instances, and their squared distances. Throws InputError, and writes nothing, if an
+/// array that is not empty has less room than k places for each point.
+template <class S, class P>
+void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
+             std::size_t k, const NearestColumns<P>& columns, Threads threads = {},
+             typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
+    using Found = Near<typename P::Scalar, P::dimension>;
+    for (const std::size_t room : {columns.ids.size(), columns.distances2.size()})
+        if (room > 0) detail::expect_room("places (k for each point)", k * points.size(), room);
+    if (k == 0) return;
+    detail::ask_in_parts<Nearest<P>>(
+        index, points, threads,
+        [&](const auto& kernel, const auto& part) {
+            return kernel.answer_many(index, part, k, max_distance2, columns.ids.data(), columns.distances2.data());
+        },
+        [&](std::size_t i) {
+            thread_local std::vector<Found> found;
+            nearest(index, points[i], k, found, max_distance2);
+            for (std::size_t j = 0; j < k; ++j) {
+                const Found near = j < found.size() ? found[j] : Found();
+                if (!columns.ids.empty()) columns.ids[i * k + j] = Identity<P>::of(near);
+                if (!columns.distances2.empty()) columns.distances2[i * k + j] = near.distance2;
+            }
+        });
 }
 
 /// A list of primitives for each of many points (ask/asking.h). `max_distance2` is squared.

@@ -13,6 +13,7 @@
 #include <hedgerow/engine/point_blocks.h>
 #include <hedgerow/engine/triangle_blocks.h>
 #include <hedgerow/engine/wide_tree.h>
+#include <hedgerow/probes/point_batch.h>
 #include <hedgerow/probes/ray_array.h>
 #include <hedgerow/queries/point_query.h>
 #include <hedgerow/walks/kernel.h>
@@ -78,18 +79,25 @@ struct NearKeys {
     void (*grow)(NearKeys&);
 };
 
+/// Kernels insert into sorted lists; a walk has a heap, which is better for more than these.
+inline constexpr std::size_t most_nearest = 256;
+
 /// The kernels of points over leaves of one kind, where `Scene` is a WideScene or WidePoints. Distances are
 /// squared, and a maximum is included. No coordinate of a point may be NaN or beyond `largest_coordinate`.
 template <class Scene>
 struct PointKernels {
     /// The closest point; false if there is none.
     Near<float, 3> (*closest)(const Scene&, const Vec<float, 3>&, float max_distance2);
-    /// Writes found[i] for each of the points.
-    void (*closest_of_many)(const Scene&, const Strided<Vec<float, 3>>&, float max_distance2,
+    /// Writes found[n] for point number n.
+    void (*closest_of_many)(const Scene&, const PointBatch<float, 3>&, float max_distance2,
                             Near<float, 3>* found);
     /// Writes the k nearest to `keys`, ascending. Returns how many there are.
     std::size_t (*nearest)(const Scene&, const Vec<float, 3>&, std::size_t k, float max_distance2,
                            NearKey* keys);
+    /// Writes the k nearest to point number n to the places from k·n on of each array that is there, for k up
+    /// to `most_nearest`.
+    void (*nearest_of_many)(const Scene&, const PointBatch<float, 3>&, std::size_t k, float max_distance2,
+                            PrimitiveId* ids, float* distances2);
     /// Appends all within the distance to the keys, in no order.
     void (*within)(const Scene&, const Vec<float, 3>&, float max_distance2, NearKeys& keys);
 };

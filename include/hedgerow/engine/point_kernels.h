@@ -46,6 +46,11 @@ protected:
     static bool takes(const Vec<float, 3>& point) {
         return finite(point) && max_component(abs(point)) <= largest_coordinate<float>;
     }
+    static bool takes_all(const PointBatch<float, 3>& points) {
+        bool all = true;
+        for (std::size_t i = 0; i < points.size(); ++i) all = all && takes(points[i]);
+        return all;
+    }
     template <class Q, class... Arguments>
     static auto answer_of_walk(const I& index, Arguments&&... arguments) {
         Q query(index, arguments...);
@@ -84,14 +89,11 @@ struct Kernel<ClosestPoint<Set>, I> : detail::PointKernel<I> {
             return this->template answer_of_walk<ClosestPoint<Set>>(index, point, max_distance2);
         return this->kernels().closest(this->scene(index), point, max_distance2);
     }
-    /// Writes found[i] for each of the points.
-    void answer_many(const I& index, const Strided<Vec<float, 3>>& points, float max_distance2,
+    bool answer_many(const I& index, const PointBatch<float, 3>& points, float max_distance2,
                      Near<float, 3>* found) const {
-        bool takes_all = true;
-        for (std::size_t i = 0; i < points.size(); ++i) takes_all = takes_all && this->takes(points[i]);
-        if (takes_all)
-            return this->kernels().closest_of_many(this->scene(index), points, max_distance2, found);
-        for (std::size_t i = 0; i < points.size(); ++i) found[i] = answer(index, points[i], max_distance2);
+        if (!this->takes_all(points)) return false;
+        this->kernels().closest_of_many(this->scene(index), points, max_distance2, found);
+        return true;
     }
 };
 
@@ -99,16 +101,18 @@ template <class Set, detail::NearForKernels I>
 struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
     std::size_t answer(const I& index, const Vec<float, 3>& point, std::size_t k, float max_distance2,
                        std::vector<Near<float, 3>>& found) const {
-        if (k > most || !this->takes(point)) [[unlikely]]
+        if (k > most_nearest || !this->takes(point)) [[unlikely]]
             return this->template answer_of_walk<Nearest<Set>>(index, point, k, max_distance2, found);
-        NearKey keys[most];
+        NearKey keys[most_nearest];
         const std::size_t count = this->kernels().nearest(this->scene(index), point, k, max_distance2, keys);
         return this->read(index, point, {keys, count}, found);
     }
-
-private:
-    /// The kernel inserts into a sorted list; the walk has a heap, which is better for more than these.
-    static constexpr std::size_t most = 256;
+    bool answer_many(const I& index, const PointBatch<float, 3>& points, std::size_t k, float max_distance2,
+                     PrimitiveId* ids, float* distances2) const {
+        if (k > most_nearest || !this->takes_all(points)) return false;
+        this->kernels().nearest_of_many(this->scene(index), points, k, max_distance2, ids, distances2);
+        return true;
+    }
 };
 
 template <class Set, detail::NearForKernels I>

@@ -128,16 +128,22 @@ struct PlacedId {
 /// numbers, the instance and the element.
 template <class P>
 concept Instanced = P::instanced;
-/// The name that a box query gives to a primitive of P.
+/// The name of a primitive of P in lists and columns of ids.
 template <class P>
 struct Identity {
     using Type = PrimitiveId;
-    static Type of(const OverlapCandidate& c) { return c.element; }
+    template <class Candidate>
+    static Type of(const Candidate& c) {
+        return c.element;
+    }
 };
 template <Instanced P>
 struct Identity<P> {
     using Type = PlacedId;
-    static Type of(const OverlapCandidate& c) { return {c.instance, c.element}; }
+    template <class Candidate>
+    static Type of(const Candidate& c) {
+        return {c.instance, c.element};
+    }
 };
 template <class P>
 using IdOf = typename Identity<P>::Type;

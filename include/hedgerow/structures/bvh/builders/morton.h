@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include <hedgerow/geometry/morton_code.h>
 #include <hedgerow/parallel/radix_sort.h>
 #include <hedgerow/structures/references.h>
 
@@ -30,28 +31,11 @@ public:
         ((center2 - low_) * scale_).store(at);
         std::uint64_t code = 0;
         for (int k = 0; k < D; ++k)
-            code |= spread(static_cast<std::uint64_t>(static_cast<std::int64_t>(at[k]))) << (D - 1 - k);
+            code |= spread_bits<D>(static_cast<std::uint64_t>(static_cast<std::int64_t>(at[k]))) << (D - 1 - k);
         return code;
     }
 
 private:
-    /// Moves bit i to bit D·i.
-    static std::uint64_t spread(std::uint64_t x) {
-        if constexpr (D == 3) {
-            x = (x | x << 32) & 0x001F00000000FFFFu;
-            x = (x | x << 16) & 0x001F0000FF0000FFu;
-            x = (x | x << 8) & 0x100F00F00F00F00Fu;
-            x = (x | x << 4) & 0x10C30C30C30C30C3u;
-            return (x | x << 2) & 0x1249249249249249u;
-        } else {
-            x = (x | x << 16) & 0x0000FFFF0000FFFFu;
-            x = (x | x << 8) & 0x00FF00FF00FF00FFu;
-            x = (x | x << 4) & 0x0F0F0F0F0F0F0F0Fu;
-            x = (x | x << 2) & 0x3333333333333333u;
-            return (x | x << 1) & 0x5555555555555555u;
-        }
-    }
-
     Lanes<T> low_, scale_;
 };
 
