@@ -6,6 +6,7 @@
 #define HEDGEROW_ENGINE_NEAREST_INL_H
 #endif
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -23,33 +24,62 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The k least keys, ascending, in memory of the caller. A key that counts is inserted from the end on: k is
-// small as a rule, and most keys that count late in a search are among the last.
+// The lanes moved up by one, and the last to the first.
+template <class D>
+HWY_INLINE hn::Vec<D> turned(D d, hn::Vec<D> v) {
+    alignas(64) constexpr hn::TFromD<D> from[] = {hn::MaxLanes(d) - 1, 0, 1, 2, 3, 4, 5, 6};
+    return hn::TableLookupLanes(v, hn::SetTableIndices(d, from));
+}
+
+// The k least keys, ascending, in aligned memory of the caller: `room(k)` places, which are filled with a key
+// that stands for none. A key is inserted in vectors: place i then has the greater of the key and what was at
+// i − 1, or what was at i if that is less. No branch depends on where it belongs.
 class LeastKeys {
 public:
+    using K = hn::CappedTag<std::int64_t, 8>;  // keys have no sign
+    static constexpr std::size_t lanes = hn::MaxLanes(K());
+    static constexpr std::size_t room(std::size_t k) { return (k + lanes - 1) / lanes * lanes; }
+    static_assert(most_nearest % lanes == 0);
+
     LeastKeys() = default;
     HWY_INLINE LeastKeys(std::size_t k, float max_distance2, NearKey* keys)
-        : keys_(keys), k_(k), max_(key_of(max_distance2, no_primitive)) {}
+        : keys_(keys), k_(k), none_(key_of(max_distance2, no_primitive)) {
+        std::fill(keys_, keys_ + room(k), none_);
+    }
 
-    HWY_INLINE std::size_t size() const { return size_; }
-    HWY_INLINE float distance2() const { return distance2_of(last()); }
+    HWY_INLINE std::size_t size() const {
+        return static_cast<std::size_t>(std::lower_bound(keys_, keys_ + k_, none_) - keys_);
+    }
+    HWY_INLINE float distance2() const { return distance2_of(keys_[k_ - 1]); }
     HWY_INLINE void take(NearKey key) {
-        if (key >= last()) return;
-        std::size_t place = size_ < k_ ? size_++ : k_ - 1;
-        for (; place > 0 && keys_[place - 1] > key; --place) keys_[place] = keys_[place - 1];
-        keys_[place] = key;
+        if (key >= keys_[k_ - 1]) return;
+        constexpr K d;
+        const auto first = hn::FirstN(d, 1);
+        const auto inserted = hn::Set(d, static_cast<std::int64_t>(key));
+        std::size_t at = room(k_) - lanes;
+        auto here = hn::Load(d, place(at)), up = turned(d, here);
+        for (; at > 0; at -= lanes) {
+            const auto before = hn::Load(d, place(at - lanes));
+            const auto up_before = turned(d, before);
+            const auto shifted = hn::IfThenElse(first, up_before, up);
+            hn::Store(hn::Min(here, hn::Max(shifted, inserted)), d, place(at));
+            here = before, up = up_before;
+        }
+        const auto shifted = hn::IfThenElse(first, inserted, up);
+        hn::Store(hn::Min(here, hn::Max(shifted, inserted)), d, place(0));
     }
     HWY_INLINE void end() const {}
 
 protected:
-    NearKey* keys_ = nullptr;
-    std::size_t k_ = 0, size_ = 0;
+    HWY_INLINE bool none(std::size_t i) const { return keys_[i] == none_; }
+    HWY_INLINE NearKey key(std::size_t i) const { return keys_[i]; }
+    HWY_INLINE std::size_t k() const { return k_; }
 
 private:
-    // What a key must be less than.
-    HWY_INLINE NearKey last() const { return size_ < k_ ? max_ : keys_[k_ - 1]; }
-
-    NearKey max_ = 0;
+    HWY_INLINE std::int64_t* place(std::size_t i) const { return reinterpret_cast<std::int64_t*>(keys_ + i); }
+    NearKey* keys_ = nullptr;
+    std::size_t k_ = 0;
+    NearKey none_ = 0;
 };
 // The k least keys, which are written to a row of each of a caller's columns at the end.
 class LeastKeysInRow : public LeastKeys {
@@ -60,12 +90,11 @@ public:
         : LeastKeys(k, max_distance2, keys), ids_(ids), distances2_(distances2) {}
 
     HWY_INLINE void end() const {
-        const NearKey none = key_of(std::numeric_limits<float>::infinity(), no_primitive);
-        for (std::size_t i = size_; i < k_; ++i) keys_[i] = none;
         if (ids_ != nullptr)
-            for (std::size_t i = 0; i < k_; ++i) ids_[i] = element_of(keys_[i]);
+            for (std::size_t i = 0; i < k(); ++i) ids_[i] = element_of(key(i));
         if (distances2_ != nullptr)
-            for (std::size_t i = 0; i < k_; ++i) distances2_[i] = distance2_of(keys_[i]);
+            for (std::size_t i = 0; i < k(); ++i)
+                distances2_[i] = none(i) ? std::numeric_limits<float>::infinity() : distance2_of(key(i));
     }
 
 private:
@@ -181,7 +210,7 @@ template <int W, template <class> class Search, class Scene>
 void nearest_many(const Scene& scene, const PointBatch<float, 3>& points, std::size_t k, float max_distance2,
                   PrimitiveId* ids, float* distances2) {
     using Searches = Flights<W, Search<LeastKeysInRow>>;
-    NearKey keys[Searches::most][most_nearest];
+    alignas(64) NearKey keys[Searches::most][most_nearest];
     const auto sink = [&](std::size_t i, int flight) __attribute__((always_inline)) {
         const std::size_t first = k * points.number(i);
         return LeastKeysInRow(k, max_distance2, keys[flight], ids == nullptr ? nullptr : ids + first,
@@ -192,10 +221,11 @@ void nearest_many(const Scene& scene, const PointBatch<float, 3>& points, std::s
         return;
     }
     typename Search<LeastKeysInRow>::Shared shared(scene);
-    Searches(scene, shared).make(
-        points.size(), [&](std::size_t i, int flight) __attribute__((always_inline)) {
-            return Search<LeastKeysInRow>(points[i], sink(i, flight));
-        });
+    Searches(scene, shared)
+        .make(
+            points.size(), [&](std::size_t i, int flight) __attribute__((always_inline)) {
+                return Search<LeastKeysInRow>(points[i], sink(i, flight));
+            });
 }
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -72,7 +72,7 @@ struct Keys {
 
 template <class Closest, class Keys, class Scene>
 inline constexpr PointKernels<Scene> kernels_of = {Closest::one, Closest::many, Keys::nearest,
-                                                       Keys::nearest_of_many, Keys::within};
+                                                   Keys::nearest_of_many, Keys::within};
 
 extern const AllPointKernels point_kernels;  // for kernels.cpp
 const AllPointKernels point_kernels{

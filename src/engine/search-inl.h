@@ -79,8 +79,8 @@ public:
     HWY_INLINE Flights(const typename Search::Scene& scene, typename Search::Shared& shared)
         : scene_(scene), shared_(shared), prefetch_(scene) {}
 
-    // Makes `count` searches of a tree that is not empty: `begin(i, flight)` is search i, in the flight of that
-    // number, of which there are `most`.
+    // Makes `count` searches of a tree that is not empty: `begin(i, flight)` is search i, in the flight of
+    // that number, of which there are `most`.
     template <class Begin>
     HWY_INLINE void make(std::size_t count, Begin begin) {
         const auto take_off = [&](int i) __attribute__((always_inline)) {

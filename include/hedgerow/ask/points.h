@@ -46,8 +46,8 @@ std::size_t within(const I& index, const PointOf<I>& point, typename I::Scalar m
 }
 
 namespace detail {
-/// Answers a question Q of each of many points: by many(kernel, part), unless there is no kernel or it returns
-/// false; then by one(i).
+/// Answers a question Q of each of many points: by many(kernel, part), unless there is no kernel or it
+/// returns false; then by one(i).
 template <class Q, class S, class P, class Many, class One>
 void ask_in_parts(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
                   Threads threads, Many many, One one) {
@@ -99,7 +99,8 @@ void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::
     detail::ask_in_parts<Nearest<P>>(
         index, points, threads,
         [&](const auto& kernel, const auto& part) {
-            return kernel.answer_many(index, part, k, max_distance2, columns.ids.data(), columns.distances2.data());
+            return kernel.answer_many(index, part, k, max_distance2, columns.ids.data(),
+                                      columns.distances2.data());
         },
         [&](std::size_t i) {
             thread_local std::vector<Found> found;

@@ -91,7 +91,8 @@ struct PointKernels {
     /// Writes found[n] for point number n.
     void (*closest_of_many)(const Scene&, const PointBatch<float, 3>&, float max_distance2,
                             Near<float, 3>* found);
-    /// Writes the k nearest to `keys`, ascending. Returns how many there are.
+    /// Writes the k nearest to `keys`, ascending, for k up to `most_nearest`, for as many of which there must
+    /// be room, aligned to 64 bytes. Returns how many there are.
     std::size_t (*nearest)(const Scene&, const Vec<float, 3>&, std::size_t k, float max_distance2,
                            NearKey* keys);
     /// Writes the k nearest to point number n to the places from k·n on of each array that is there, for k up

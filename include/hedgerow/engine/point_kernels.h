@@ -103,7 +103,7 @@ struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
                        std::vector<Near<float, 3>>& found) const {
         if (k > most_nearest || !this->takes(point)) [[unlikely]]
             return this->template answer_of_walk<Nearest<Set>>(index, point, k, max_distance2, found);
-        NearKey keys[most_nearest];
+        alignas(64) NearKey keys[most_nearest];
         const std::size_t count = this->kernels().nearest(this->scene(index), point, k, max_distance2, keys);
         return this->read(index, point, {keys, count}, found);
     }

@@ -40,8 +40,8 @@ private:
     std::size_t first_, size_;
 };
 
-/// Cells along a Morton curve, for points in and around a box: the box doubled, in cubes. Points beyond it are
-/// in its outermost cells.
+/// Cells along a Morton curve, for points in and around a box: the box doubled, in cubes. Points beyond it
+/// are in its outermost cells.
 template <std::floating_point T, int D>
 class CurveOfPoints {
 public:
@@ -90,7 +90,8 @@ void for_each_part(const Strided<Vec<T, D>>& points, const Box<T, D>& box, std::
         executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) keys[i] = curve.code(points[first + i]) << 31 | i;
         });
-        radix_sort(keys, [](std::uint64_t key) { return key; }, 31, 3, executor);
+        radix_sort(
+            keys, [](std::uint64_t key) { return key; }, 31, 3, executor);
         // The low half of a key has a bit of the code above the number.
         for (auto& key : keys) key &= at_once - 1;
         const PointBatch<T, D> ordered(points, keys.data(), first, count);

@@ -31,7 +31,8 @@ public:
         ((center2 - low_) * scale_).store(at);
         std::uint64_t code = 0;
         for (int k = 0; k < D; ++k)
-            code |= spread_bits<D>(static_cast<std::uint64_t>(static_cast<std::int64_t>(at[k]))) << (D - 1 - k);
+            code |= spread_bits<D>(static_cast<std::uint64_t>(static_cast<std::int64_t>(at[k])))
+                    << (D - 1 - k);
         return code;
     }
 
