@@ -25,7 +25,6 @@ namespace {
 
 constexpr int rounds = 5;
 constexpr std::size_t query_count = 100000;
-constexpr float anywhere = std::numeric_limits<float>::max();
 
 /// Places on triangles, chosen by area, moved off by up to 1% of the diagonal.
 std::vector<Vec3f> near_points(const TriangleMesh<float>& mesh, const Box3f& box, std::size_t count) {
@@ -86,8 +85,8 @@ void measure_queries(const I& index, const PointPeer* peer, const std::string& k
     contest.add("walk", [&] {
         visits = {};
         return each([&](const Vec3f& p) {
-            if (k == 1) return closest_point(index, p, anywhere, visits).distance2;
-            nearest(index, p, k, found, anywhere, visits);
+            if (k == 1) return closest_point(index, p, {}, visits).distance2;
+            nearest(index, p, k, found, {}, visits);
             return found.back().distance2;
         });
     });
@@ -155,6 +154,45 @@ std::vector<Vec3f> drawn(const std::string& kind, std::size_t count, unsigned se
     return points;
 }
 
+/// The queries along a curve.
+std::vector<Vec3f> in_order(std::vector<Vec3f> points, const Box3f& box) {
+    const CurveOfPoints<float, 3> curve(box);
+    std::sort(points.begin(), points.end(),
+              [&](const Vec3f& a, const Vec3f& b) { return curve.code(a) < curve.code(b); });
+    return points;
+}
+
+/// Measures listing all within a radius, which is that of the greatest of the `many` nearest of the first
+/// query.
+template <class I>
+void measure_lists(const I& index, const PointPeer* peer, std::size_t many,
+                   const std::vector<Vec3f>& points) {
+    std::vector<Near<float, 3>> found;
+    nearest(index, points[0], many, found);
+    const float radius = std::sqrt(found.back().distance2);
+    std::size_t ours = 0, theirs = 0;
+    Contest contest;
+    if (peer != nullptr)
+        contest.add(peer->name(), [&] { return theirs = *peer->within(points, radius), points.size(); });
+    contest.add("one by one", [&] {
+        ours = 0;
+        for (const Vec3f& p : points) ours += within(index, p, {.radius = radius}, found);
+        return points.size();
+    });
+    contest.add("batch", [&] {
+        ours = within(index, points, {.radius = radius}, serial_executor()).all().size();
+        return points.size();
+    });
+    const auto times =
+        measured_in_turn(rounds, contest, Clock::wall, [](const std::string&) { return true; });
+    const double n = static_cast<double>(points.size());
+    std::printf("within a radius: %.1f a query%s\n", double(ours) / n,
+                peer != nullptr && ours != theirs ? ", the peer's roundings find others" : "");
+    for (std::size_t c = 0; c < times.size(); ++c)
+        std::printf("    %-12s %8.3f M/s, %6.2f times the first\n", contest.names[c].c_str(),
+                    n / times[c].median * 1e-6, times[0].median / times[c].median);
+}
+
 void measure_cloud(const std::string& kind) {
     const PointCloud<float, 3> cloud{drawn(kind, 1000000, 4)};
     const auto queries = drawn(kind, query_count / 2, 5);
@@ -171,6 +209,9 @@ void measure_cloud(const std::string& kind) {
         std::printf("    %.2f of the time of %s\n", times[0].median / times[1].median, peer->name().c_str());
     for (const std::size_t k : {1, 8, 32})
         measure_queries(index, peer.get(), "k = " + std::to_string(k), k, queries);
+    measure_queries(index, peer.get(), "k = 8, queries along a curve", 8, in_order(queries, index.bounds()));
+    const std::vector<Vec3f> some(queries.begin(), queries.begin() + query_count / 10);
+    for (const std::size_t many : {30, 1000}) measure_lists(index, peer.get(), many, some);
 }
 
 }  // namespace

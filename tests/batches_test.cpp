@@ -126,10 +126,10 @@ TEST(Batches, KeepToTheDistanceAndTheRoom) {
     const auto index = build<PointKdTree>(cloud);
     const std::vector<Vec3d> at = {{0.5, 0.5, 0.5}, {9, 9, 9}};
     std::vector<Near<double, 3>> found(2);
-    closest_points(index, at, found, serial_executor(), 1.0);
+    closest_points(index, at, found, serial_executor(), {.radius = 1});
     EXPECT_EQ(found[0], closest_point(index, at[0]));
     EXPECT_EQ(found[1], (Near<double, 3>()));
-    const auto near = nearest(index, at, 4, default_executor(), 1.0);
+    const auto near = nearest(index, at, 4, default_executor(), {.radius2 = 1});
     EXPECT_EQ(near[0].size(), 4u);
     EXPECT_TRUE(near[1].empty());
     found.pop_back();

@@ -56,11 +56,11 @@ TEST(HashGrid, SearchesEndHoweverFarPointsSpread) {
                            Vec3f(-1e13f, 1e13f, 1e13f), Vec3f(1e12f, -1e12f, 3)})
         for (const float radius : {0.0f, 0.05f, 0.3f, 5.0f, 1e11f, 1e14f}) {
             Visits count;
-            within(index, p, radius * radius, found, count);
-            within(oracle, p, radius * radius, expected);
+            within(index, p, {.radius = radius}, found, count);
+            within(oracle, p, {.radius2 = radius * radius}, expected);
             EXPECT_EQ(found, expected) << p[0] << " within " << radius;
             EXPECT_LE(count.nodes, 2 * index.structure().leaf_count() + 1);
-            nearest(index, p, 5, found, std::numeric_limits<float>::max(), count);
+            nearest(index, p, 5, found, {}, count);
             nearest(oracle, p, 5, expected);
             EXPECT_EQ(found, expected);
         }
@@ -88,8 +88,8 @@ TEST(HashGrid, PointsInOnePlaceShareACell) {
     const auto index = build<HashGrid>(cloud);
     EXPECT_EQ(index.structure().leaf_count(), 1u);
     std::vector<Near<float, 2>> found;
-    EXPECT_EQ(within(index, Vec2f(0, 0), 25.0f, found), 1000u);
-    EXPECT_EQ(within(index, Vec2f(0, 0), 24.99f, found), 0u);
+    EXPECT_EQ(within(index, Vec2f(0, 0), {.radius = 5}, found), 1000u);
+    EXPECT_EQ(within(index, Vec2f(0, 0), {.radius2 = 24.99f}, found), 0u);
 }
 
 TEST(HashGrid, RefusesCellsThatAreNoLength) {

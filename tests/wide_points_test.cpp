@@ -52,11 +52,11 @@ std::vector<Vec3f> points_of(const Set& set, const Box3f& box, std::size_t count
 template <class Index>
 void expect_found(const Index& index, const std::vector<Vec3f>& points, const Found& want, float within) {
     Found batch(points.size());
-    closest_points(index, points, batch, serial_executor(), within);
+    closest_points(index, points, batch, serial_executor(), {.radius2 = within});
     for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_EQ(want[i], batch[i]) << "in a batch, point " << i << ": " << want[i].distance2 << " and "
                                      << batch[i].distance2;
-        const auto one = closest_point(index, points[i], within);
+        const auto one = closest_point(index, points[i], {.radius2 = within});
         ASSERT_EQ(want[i], one) << "alone, point " << i << ": " << want[i].distance2 << " and "
                                 << one.distance2;
     }
@@ -65,11 +65,11 @@ void expect_found(const Index& index, const std::vector<Vec3f>& points, const Fo
 template <class Index, class Brute>
 void expect_lists(const Index& index, const Brute& brute, const Vec3f& p, std::size_t k, float within2) {
     Found want, found;
-    nearest(brute, p, k, want, within2);
-    EXPECT_EQ(nearest(index, p, k, found, within2), want.size());
+    nearest(brute, p, k, want, {.radius2 = within2});
+    EXPECT_EQ(nearest(index, p, k, found, {.radius2 = within2}), want.size());
     ASSERT_EQ(want, found) << k << " nearest";
-    within(brute, p, within2, want);
-    EXPECT_EQ(within(index, p, within2, found), want.size());
+    within(brute, p, {.radius2 = within2}, want);
+    EXPECT_EQ(within(index, p, {.radius2 = within2}, found), want.size());
     ASSERT_EQ(want, found) << "within " << within2;
 }
 
@@ -78,14 +78,14 @@ template <class Index>
 void expect_columns(const Index& index, const std::vector<Vec3f>& points, std::size_t k, float within2) {
     std::vector<PrimitiveId> ids(k * points.size(), 7), only_ids = ids;
     std::vector<float> distances2(k * points.size(), -1), only_distances2 = distances2;
-    nearest(index, points, k, {ids, distances2}, {}, within2);
-    nearest(index, points, k, {only_ids, {}}, {}, within2);
-    nearest(index, points, k, {{}, only_distances2}, {}, within2);
+    nearest(index, points, k, {ids, distances2}, {}, {.radius2 = within2});
+    nearest(index, points, k, {only_ids, {}}, {}, {.radius2 = within2});
+    nearest(index, points, k, {{}, only_distances2}, {}, {.radius2 = within2});
     ASSERT_EQ(ids, only_ids);
     ASSERT_EQ(distances2, only_distances2);
     Found found;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        nearest(index, points[i], k, found, within2);
+        nearest(index, points[i], k, found, {.radius2 = within2});
         found.resize(k);
         for (std::size_t j = 0; j < k; ++j) {
             ASSERT_EQ(ids[k * i + j], found[j].element) << "place " << j << " of point " << i;
@@ -258,7 +258,7 @@ TEST(WidePoints, FindsNothingForWhatIsNoPoint) {
         Found want;
         for (const Vec3f& p : points) {
             Visits visits;  // the plain walk
-            want.push_back(closest_point(index, p, anywhere, visits));
+            want.push_back(closest_point(index, p, {}, visits));
             EXPECT_EQ(bool(want.back()), length2(p - inside) < anywhere);
         }
         expect_found(index, points, want, anywhere);

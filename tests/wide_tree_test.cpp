@@ -74,7 +74,7 @@ TEST(Wide, NeverEntersAPlaceWithoutAChild) {
         std::vector<PrimitiveId> found;
         EXPECT_EQ(overlapping(index, everywhere, found), cloud.size());
         std::vector<Near<double, 3>> near;
-        EXPECT_EQ(nearest(index, {1, 2, 3}, 200, near, infinity), cloud.size());
+        EXPECT_EQ(nearest(index, {1, 2, 3}, 200, near, {.radius2 = infinity}), cloud.size());
     });
 }
 

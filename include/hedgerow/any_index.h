@@ -84,11 +84,11 @@ public:
                         std::span<Visits> visits = {}) const {
         if (visits.empty()) return closest_points_uncounted(points, found);
         for (std::size_t i = 0; i < points.size(); ++i)
-            found[i] = answer<ClosestPoint<AnyIndex>>(visits[i], points[i], anywhere);
+            found[i] = answer<ClosestPoint<AnyIndex>>(visits[i], points[i], NearOptions<T>());
     }
     std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
                         Visits* visits = nullptr) const {
-        return counted<Nearest<AnyIndex>>(visits, point, k, anywhere, found);
+        return counted<Nearest<AnyIndex>>(visits, point, k, NearOptions<T>(), found);
     }
     std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
                             Visits* visits = nullptr) const {
@@ -129,8 +129,6 @@ protected:
     virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
 
 private:
-    static constexpr T anywhere = std::numeric_limits<T>::max();
-
     /// Walks. The count is a Visits or a NoVisits, or for rays also a TraceLog.
     template <class Probe, class Count>
     void walk_and_count(VirtualQuery<Probe>& query, Count& count) const {

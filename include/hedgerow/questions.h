@@ -70,8 +70,7 @@ struct AskNearest {
     using Given = Neighbours<T, D>;
     using Answer = std::vector<Near<T, D>>;
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found, Visits& visits) {
-        index.template answer<Nearest<AnyIndex<T, D>>>(visits, given.point, given.k,
-                                                       std::numeric_limits<T>::max(), found);
+        index.template answer<Nearest<AnyIndex<T, D>>>(visits, given.point, given.k, NearOptions<T>(), found);
     }
 };
 template <std::floating_point T, int D>
@@ -80,7 +79,7 @@ struct AskWithin {
     using Given = Ball<T, D>;
     using Answer = std::vector<Near<T, D>>;
     static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found, Visits& visits) {
-        hedgerow::within(index, ball.center, ball.radius2, found, visits);
+        hedgerow::within(index, ball.center, {.radius2 = ball.radius2}, found, visits);
     }
 };
 template <std::floating_point T, int D>

@@ -33,7 +33,7 @@ std::vector<Near<T, D>> answer(const AnyIndex<T, D>& index, const Vec<T, D>& poi
     index.nearest(point, 4, said);
     index.closest_points({&point, 1}, closest);
     // Search within the distance of the last of the four nearest, inclusive.
-    if (!said.empty()) within(index, point, said.back().distance2, all);
+    if (!said.empty()) within(index, point, {.radius2 = said.back().distance2}, all);
     said.push_back(closest[0]);
     said.insert(said.end(), all.begin(), all.end());
     return said;

@@ -19,30 +19,31 @@ using PointOf = Vec<typename I::Scalar, I::dimension>;
 template <class I>
 using NearOf = Near<typename I::Scalar, I::dimension>;
 
-/// The closest point of any primitive within `max_distance2` (squared, included); a Near that is false if
-/// there is no such primitive.
+template <class I>
+using NearOptionsOf = NearOptions<typename I::Scalar>;
+
+/// The closest point of any primitive within the options' distance; a Near that is false if there is no such
+/// primitive.
 template <class S, class P, class Count = const NoVisits>
 inline Near<typename P::Scalar, P::dimension> closest_point(
     const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
-    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
-    Count& count = no_visits) {
-    return index.template answer<ClosestPoint<P>>(count, point, max_distance2);
+    const NearOptions<typename P::Scalar>& options = {}, Count& count = no_visits) {
+    return index.template answer<ClosestPoint<P>>(count, point, options);
 }
-/// Writes the k nearest primitives within `max_distance2` (squared, included) to `found`, in the order of
-/// (distance², instance, element). Returns how many there are.
+/// Writes the k nearest primitives within the options' distance to `found`, in the order of (distance²,
+/// instance, element). Returns how many there are.
 template <class S, class P, class Count = const NoVisits>
 std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
                     std::size_t k, std::vector<Near<typename P::Scalar, P::dimension>>& found,
-                    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max(),
-                    Count& count = no_visits) {
-    return index.template answer<Nearest<P>>(count, point, k, max_distance2, found);
+                    const NearOptions<typename P::Scalar>& options = {}, Count& count = no_visits) {
+    return index.template answer<Nearest<P>>(count, point, k, options, found);
 }
-/// Writes all primitives within `max_distance2` (squared, included) to `found`, in the order of (distance²,
-/// instance, element). Returns how many there are.
+/// Writes all primitives within the options' distance to `found`, in the order of (distance², instance,
+/// element). Returns how many there are: `within(index, p, {.radius = 0.5f}, found)`.
 template <class I, class Count = const NoVisits>
-std::size_t within(const I& index, const PointOf<I>& point, typename I::Scalar max_distance2,
+std::size_t within(const I& index, const PointOf<I>& point, const NearOptionsOf<I>& options,
                    std::vector<NearOf<I>>& found, Count& count = no_visits) {
-    return index.template answer<Within<typename I::Primitives>>(count, point, max_distance2, found);
+    return index.template answer<Within<typename I::Primitives>>(count, point, options, found);
 }
 
 namespace detail {
@@ -67,14 +68,14 @@ void ask_in_parts(const Index<S, P>& index, const Strided<Vec<typename P::Scalar
 template <class S, class P>
 void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
                     std::span<Near<typename P::Scalar, P::dimension>> found, Threads threads = {},
-                    typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
+                    const NearOptions<typename P::Scalar>& options = {}) {
     detail::expect_room("points", points.size(), found.size());
     detail::ask_in_parts<ClosestPoint<P>>(
         index, points, threads,
         [&](const auto& kernel, const auto& part) {
-            return kernel.answer_many(index, part, max_distance2, found.data());
+            return kernel.answer_many(index, part, options, found.data());
         },
-        [&](std::size_t i) { found[i] = closest_point(index, points[i], max_distance2); });
+        [&](std::size_t i) { found[i] = closest_point(index, points[i], options); });
 }
 
 /// The arrays of a caller in which a batch of k nearest writes its answers: k places for each point, in the
@@ -91,7 +92,7 @@ struct NearestColumns {
 template <class S, class P>
 void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
              std::size_t k, const NearestColumns<P>& columns, Threads threads = {},
-             typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
+             const NearOptions<typename P::Scalar>& options = {}) {
     using Found = Near<typename P::Scalar, P::dimension>;
     for (const std::size_t room : {columns.ids.size(), columns.distances2.size()})
         if (room > 0) detail::expect_room("places (k for each point)", k * points.size(), room);
@@ -99,12 +100,11 @@ void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::
     detail::ask_in_parts<Nearest<P>>(
         index, points, threads,
         [&](const auto& kernel, const auto& part) {
-            return kernel.answer_many(index, part, k, max_distance2, columns.ids.data(),
-                                      columns.distances2.data());
+            return kernel.answer_many(index, part, k, options, columns.ids.data(), columns.distances2.data());
         },
         [&](std::size_t i) {
             thread_local std::vector<Found> found;
-            nearest(index, points[i], k, found, max_distance2);
+            nearest(index, points[i], k, found, options);
             for (std::size_t j = 0; j < k; ++j) {
                 const Found near = j < found.size() ? found[j] : Found();
                 if (!columns.ids.empty()) columns.ids[i * k + j] = Identity<P>::of(near);
@@ -113,21 +113,21 @@ void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::
         });
 }
 
-/// A list of primitives for each of many points (ask/asking.h). `max_distance2` is squared.
+/// A list of primitives for each of many points (ask/asking.h).
 template <class S, class P>
 AnswerLists<Near<typename P::Scalar, P::dimension>> nearest(
     const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points, std::size_t k,
-    Threads threads = {}, typename P::Scalar max_distance2 = std::numeric_limits<typename P::Scalar>::max()) {
+    Threads threads = {}, const NearOptions<typename P::Scalar>& options = {}) {
     return answer_lists<Near<typename P::Scalar, P::dimension>>(
         points.size(), threads.over(points.size()),
-        [&](std::size_t i, auto& found) { nearest(index, points[i], k, found, max_distance2); });
+        [&](std::size_t i, auto& found) { nearest(index, points[i], k, found, options); });
 }
 template <class I>
 AnswerLists<NearOf<I>> within(const I& index, const Strided<PointOf<I>>& points,
-                              typename I::Scalar max_distance2, Threads threads = {}) {
+                              const NearOptionsOf<I>& options, Threads threads = {}) {
     return answer_lists<NearOf<I>>(
         points.size(), threads.over(points.size()),
-        [&](std::size_t i, auto& found) { within(index, points[i], max_distance2, found); });
+        [&](std::size_t i, auto& found) { within(index, points[i], options, found); });
 }
 
 }  // namespace hedgerow

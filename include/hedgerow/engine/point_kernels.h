@@ -42,13 +42,13 @@ protected:
         else
             return WidePoints{index.structure().tree(), index.packed().data()};
     }
-    // Squared distances of farther points may overflow; NaN is no nearer to anything.
-    static bool takes(const Vec<float, 3>& point) {
-        return finite(point) && max_component(abs(point)) <= largest_coordinate<float>;
+    // Squared distances of farther points may overflow; NaN is no nearer to anything. Kernels are exact.
+    static bool takes(const Vec<float, 3>& point, const NearOptions<float>& options) {
+        return finite(point) && max_component(abs(point)) <= largest_coordinate<float> && options.factor == 1;
     }
-    static bool takes_all(const PointBatch<float, 3>& points) {
+    static bool takes_all(const PointBatch<float, 3>& points, const NearOptions<float>& options) {
         bool all = true;
-        for (std::size_t i = 0; i < points.size(); ++i) all = all && takes(points[i]);
+        for (std::size_t i = 0; i < points.size(); ++i) all = all && takes(points[i], options);
         return all;
     }
     template <class Q, class... Arguments>
@@ -84,43 +84,46 @@ private:
 
 template <class Set, detail::NearForKernels I>
 struct Kernel<ClosestPoint<Set>, I> : detail::PointKernel<I> {
-    Near<float, 3> answer(const I& index, const Vec<float, 3>& point, float max_distance2) const {
-        if (!this->takes(point)) [[unlikely]]
-            return this->template answer_of_walk<ClosestPoint<Set>>(index, point, max_distance2);
-        return this->kernels().closest(this->scene(index), point, max_distance2);
+    Near<float, 3> answer(const I& index, const Vec<float, 3>& point,
+                          const NearOptions<float>& options) const {
+        if (!this->takes(point, options)) [[unlikely]]
+            return this->template answer_of_walk<ClosestPoint<Set>>(index, point, options);
+        return this->kernels().closest(this->scene(index), point, options.max_distance2());
     }
-    bool answer_many(const I& index, const PointBatch<float, 3>& points, float max_distance2,
+    bool answer_many(const I& index, const PointBatch<float, 3>& points, const NearOptions<float>& options,
                      Near<float, 3>* found) const {
-        if (!this->takes_all(points)) return false;
-        this->kernels().closest_of_many(this->scene(index), points, max_distance2, found);
+        if (!this->takes_all(points, options)) return false;
+        this->kernels().closest_of_many(this->scene(index), points, options.max_distance2(), found);
         return true;
     }
 };
 
 template <class Set, detail::NearForKernels I>
 struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
-    std::size_t answer(const I& index, const Vec<float, 3>& point, std::size_t k, float max_distance2,
-                       std::vector<Near<float, 3>>& found) const {
-        if (k > most_nearest || !this->takes(point)) [[unlikely]]
-            return this->template answer_of_walk<Nearest<Set>>(index, point, k, max_distance2, found);
+    std::size_t answer(const I& index, const Vec<float, 3>& point, std::size_t k,
+                       const NearOptions<float>& options, std::vector<Near<float, 3>>& found) const {
+        if (k > most_nearest || !this->takes(point, options)) [[unlikely]]
+            return this->template answer_of_walk<Nearest<Set>>(index, point, k, options, found);
         alignas(64) NearKey keys[most_nearest];
-        const std::size_t count = this->kernels().nearest(this->scene(index), point, k, max_distance2, keys);
+        const std::size_t count =
+            this->kernels().nearest(this->scene(index), point, k, options.max_distance2(), keys);
         return this->read(index, point, {keys, count}, found);
     }
-    bool answer_many(const I& index, const PointBatch<float, 3>& points, std::size_t k, float max_distance2,
-                     PrimitiveId* ids, float* distances2) const {
-        if (k > most_nearest || !this->takes_all(points)) return false;
-        this->kernels().nearest_of_many(this->scene(index), points, k, max_distance2, ids, distances2);
+    bool answer_many(const I& index, const PointBatch<float, 3>& points, std::size_t k,
+                     const NearOptions<float>& options, PrimitiveId* ids, float* distances2) const {
+        if (k > most_nearest || !this->takes_all(points, options)) return false;
+        this->kernels().nearest_of_many(this->scene(index), points, k, options.max_distance2(), ids,
+                                        distances2);
         return true;
     }
 };
 
 template <class Set, detail::NearForKernels I>
 struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
-    std::size_t answer(const I& index, const Vec<float, 3>& point, float max_distance2,
+    std::size_t answer(const I& index, const Vec<float, 3>& point, const NearOptions<float>& options,
                        std::vector<Near<float, 3>>& found) const {
-        if (!this->takes(point)) [[unlikely]]
-            return this->template answer_of_walk<Within<Set>>(index, point, max_distance2, found);
+        if (!this->takes(point, options)) [[unlikely]]
+            return this->template answer_of_walk<Within<Set>>(index, point, options, found);
         // Collect the keys in memory that the thread keeps.
         std::vector<NearKey>& kept = this->keys();
         kept.resize(std::max<std::size_t>(kept.capacity(), 64));
@@ -128,7 +131,7 @@ struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
                           kept_by_thread().resize(2 * full.room);
                           full.keys = kept_by_thread().data(), full.room = kept_by_thread().size();
                       }};
-        this->kernels().within(this->scene(index), point, max_distance2, keys);
+        this->kernels().within(this->scene(index), point, options.max_distance2(), keys);
         std::sort(keys.keys, keys.keys + keys.size);
         return this->read(index, point, {keys.keys, keys.size}, found);
     }

@@ -5,7 +5,7 @@
 
 namespace hedgerow {
 
-/// The closest point within max_distance2 (squared, included).
+/// The closest point within the options' distance.
 template <class Set>
 class ClosestPoint : public PointQuery<Set> {
 public:
@@ -14,19 +14,27 @@ public:
     static constexpr Order order = Order::nearest;
 
     template <class Index>
-    ClosestPoint(const Index& index, const Vec<Scalar, Base::dimension>& p, Scalar max_distance2)
-        : Base(index, p), best_{max_distance2, no_primitive, {}, no_primitive} {}
+    ClosestPoint(const Index& index, const Vec<Scalar, Base::dimension>& p,
+                 const NearOptions<Scalar>& options)
+        : Base(index, p),
+          options_(options),
+          best_{options.max_distance2(), no_primitive, {}, no_primitive},
+          limit_(limit_of_boxes(best_.distance2)) {}
 
-    Scalar limit() const { return limit_of_boxes(best_.distance2); }
+    Scalar limit() const { return limit_; }
     Flow offer(const Candidate& c) {
-        if (nearer(c, best_)) best_ = c;
+        if (!nearer(c, best_)) return Flow::go_on;
+        best_ = c;
+        limit_ = limit_of_boxes(options_.limit(c.distance2));
         return Flow::go_on;
     }
     /// False if no primitive is within the distance.
     Found answer() const { return best_.element == no_primitive ? Found{} : this->found(best_); }
 
 private:
+    NearOptions<Scalar> options_;
     Candidate best_;  // at first behind every candidate within the distance
+    Scalar limit_;
 };
 
 }  // namespace hedgerow

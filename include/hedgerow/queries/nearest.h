@@ -19,15 +19,15 @@ public:
     static constexpr Order order = Order::nearest;
 
     template <class Index>
-    Nearest(const Index& index, const Vec<Scalar, Base::dimension>& p, std::size_t k, Scalar max_distance2,
-            std::vector<Found>& found)
-        : Base(index, p), k_(k), max_(max_distance2), found_(found) {
+    Nearest(const Index& index, const Vec<Scalar, Base::dimension>& p, std::size_t k,
+            const NearOptions<Scalar>& options, std::vector<Found>& found)
+        : Base(index, p), k_(k), options_(options), max_(options.max_distance2()), found_(found) {
         found_.clear();
     }
 
     Scalar limit() const {
         if (k_ == 0) return Scalar(-1);
-        return limit_of_boxes(found_.size() < k_ ? max_ : found_.front().distance2);
+        return limit_of_boxes(found_.size() < k_ ? max_ : options_.limit(found_.front().distance2));
     }
     Flow offer(const Candidate& c) {
         const Found f = this->found(c);
@@ -50,6 +50,7 @@ public:
 
 private:
     std::size_t k_;
+    NearOptions<Scalar> options_;
     Scalar max_;
     std::vector<Found>& found_;
 };

@@ -1,6 +1,8 @@
 /// The base of the queries of a point: the probe, and the answer that a candidate becomes.
 #pragma once
 
+#include <hedgerow/base/error.h>
+#include <hedgerow/geometry/rounding.h>
 #include <hedgerow/walks/query.h>
 
 namespace hedgerow {
@@ -33,6 +35,33 @@ T limit_of_boxes(T distance2) {
     constexpr T more = std::is_same_v<T, float> ? T(0x1p-20) : T(0x1p-48);
     return distance2 + product(distance2, more) + 4 * std::numeric_limits<T>::denorm_min();
 }
+
+/// How far questions of a point look, and how exactly: `closest_point(index, p, {.radius = 2})`.
+template <std::floating_point T>
+struct NearOptions {
+    static constexpr T anywhere = std::numeric_limits<T>::max();
+
+    /// The largest distance, included, and the same squared. Both hold. Nothing is within what is negative or
+    /// NaN.
+    T radius = anywhere, radius2 = anywhere;
+    /// At least 1. The closest point, and each of the k nearest, is at most this many times as far away as
+    /// the exact one of its place; distances are those of what is found. Parts that could only improve on an
+    /// answer by less are not looked at (Arya et al. 1998). The answer depends on the structure alone, and is
+    /// found by a walk.
+    T factor = 1;
+
+    /// The largest squared distance. Throws InputError for a factor that is not at least 1.
+    T max_distance2() const {
+        if (!(factor >= 1)) throw InputError("the factor of a point's question is below 1: give 1 or more");
+        if (!(radius >= 0)) return T(-1);
+        const T squared = rounded_to<T>(product(double(radius), double(radius)));
+        return squared < radius2 ? squared : radius2;
+    }
+    /// The limit of a walk that has found something at a squared distance.
+    T limit(T found_distance2) const {
+        return factor == 1 ? found_distance2 : found_distance2 / product(factor, factor);
+    }
+};
 
 /// `Set` gives the ids that answers report.
 template <class Set>

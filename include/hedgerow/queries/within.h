@@ -18,9 +18,9 @@ public:
     static constexpr Order order = Order::none;
 
     template <class Index>
-    Within(const Index& index, const Vec<Scalar, Base::dimension>& p, Scalar max_distance2,
+    Within(const Index& index, const Vec<Scalar, Base::dimension>& p, const NearOptions<Scalar>& options,
            std::vector<Found>& found)
-        : Base(index, p), max_(max_distance2), found_(found) {
+        : Base(index, p), max_(options.max_distance2()), found_(found) {
         found_.clear();
     }
 

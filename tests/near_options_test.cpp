@@ -1,0 +1,153 @@
+/// How far questions of a point look and how exactly, for every structure: radii, squared radii and factors.
+#include <gtest/gtest.h>
+
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/random.h>
+
+#include "every_structure.h"
+
+using namespace hedgerow;
+
+namespace {
+
+template <std::floating_point T, int D>
+PointCloud<T, D> some_points(std::size_t count) {
+    PointCloud<T, D> cloud;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        Random random(11, i);
+        Vec<T, D> p;
+        for (int k = 0; k < D; ++k)
+            p[k] = static_cast<T>(i % 3 == 0 ? random.uniform() * 0.1 : random.uniform());
+        cloud.points.push_back(p);
+    }
+    return cloud;
+}
+template <class I>
+PointOf<I> question(const I& index, std::uint64_t i) {
+    Random random(12, i);
+    PointOf<I> p;
+    for (int k = 0; k < I::dimension; ++k)
+        p[k] = index.bounds().low[k] +
+               index.bounds().extent()[k] * static_cast<typename I::Scalar>(random.uniform(-0.5, 1.5));
+    return p;
+}
+
+/// Expects answers within the factor of the exact ones, by exact distances, for fewer visits in all.
+template <class I>
+void expect_within_factor(const I& index, typename I::Scalar factor) {
+    using T = typename I::Scalar;
+    std::vector<NearOf<I>> exact, found;
+    const T bound = factor * factor * T(1 + 1e-6);
+    Visits needed, spent;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+        const auto p = question(index, i);
+        const auto best = closest_point(index, p, {}, needed),
+                   near = closest_point(index, p, {.factor = factor}, spent);
+        ASSERT_TRUE(near);
+        EXPECT_LE(near.distance2, best.distance2 * bound);
+        const auto alone = closest_point(index, p, {.radius2 = near.distance2, .factor = factor});
+        ASSERT_TRUE(alone);
+        nearest(index, p, 7, exact);
+        ASSERT_EQ(nearest(index, p, 7, found, {.factor = factor}), exact.size());
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            EXPECT_LE(found[k].distance2, exact[k].distance2 * bound) << k;
+            EXPECT_EQ(found[k].distance2,
+                      foot_of(p, index.primitives().closest_point(found[k].element, p)).distance2);
+        }
+    }
+    EXPECT_LE(spent.leaves, needed.leaves);
+}
+
+template <class I>
+void expect_radii(const I& index) {
+    using T = typename I::Scalar;
+    const auto p = question(index, 3);
+    std::vector<NearOf<I>> all, some;
+    ASSERT_EQ(nearest(index, p, index.size(), all), index.size());
+    // All but those of the greatest distance are within the distance of the middle.
+    const T middle = all[index.size() / 2].distance2;
+    std::size_t want = 0;
+    while (want < all.size() && all[want].distance2 <= middle) ++want;
+    EXPECT_EQ(within(index, p, {.radius2 = middle}, some), want);
+    EXPECT_EQ(nearest(index, p, index.size(), some, {.radius2 = middle}), want);
+    const T radius = T(0.4);
+    EXPECT_EQ(within(index, p, {.radius = radius}, some),
+              within(index, p, {.radius2 = T(double(radius) * double(radius))}, all));
+    EXPECT_EQ(some, all);
+    // Both hold.
+    EXPECT_EQ(within(index, p, {.radius = radius, .radius2 = 0}, some), 0u);
+    EXPECT_FALSE(closest_point(index, p, {.radius = 0, .radius2 = 1}));
+    constexpr T nan = std::numeric_limits<T>::quiet_NaN();
+    for (const NearOptions<T>& nothing : {NearOptions<T>{.radius = -1}, NearOptions<T>{.radius2 = -1},
+                                          NearOptions<T>{.radius = nan}, NearOptions<T>{.radius2 = nan}}) {
+        EXPECT_FALSE(closest_point(index, p, nothing));
+        EXPECT_EQ(nearest(index, p, 3, some, nothing), 0u);
+        EXPECT_EQ(within(index, p, nothing, some), 0u);
+    }
+    constexpr T infinity = std::numeric_limits<T>::infinity();
+    EXPECT_EQ(within(index, p, {.radius = infinity}, some), index.size());
+    for (const T factor : {T(0.99), T(-1), nan}) {
+        EXPECT_THROW(closest_point(index, p, {.factor = factor}), InputError);
+        EXPECT_THROW(nearest(index, p, 3, some, {.factor = factor}), InputError);
+    }
+}
+
+template <class Set>
+void expect_options(const Set& set) {
+    for_each_index(set, [](const char* name, const auto& index) {
+        SCOPED_TRACE(name);
+        expect_radii(index);
+        for (const double factor : {1.0, 1.1, 2.0, 10.0})
+            expect_within_factor(index, static_cast<typename std::decay_t<decltype(index)>::Scalar>(factor));
+    });
+}
+
+TEST(NearOptions, CloudsInSpace) {
+    expect_options(some_points<float, 3>(600));
+    expect_options(some_points<double, 3>(600));
+}
+TEST(NearOptions, CloudsInThePlane) {
+    expect_options(some_points<float, 2>(400));
+}
+TEST(NearOptions, Meshes) {
+    expect_options(soup<float>(300));
+    expect_options(soup<double>(300));
+}
+
+/// A primitive at exactly the radius is within it.
+TEST(NearOptions, RadiusIsIncluded) {
+    const PointCloud<float, 3> cloud{{{3, 4, 0}, {0.1f, 0, 0}, {0, 7, 0}}};
+    for_each_index(cloud, [](const char* name, const auto& index) {
+        SCOPED_TRACE(name);
+        std::vector<Near<float, 3>> found;
+        EXPECT_EQ(within(index, Vec3f(0, 0, 0), {.radius = 5}, found), 2u);
+        EXPECT_EQ(within(index, Vec3f(0, 0, 0), {.radius = std::nextafter(5.0f, 0.0f)}, found), 1u);
+        EXPECT_EQ(within(index, Vec3f(0, 0, 0), {.radius = 0.1f}, found), 1u);
+    });
+}
+
+/// Columns of k nearest are those of single queries, for every structure.
+TEST(NearOptions, ColumnsOfNearest) {
+    const auto cloud = some_points<double, 2>(50);
+    for_each_index(cloud, [](const char* name, const auto& index) {
+        SCOPED_TRACE(name);
+        std::vector<Vec2d> points;
+        for (std::uint64_t i = 0; i < 30; ++i) points.push_back(question(index, i));
+        points[7][0] = std::numeric_limits<double>::quiet_NaN();
+        std::vector<PrimitiveId> ids(60 * points.size());
+        std::vector<double> distances2(ids.size());
+        nearest(index, points, 60, {ids, distances2}, {}, {.radius = 0.5});
+        std::vector<Near<double, 2>> found;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            nearest(index, points[i], 60, found, {.radius = 0.5});
+            found.resize(60);
+            for (std::size_t j = 0; j < 60; ++j) {
+                ASSERT_EQ(ids[60 * i + j], found[j].element);
+                ASSERT_EQ(distances2[60 * i + j], found[j].distance2);
+            }
+        }
+    });
+}
+
+}  // namespace
