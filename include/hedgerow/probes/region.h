@@ -1,0 +1,139 @@
+/// A region as a probe. It enters every volume that it may overlap, in no particular order.
+#pragma once
+
+#include <hedgerow/geometry/ball.h>
+#include <hedgerow/geometry/box_rows.h>
+#include <hedgerow/geometry/lattice.h>
+#include <hedgerow/geometry/region.h>
+#include <hedgerow/probes/concepts.h>
+
+namespace hedgerow {
+
+/// Which primitives a query of a region finds: those that have a point in it, or those that lie in it wholly.
+enum class Finds : bool { overlapping, contained };
+
+/// Walks see no shape: they enter what the region's `containment` does not call outside. In a tree of planes
+/// the state is the cell that the cuts have left.
+template <Region R>
+class RegionProbe {
+public:
+    using Scalar = typename R::Scalar;
+    static constexpr int dimension = R::dimension;
+    using T = Scalar;
+    static constexpr int D = dimension;
+    static constexpr bool is_box = std::same_as<R, Box<T, D>>;
+    struct State {
+        Box<T, D> cell;
+        bool here;
+    };
+
+    explicit RegionProbe(const R& region, Finds finds = Finds::overlapping) : region_(region), finds_(finds) {}
+    const R& region() const { return region_; }
+    Finds finds() const { return finds_; }
+    const R& box() const requires is_box { return region_; }
+
+    template <class U>
+    bool enter(const Box<U, D>& box, T, T& at) const {
+        at = T(0);
+        return meets(box);
+    }
+    unsigned enter(const BoxRows<T, D>& boxes, T limit, T* at) const {
+        using L = Lanes<T>;
+        if constexpr (is_box) {
+            return boxes.by_fours([&](int k) {
+                unsigned overlapping = 15;
+                for (int i = 0; i < D; ++i)
+                    overlapping &= less_equal(L::load(boxes.low(i) + k), L::all(region_.high[i])) &
+                                   less_equal(L::all(region_.low[i]), L::load(boxes.high(i) + k));
+                L::all(T(0)).store(at + k);
+                return overlapping;
+            });
+        } else {
+            return enter_each(*this, boxes, limit, at);
+        }
+    }
+    /// Tests any other volume (geometry/volumes.h).
+    template <class Volume>
+    requires requires(const Volume& v) { box_around(v); }
+    bool enter(const Volume& volume, T, T& at) const {
+        at = T(0);
+        if constexpr (is_box)
+            return may_overlap(detail::in_double(region_), volume);
+        else
+            return may_meet(region_, volume);
+    }
+    template <class Pack>
+    requires(Pack::width > 0) unsigned enter(const Pack& pack, T limit, T* at) const {
+        return enter_each(*this, pack, limit, at);
+    }
+
+    State root(const Box<T, D>& box) const { return {box, meets(box)}; }
+    bool within(const State& s, T) const { return s.here; }
+    Cut<State> cut(const State& s, const AxisPlane<T>& plane, T) const {
+        Cut<State> sides{false, s, s, false, false};
+        sides.near.cell.high[plane.axis] = sides.far.cell.low[plane.axis] = plane.position;
+        if constexpr (is_box) {
+            sides.to_near = region_.low[plane.axis] <= plane.position;
+            sides.to_far = region_.high[plane.axis] >= plane.position;
+        } else {
+            sides.to_near = meets(sides.near.cell), sides.to_far = meets(sides.far.cell);
+        }
+        return sides;
+    }
+    /// Cuts by any plane: compares the heights of the cell and those of the region. An unbounded region is on
+    /// both sides.
+    Cut<State> cut(const State& s, const CutPlane<D>& plane, T) const {
+        const Extent region = extent(region_, plane.normal), cell = extent(s.cell, plane.normal);
+        const double tolerance =
+            plane.margin + product(8 * unit_roundoff<double>, std::abs(plane.offset));
+        const double low = plane.offset + tolerance, high = plane.offset - tolerance;
+        return {false, s, s, !(region.low > low) && !(cell.low > low),
+                !(region.high < high) && !(cell.high < high)};
+    }
+
+    /// Visits the cells of the lattice that the region may overlap, each enlarged by its pad.
+    template <class Limit, class Visit>
+    void sweep(const Lattice<D>& lattice, Limit, Visit visit) const {
+        typename Lattice<D>::Cell first{}, last{};
+        for (std::size_t a = 0; a < D; ++a) last[a] = lattice.resolution[a] - 1;
+        Box<double, D> whole{lattice.bounds(first).low - lattice.pad, lattice.bounds(last).high + lattice.pad};
+        whole = bounds_in(region_, whole);
+        if (whole.empty()) return;
+        for (int a = 0; a < D; ++a) {
+            const auto i = static_cast<std::size_t>(a);
+            first[i] = lattice.coordinate(whole.low[a], a), last[i] = lattice.coordinate(whole.high[a], a);
+        }
+        for_each_cell(first, last, [&](const auto& cell) {
+            if constexpr (!is_box) {
+                Box<double, D> box = lattice.bounds(cell);
+                box.low = box.low - lattice.pad, box.high = box.high + lattice.pad;
+                if (!meets(box)) return true;
+            }
+            return visit(cell).flow == Flow::go_on;
+        });
+    }
+
+    /// Whether primitive i of a set is found. Sets that cannot tell what lies in a region find nothing there.
+    template <class P>
+    bool takes(const P& set, std::size_t i) const {
+        if (finds_ == Finds::overlapping) return set.overlaps(i, region_);
+        if constexpr (requires { set.lies_in(i, region_); })
+            return set.lies_in(i, region_);
+        else
+            return false;
+    }
+
+private:
+    template <class U>
+    bool meets(const Box<U, D>& box) const {
+        return containment(region_, box) != Containment::outside;
+    }
+
+    R region_;
+    Finds finds_;
+};
+
+template <std::floating_point T, int D>
+using BoxProbe = RegionProbe<Box<T, D>>;
+
+}  // namespace hedgerow
