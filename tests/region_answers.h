@@ -12,7 +12,8 @@
 
 namespace hedgerow {
 
-/// What an oracle says. Where the library's answer may err by its documented tolerance, the oracle says either.
+/// What an oracle says. Where the library's answer may err by its documented tolerance, the oracle says
+/// either.
 enum class Said { no, either, yes };
 inline Said exactly(bool b) {
     return b ? Said::yes : Said::no;
@@ -23,7 +24,7 @@ template <class P, class R, class Oracle>
 void expect_right(const P& set, const R& region, Oracle oracle) {
     const auto view = set.view();
     for (std::size_t i = 0; i < set.size(); ++i) {
-        const bool overlaps = view.overlaps(i, region), lies_in = view.lies_in(i, region);
+        const bool overlaps = view.overlaps(i, region), lies_in = view.lies_within(i, region);
         EXPECT_TRUE(overlaps || !lies_in) << "primitive " << i;
         const Said overlap = oracle(i, Finds::overlapping), inside = oracle(i, Finds::contained);
         if (overlap != Said::either) {
@@ -43,7 +44,7 @@ struct Answers {
     Answers(const P& set, const R& region) {
         for (PrimitiveId i = 0; i < set.size() && !is_empty(region); ++i) {
             if (set.view().overlaps(i, region)) overlapping.push_back(i);
-            if (set.view().lies_in(i, region)) contained.push_back(i);
+            if (set.view().lies_within(i, region)) contained.push_back(i);
         }
     }
 };

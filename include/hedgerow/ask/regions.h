@@ -2,14 +2,17 @@
 /// and whether anything does.
 ///
 /// A region is a Box, a Sphere (the solid ball), or another shape of geometry/ that is a Region, of the
-/// index's scalar and dimension; or a type of your own that fulfils the concept (geometry/region.h). Sets are closed:
-/// touching counts. Nothing overlaps an empty region, or one with NaN. In a tree whose nodes hold each
-/// primitive once, a subtree inside of the region is taken whole, without a test.
+/// index's scalar and dimension; or a type of your own that fulfils the concept (geometry/region.h). Sets are
+/// closed: touching counts. Nothing overlaps an empty region, or one with NaN. In a tree whose nodes hold
+/// each primitive once, a subtree inside of the region is taken whole, without a test.
 #pragma once
 
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/geometry/ball.h>
+#include <hedgerow/geometry/cone.h>
+#include <hedgerow/geometry/slab_region.h>
 #include <hedgerow/queries/overlap_count.h>
 #include <hedgerow/queries/overlapping.h>
 
@@ -17,7 +20,8 @@ namespace hedgerow {
 
 /// A region that an index can be asked.
 template <class R, class P>
-concept RegionFor = Region<R> && std::same_as<typename R::Scalar, typename P::Scalar> && R::dimension == P::dimension;
+concept RegionFor =
+    Region<R> && std::same_as<typename R::Scalar, typename P::Scalar> && R::dimension == P::dimension;
 
 /// Writes the primitives that overlap a region to `found`, ascending: their positions in the set, or
 /// PlacedIds among instances. Returns how many there are.
@@ -26,8 +30,8 @@ std::size_t overlapping(const Index<S, P>& index, const R& region, std::vector<I
                         Count& count = no_visits) {
     return index.template answer<Overlapping<P, R>>(count, region, found);
 }
-/// Writes the primitives that lie in a region wholly to `found`, as `overlapping` does. Returns how many there
-/// are.
+/// Writes the primitives that lie in a region wholly to `found`, as `overlapping` does. Returns how many
+/// there are.
 template <class S, class P, RegionFor<P> R, class Count = const NoVisits>
 std::size_t contained(const Index<S, P>& index, const R& region, std::vector<IdOf<P>>& found,
                       Count& count = no_visits) {
@@ -50,8 +54,8 @@ bool any_overlapping(const Index<S, P>& index, const R& region, Count& count = n
     return index.template answer<AnyOverlap<P, R>>(count, region);
 }
 
-// Batches. The regions of one are of one shape, in an array of any layout (base/strided.h): a vector or a span
-// of them will do.
+// Batches. The regions of one are of one shape, in an array of any layout (base/strided.h): a vector or a
+// span of them will do.
 
 namespace detail {
 template <class Rs>
@@ -61,7 +65,9 @@ struct ElementOf<Strided<R>> {
     using Type = R;
 };
 template <class Rs>
-requires requires(const Rs& rs) { std::span(rs); }
+requires requires(const Rs& rs) {
+    std::span(rs);
+}
 struct ElementOf<Rs> {
     using Type = std::remove_const_t<typename decltype(std::span(std::declval<const Rs&>()))::element_type>;
 };
@@ -97,7 +103,8 @@ void count_overlapping(const Index<S, P>& index, const Rs& regions, std::span<st
 }
 /// Writes whether any primitive overlaps each region, as `count_overlapping` does.
 template <class S, class P, RegionsFor<P> Rs>
-void any_overlapping(const Index<S, P>& index, const Rs& regions, std::span<bool> found, Threads threads = {}) {
+void any_overlapping(const Index<S, P>& index, const Rs& regions, std::span<bool> found,
+                     Threads threads = {}) {
     const Strided<typename detail::ElementOf<Rs>::Type> all(regions);
     detail::expect_room("regions", all.size(), found.size());
     threads.over(all.size()).for_each_piece(all.size(), 256, [&](std::size_t begin, std::size_t end) {

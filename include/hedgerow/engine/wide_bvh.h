@@ -219,8 +219,9 @@ private:
         if (!c.leaf()) {
             if (c.word <= node) return "a child before its parent";
             if (c.word >= tree_.nodes.size()) return "a child that is not there";
-            return tree_.nodes.count(node, i) == tree_.nodes.count(c.word) ? nullptr
-                                                                           : "a node's count is not its children's";
+            return tree_.nodes.count(node, i) == tree_.nodes.count(c.word)
+                       ? nullptr
+                       : "a node's count is not its children's";
         }
         if (c.block() >= leaf_count()) return "a leaf that is not there";
         return tree_.nodes.count(node, i) > 0 ? nullptr : "a leaf without primitives";

@@ -79,12 +79,14 @@ template <class T, int D>
 bool lies_in(const Sphere<T, D>& s, const Sphere<T, D>& region) {
     return s.radius <= region.radius &&
            detail::compare_distance(Vec<double, D>(s.center), Vec<double, D>(region.center),
-                                    static_cast<double>(region.radius), static_cast<double>(s.radius), -1) <= 0;
+                                    static_cast<double>(region.radius), static_cast<double>(s.radius),
+                                    -1) <= 0;
 }
 template <class T, int D>
 bool overlap(const Sphere<T, D>& s, const Sphere<T, D>& region) {
     return detail::compare_distance(Vec<double, D>(s.center), Vec<double, D>(region.center),
-                                    static_cast<double>(region.radius), static_cast<double>(s.radius), 1) <= 0;
+                                    static_cast<double>(region.radius), static_cast<double>(s.radius),
+                                    1) <= 0;
 }
 template <class T, int D>
 bool overlap(const Triangle<T, D>& t, const Sphere<T, D>& region) {

@@ -24,8 +24,8 @@ struct Extent {
 /// - `bounds_in` returns a box around the region's part in a box. It is no larger than that box.
 /// - `extent` returns numbers that normal·x is never beyond for any point x of the region.
 /// - `lies_in` tells whether a shape lies in the region wholly, and `overlap` whether it has a point in it.
-///   Both are needed for the primitives of the sets that are asked: points (`Vec`, which need `lies_in` alone),
-///   Triangle, Segment, Sphere (a solid ball). What lies in a region overlaps it.
+///   Both are needed for the primitives of the sets that are asked: points (`Vec`, which need `lies_in`
+///   alone), Triangle, Segment, Sphere (a solid ball). What lies in a region overlaps it.
 template <class R>
 concept Region = std::is_trivially_copyable_v<R> &&
     requires(const R& region, const Box<typename R::Scalar, R::dimension>& box,

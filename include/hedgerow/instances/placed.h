@@ -53,13 +53,13 @@ public:
     template <Region R>
     bool overlaps(std::size_t i, const R& region) const {
         if constexpr (PointSet<P>)
-            return hedgerow::lies_in(shape(i), region);
+            return lies_in(shape(i), region);
         else
             return overlap(shape(i), region);
     }
     template <Region R>
-    bool lies_in(std::size_t i, const R& region) const {
-        return hedgerow::lies_in(shape(i), region);
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(shape(i), region);
     }
 
 private:

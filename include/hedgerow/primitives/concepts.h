@@ -1,6 +1,6 @@
 /// What a primitive set is: primitives with boxes, which can be tested against probes. A set of your own
 /// needs `size` and `bounds`; for ray queries also `meet`, for distance queries `closest_point`, for queries
-/// of a region `overlaps` and `lies_in`.
+/// of a region `overlaps` and `lies_within`.
 #pragma once
 
 #include <cstdint>
@@ -64,8 +64,8 @@ concept OverlapsRegions = PrimitiveSet<P> && requires(const P& p, std::size_t i,
 };
 /// A set that tells which primitives lie in a region wholly.
 template <class P, class R>
-concept LiesInRegions = OverlapsRegions<P, R> && requires(const P& p, std::size_t i, const R& region) {
-    { p.lies_in(i, region) } -> std::same_as<bool>;
+concept LiesWithinRegions = OverlapsRegions<P, R> && requires(const P& p, std::size_t i, const R& region) {
+    { p.lies_within(i, region) } -> std::same_as<bool>;
 };
 
 /// A set whose hits lie within the probe's slack of the primitive itself, not only of its box. Structures may
@@ -203,7 +203,8 @@ Flow test_one(const P& set, const PointProbe<typename P::Scalar, P::dimension>& 
     return query.offer({foot.distance2, id, foot.point});
 }
 template <class P, Region R, class Query>
-requires OverlapsRegions<P, R> Flow test_one(const P& set, const RegionProbe<R>& probe, PrimitiveId id, Query& query) {
+requires OverlapsRegions<P, R> Flow test_one(const P& set, const RegionProbe<R>& probe, PrimitiveId id,
+                                             Query& query) {
     return probe.takes(set, id) ? query.offer({id}) : Flow::go_on;
 }
 

@@ -27,11 +27,11 @@ public:
     }
     template <Region R>
     bool overlaps(std::size_t i, const R& region) const {
-        return hedgerow::lies_in(points_[i], region);
+        return lies_in(points_[i], region);
     }
     template <Region R>
-    bool lies_in(std::size_t i, const R& region) const {
-        return hedgerow::lies_in(points_[i], region);
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(points_[i], region);
     }
 
 private:

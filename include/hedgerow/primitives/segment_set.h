@@ -35,8 +35,8 @@ public:
         return overlap(segments_[i], region);
     }
     template <Region R>
-    bool lies_in(std::size_t i, const R& region) const {
-        return hedgerow::lies_in(segments_[i], region);
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(segments_[i], region);
     }
     static constexpr bool hits_lie_on_primitives = true;
     std::array<Vec<T, 2>, 2> corners(std::size_t i) const { return {segments_[i].a, segments_[i].b}; }

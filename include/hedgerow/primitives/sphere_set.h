@@ -31,8 +31,8 @@ public:
         return overlap(spheres_[i], region);
     }
     template <Region R>
-    bool lies_in(std::size_t i, const R& region) const {
-        return hedgerow::lies_in(spheres_[i], region);
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(spheres_[i], region);
     }
     /// The ray's first crossing of the surface within its interval: the entry, or the exit if the entry lies
     /// before the interval.

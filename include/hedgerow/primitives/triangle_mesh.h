@@ -62,8 +62,8 @@ public:
         return overlap(triangle(i), region);
     }
     template <Region R>
-    bool lies_in(std::size_t i, const R& region) const {
-        return hedgerow::lies_in(triangle(i), region);
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(triangle(i), region);
     }
     /// The overlap test of one triangle, prepared for many boxes.
     TriangleOverlap<T> overlap_test(std::size_t i) const { return TriangleOverlap<T>(triangle(i)); }

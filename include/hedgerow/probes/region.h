@@ -1,7 +1,6 @@
 /// A region as a probe. It enters every volume that it may overlap, in no particular order.
 #pragma once
 
-#include <hedgerow/geometry/ball.h>
 #include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/geometry/lattice.h>
 #include <hedgerow/geometry/region.h>
@@ -13,7 +12,8 @@ namespace hedgerow {
 enum class Finds : bool { overlapping, contained };
 
 /// Walks see no shape: they enter what the region's `containment` does not call outside. In a tree of planes
-/// the state is the cell that the cuts have left.
+/// the state is the cell that the cuts have left. A box needs no cell, since cuts across the axes compare its
+/// own sides.
 template <Region R>
 class RegionProbe {
 public:
@@ -22,12 +22,17 @@ public:
     using T = Scalar;
     static constexpr int D = dimension;
     static constexpr bool is_box = std::same_as<R, Box<T, D>>;
-    struct State {
+    struct Cell {
         Box<T, D> cell;
         bool here;
     };
+    struct Here {
+        bool here;
+    };
+    using State = std::conditional_t<is_box, Here, Cell>;
 
-    explicit RegionProbe(const R& region, Finds finds = Finds::overlapping) : region_(region), finds_(finds) {}
+    explicit RegionProbe(const R& region, Finds finds = Finds::overlapping)
+        : region_(region), finds_(finds) {}
     const R& region() const { return region_; }
     Finds finds() const { return finds_; }
     const R& box() const requires is_box { return region_; }
@@ -67,28 +72,37 @@ public:
         return enter_each(*this, pack, limit, at);
     }
 
-    State root(const Box<T, D>& box) const { return {box, meets(box)}; }
+    State root(const Box<T, D>& box) const {
+        if constexpr (is_box)
+            return {meets(box)};
+        else
+            return {box, meets(box)};
+    }
     bool within(const State& s, T) const { return s.here; }
     Cut<State> cut(const State& s, const AxisPlane<T>& plane, T) const {
-        Cut<State> sides{false, s, s, false, false};
-        sides.near.cell.high[plane.axis] = sides.far.cell.low[plane.axis] = plane.position;
         if constexpr (is_box) {
-            sides.to_near = region_.low[plane.axis] <= plane.position;
-            sides.to_far = region_.high[plane.axis] >= plane.position;
+            return {false, s, s, region_.low[plane.axis] <= plane.position,
+                    region_.high[plane.axis] >= plane.position};
         } else {
+            Cut<State> sides{false, s, s, false, false};
+            sides.near.cell.high[plane.axis] = sides.far.cell.low[plane.axis] = plane.position;
             sides.to_near = meets(sides.near.cell), sides.to_far = meets(sides.far.cell);
+            return sides;
+        }
+    }
+    /// Cuts by any plane: compares the heights of the region and of the cell, if there is one. An unbounded
+    /// region is on both sides.
+    Cut<State> cut(const State& s, const CutPlane<D>& plane, T) const {
+        const double tolerance = plane.margin + product(8 * unit_roundoff<double>, std::abs(plane.offset));
+        const double low = plane.offset + tolerance, high = plane.offset - tolerance;
+        const Extent region = extent(region_, plane.normal);
+        Cut<State> sides{false, s, s, !(region.low > low), !(region.high < high)};
+        if constexpr (!is_box) {
+            const Extent cell = extent(s.cell, plane.normal);
+            sides.to_near = sides.to_near && !(cell.low > low);
+            sides.to_far = sides.to_far && !(cell.high < high);
         }
         return sides;
-    }
-    /// Cuts by any plane: compares the heights of the cell and those of the region. An unbounded region is on
-    /// both sides.
-    Cut<State> cut(const State& s, const CutPlane<D>& plane, T) const {
-        const Extent region = extent(region_, plane.normal), cell = extent(s.cell, plane.normal);
-        const double tolerance =
-            plane.margin + product(8 * unit_roundoff<double>, std::abs(plane.offset));
-        const double low = plane.offset + tolerance, high = plane.offset - tolerance;
-        return {false, s, s, !(region.low > low) && !(cell.low > low),
-                !(region.high < high) && !(cell.high < high)};
     }
 
     /// Visits the cells of the lattice that the region may overlap, each enlarged by its pad.
@@ -96,7 +110,8 @@ public:
     void sweep(const Lattice<D>& lattice, Limit, Visit visit) const {
         typename Lattice<D>::Cell first{}, last{};
         for (std::size_t a = 0; a < D; ++a) last[a] = lattice.resolution[a] - 1;
-        Box<double, D> whole{lattice.bounds(first).low - lattice.pad, lattice.bounds(last).high + lattice.pad};
+        Box<double, D> whole{lattice.bounds(first).low - lattice.pad,
+                             lattice.bounds(last).high + lattice.pad};
         whole = bounds_in(region_, whole);
         if (whole.empty()) return;
         for (int a = 0; a < D; ++a) {
@@ -117,8 +132,8 @@ public:
     template <class P>
     bool takes(const P& set, std::size_t i) const {
         if (finds_ == Finds::overlapping) return set.overlaps(i, region_);
-        if constexpr (requires { set.lies_in(i, region_); })
-            return set.lies_in(i, region_);
+        if constexpr (requires { set.lies_within(i, region_); })
+            return set.lies_within(i, region_);
         else
             return false;
     }

@@ -5,11 +5,13 @@
 
 namespace hedgerow {
 
-/// Whether a volume lies in the region, so that all primitives in it do. Of volumes that are no boxes, the box
-/// around them decides.
+/// Whether a volume lies in the region, so that all primitives in it do. Of volumes that are no boxes, the
+/// box around them decides.
 template <Region R, class V>
 bool takes_whole(const R& region, const V& volume) {
-    if constexpr (requires { containment(region, volume); })
+    if constexpr (requires { region.contains(volume); })
+        return region.contains(volume);
+    else if constexpr (requires { containment(region, volume); })
         return containment(region, volume) == Containment::inside;
     else
         return containment(region, box_around(volume)) == Containment::inside;
@@ -40,7 +42,10 @@ protected:
     /// else in the structure. Instances are always asked what is in them.
     template <class Node>
     bool takes(const Node& node) const {
-        return takes_subtrees_ && takes_whole(probe_.region(), node.volume());
+        if constexpr (requires { node.volume(); })
+            return takes_subtrees_ && takes_whole(probe_.region(), node.volume());
+        else
+            return false;
     }
     /// Ends the walk.
     void finish() { limit_ = -1; }

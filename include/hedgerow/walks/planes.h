@@ -31,7 +31,8 @@ public:
     PlaneNode(const S& tree, NodeId id, const State& state) : tree_(tree), state_(state), id_(id) {}
 
     NodeId id() const { return id_; }
-    const auto& volume() const requires requires(const State& s) { s.cell; } { return state_.cell; }
+    const auto& volume() const requires requires(const State& s) { s.cell; }
+    { return state_.cell; }
     std::size_t count() const {
         if constexpr (requires { tree_.count_below(id_); })
             return tree_.count_below(id_);

@@ -59,7 +59,7 @@ private:
     }
 
     const S& tree_;
-    V volume_;
+    const V& volume_;
     NodeRef parent_;
     int i_;
 };

@@ -58,7 +58,8 @@ public:
     /// The number of points in the subtree of n: the nodes of a level are side by side.
     std::size_t count_below(NodeId n) const {
         std::size_t points = 0;
-        for (std::size_t first = n, last = n; first < items_.size(); first = 2 * first + 1, last = 2 * last + 2)
+        for (std::size_t first = n, last = n; first < items_.size();
+             first = 2 * first + 1, last = 2 * last + 2)
             points += std::min(last + 1, items_.size()) - first;
         return points;
     }
