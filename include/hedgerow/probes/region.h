@@ -4,7 +4,8 @@
 #include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/geometry/lattice.h>
 #include <hedgerow/geometry/region.h>
-#include <hedgerow/probes/concepts.h>
+#include <hedgerow/geometry/slab.h>
+#include <hedgerow/probes/point.h>
 
 namespace hedgerow {
 
@@ -42,6 +43,7 @@ public:
         at = T(0);
         return meets(box);
     }
+    /// Tests four boxes at a time, in T, if the region is a box, a ball or between planes.
     unsigned enter(const BoxRows<T, D>& boxes, T limit, T* at) const {
         using L = Lanes<T>;
         if constexpr (is_box) {
@@ -53,6 +55,19 @@ public:
                 L::all(T(0)).store(at + k);
                 return overlapping;
             });
+        } else if constexpr (std::same_as<R, Sphere<T, D>>) {
+            const T radius2 = product(region_.radius, region_.radius);
+            const unsigned entered = PointProbe<T, D>(region_.center).enter(boxes, enlarged(radius2), at);
+            std::fill_n(at, BoxRows<T, D>::width, T(0));
+            return entered;
+        } else if constexpr (SlabVolume<R>) {
+            std::fill_n(at, BoxRows<T, D>::width, T(0));
+            unsigned among = (1u << boxes.size()) - 1;
+            for (int i = 0; i < region_.slab_count() && among != 0; ++i) {
+                const Slab<D> s = region_.slab(i);
+                among &= ~beyond(boxes, s.normal, s.high) & ~beyond(boxes, -s.normal, -s.low);
+            }
+            return among;
         } else {
             return enter_each(*this, boxes, limit, at);
         }
@@ -139,6 +154,25 @@ public:
     }
 
 private:
+    /// A little more than x >= 0: more than sums of squares and products of T err by.
+    static T enlarged(T x) { return x + product(x, error) + 16 * std::numeric_limits<T>::denorm_min(); }
+    static constexpr T error = std::is_same_v<T, float> ? T(0x1p-18) : T(0x1p-44);
+
+    /// The boxes, as bits, that are surely beyond the plane normal·x = offset. No box is if numbers overflow.
+    static unsigned beyond(const BoxRows<T, D>& boxes, const Vec<double, D>& normal, double offset) {
+        using L = Lanes<T>;
+        const T limit = static_cast<T>(offset), most = limit + enlarged(std::abs(limit)) - std::abs(limit);
+        if (!(most < std::numeric_limits<T>::infinity())) return 0;
+        return boxes.by_fours([&](int k) {
+            L low = L::all(T(0)), size = L::all(T(0));
+            for (int i = 0; i < D; ++i) {
+                const L n = L::all(static_cast<T>(normal[i]));
+                const L a = n * L::load(boxes.low(i) + k), b = n * L::load(boxes.high(i) + k);
+                low = low + min(a, b), size = size + max(abs(a), abs(b));
+            }
+            return less_equal(L::all(most), low - size * L::all(error));
+        });
+    }
     template <class U>
     bool meets(const Box<U, D>& box) const {
         return containment(region_, box) != Containment::outside;
