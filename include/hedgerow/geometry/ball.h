@@ -57,8 +57,8 @@ Containment containment(const Sphere<T, D>& region, const Box<U, D>& box) {
     return inside ? Containment::inside : Containment::across;
 }
 template <class T, int D>
-Box<double, D> bounds_in(const Sphere<T, D>& region, const Box<double, D>& box) {
-    const Sphere<double, D> ball{Vec<double, D>(region.center), static_cast<double>(region.radius)};
+Box<double, D> bounds_in(const Sphere<T, D>& region, const Box<double, D>& box, double margin) {
+    const Sphere<double, D> ball{Vec<double, D>(region.center), static_cast<double>(region.radius) + margin};
     return intersection(ball.bounds(), box);
 }
 template <class T, int D>

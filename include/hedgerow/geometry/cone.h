@@ -12,41 +12,39 @@ namespace hedgerow {
 
 /// The points x within slope·h of the axis, where h is their height above the apex along the axis, from 0 to
 /// `height`, which may be infinite. `slope` is the tangent of the angle between the axis and the side, at
-/// most 2^60. The axis may have any length but 0.
+/// most 2^60. The axis may have any length but 0. What tests need is computed once, in double.
 template <std::floating_point T, int D>
-struct Cone {
+class Cone {
+public:
     using Scalar = T;
     static constexpr int dimension = D;
-
-    Vec<T, D> apex, axis;
-    T slope = T(1), height = std::numeric_limits<T>::infinity();
-};
-
-namespace detail {
-/// A cone in double, with the lengths that its tests need.
-template <int D>
-class ConeFrame {
-public:
     using Point = Vec<double, D>;
-    static constexpr double infinite = std::numeric_limits<double>::infinity();
 
-    template <class T>
-    explicit ConeFrame(const Cone<T, D>& c)
-        : apex_(c.apex), slope_(static_cast<double>(c.slope)), height_(static_cast<double>(c.height)) {
-        const Point a(c.axis);
-        const Point scaled = a * scale_to_one(max_component(abs(a)));
+    /// An empty cone.
+    Cone() : Cone({}, {}, T(0)) {}
+    Cone(const Vec<T, D>& apex, const Vec<T, D>& axis, T slope, T height = std::numeric_limits<T>::infinity())
+        : apex_(apex), slope_(static_cast<double>(slope)), height_(static_cast<double>(height)) {
+        empty_ = !finite(apex) || !finite(axis) || axis == Vec<T, D>() ||
+                 !(slope >= 0 && slope <= T(0x1p60)) || !(height >= 0);
+        const Point a(axis), scaled = a * scale_to_one(max_component(abs(a)));
         axis_ = scaled / length(scaled);
         cosine_ = 1 / std::sqrt(1 + product(slope_, slope_));
         sine_ = product(slope_, cosine_);
     }
 
+    const Point& apex() const { return apex_; }
+    /// The axis, of length 1.
+    const Point& axis() const { return axis_; }
+    double slope() const { return slope_; }
+    double height() const { return height_; }
+    /// Whether a number is NaN, a vector is not finite, the axis has length 0, the slope or height is below
+    /// 0, or the slope is above 2^60.
+    bool empty() const { return empty_; }
+
     /// A place seen from the apex: its height along the axis, and its distance from the axis.
     struct Seen {
-        double height, across, size;
+        double height, across;
     };
-    const Point& axis() const { return axis_; }
-    const Point& apex() const { return apex_; }
-    double height() const { return height_; }
     Point from_apex(const Point& x) const { return x - apex_; }
     Seen seen(const Point& v) const {
         double across;
@@ -54,7 +52,7 @@ public:
             across = std::abs(product(axis_[0], v[1]) - product(axis_[1], v[0]));
         else
             across = length(cross(axis_, v));
-        return {dot(axis_, v), across, length(v)};
+        return {dot(axis_, v), across};
     }
     /// How far a place is outside of the side, and inside of it if negative.
     double beyond_side(const Seen& s) const { return product(s.across, cosine_) - product(s.height, sine_); }
@@ -66,7 +64,7 @@ public:
     double distance(const Seen& s) const {
         if (holds(s, 0)) return 0;
         // The closest place of the side's line, from the apex to the rim.
-        const double rim = height_ < infinite ? height_ / cosine_ : infinite;
+        const double rim = height_ / cosine_;
         const double along =
             std::min(rim, std::max(0.0, product(s.height, cosine_) + product(s.across, sine_)));
         double away = length(Vec2d(s.height - product(along, cosine_), s.across - product(along, sine_)));
@@ -96,13 +94,15 @@ public:
 private:
     Point apex_, axis_;
     double slope_, height_, cosine_, sine_;
+    bool empty_;
 };
 
+namespace detail {
 /// Whether a triangle or segment, given by its corners, has a point in the cone. Clips it to the heights of
 /// the cone; then a corner lies in the cone, or the deepest place of an edge, or the axis meets the inside:
 /// a plane's section of a cone that touches no edge is an ellipse, and has the axis in it.
-template <int D, std::size_t n>
-bool hull_overlaps_cone(const ConeFrame<D>& cone, const std::array<Vec<double, D>, n>& corners) {
+template <class T, int D, std::size_t n>
+bool hull_overlaps(const std::array<Vec<double, D>, n>& corners, const Cone<T, D>& cone) {
     using Point = Vec<double, D>;
     std::array<Point, n + 2> polygon, clipped;
     std::size_t size = n;
@@ -117,7 +117,7 @@ bool hull_overlaps_cone(const ConeFrame<D>& cone, const std::array<Vec<double, D
             const double h = dot(cone.axis(), v);
             return at_apex ? -h - error : h - cone.height() - error;
         };
-        if (!at_apex && !(cone.height() < ConeFrame<D>::infinite)) break;
+        if (!at_apex && !(cone.height() < std::numeric_limits<double>::infinity())) break;
         std::size_t kept = 0;
         for (std::size_t i = 0; i < size; ++i) {
             const Point &p = polygon[i], &q = polygon[(i + 1) % size];
@@ -146,17 +146,13 @@ bool hull_overlaps_cone(const ConeFrame<D>& cone, const std::array<Vec<double, D
 }
 }  // namespace detail
 
-/// True for NaN, for vectors that are not finite, an axis of length 0, and a slope or height below 0 or a
-/// slope above 2^60.
 template <class T, int D>
 bool is_empty(const Cone<T, D>& region) {
-    return !finite(region.apex) || !finite(region.axis) || region.axis == Vec<T, D>() ||
-           !(region.slope >= 0 && region.slope <= T(0x1p60)) || !(region.height >= 0);
+    return region.empty();
 }
 /// A box is outside if the ball around it is, or if it is beyond the apex or the base.
 template <class T, class U, int D>
-Containment containment(const Cone<T, D>& region, const Box<U, D>& box) {
-    const detail::ConeFrame<D> cone(region);
+Containment containment(const Cone<T, D>& cone, const Box<U, D>& box) {
     const Vec<double, D> low = cone.from_apex(Vec<double, D>(box.low)),
                          high = cone.from_apex(Vec<double, D>(box.high));
     const Vec<double, D> middle = low * 0.5 + high * 0.5;
@@ -180,55 +176,51 @@ Containment containment(const Cone<T, D>& region, const Box<U, D>& box) {
     return Containment::inside;
 }
 template <class T, int D>
-Extent extent(const Cone<T, D>& region, const Vec<double, D>& normal) {
-    const detail::ConeFrame<D> cone(region);
+Extent extent(const Cone<T, D>& cone, const Vec<double, D>& normal) {
     // Along the axis a unit of height changes the height along the normal by `along`, and the rim by `aside`.
     const double along = dot(cone.axis(), normal);
     const auto across = normal - cone.axis() * along;
-    const double aside = product(static_cast<double>(region.slope), length(across));
+    const double aside = product(cone.slope(), length(across));
     const double at = dot(normal, cone.apex()), error = 0x1p-40 * (length(normal) + aside);
     const auto reach = [&](double rate) { return rate > 0 ? product(rate, cone.height()) : 0; };
     const double rounding = 0x1p-40 * dot(abs(normal), abs(cone.apex())) + 0x1p-490;
     return {at - reach(aside - along + error) - rounding, at + reach(aside + along + error) + rounding};
 }
 template <class T, int D>
-Box<double, D> bounds_in(const Cone<T, D>& region, const Box<double, D>& box) {
+Box<double, D> bounds_in(const Cone<T, D>& cone, const Box<double, D>& box, double margin) {
     Box<double, D> part = box;
     for (int k = 0; k < D; ++k) {
         Vec<double, D> axis;
         axis[k] = 1;
-        const Extent e = extent(region, axis);
-        part.low[k] = std::max(part.low[k], e.low), part.high[k] = std::min(part.high[k], e.high);
+        const Extent e = extent(cone, axis);
+        part.low[k] = std::max(part.low[k], e.low - margin);
+        part.high[k] = std::min(part.high[k], e.high + margin);
     }
     return part;
 }
 
 template <class T, int D>
-bool lies_in(const Vec<T, D>& p, const Cone<T, D>& region) {
-    const detail::ConeFrame<D> cone(region);
+bool lies_in(const Vec<T, D>& p, const Cone<T, D>& cone) {
     return cone.holds(cone.seen(cone.from_apex(Vec<double, D>(p))), 0);
 }
 template <class T, int D>
-bool lies_in(const Sphere<T, D>& s, const Cone<T, D>& region) {
-    const detail::ConeFrame<D> cone(region);
+bool lies_in(const Sphere<T, D>& s, const Cone<T, D>& cone) {
     return cone.holds(cone.seen(cone.from_apex(Vec<double, D>(s.center))), -static_cast<double>(s.radius));
 }
 template <class T, int D>
-bool overlap(const Sphere<T, D>& s, const Cone<T, D>& region) {
-    const detail::ConeFrame<D> cone(region);
+bool overlap(const Sphere<T, D>& s, const Cone<T, D>& cone) {
     return cone.distance(cone.seen(cone.from_apex(Vec<double, D>(s.center)))) <=
            static_cast<double>(s.radius);
 }
 template <class T, int D>
-bool overlap(const Triangle<T, D>& t, const Cone<T, D>& region) {
+bool overlap(const Triangle<T, D>& t, const Cone<T, D>& cone) {
     using Point = Vec<double, D>;
-    return detail::hull_overlaps_cone(detail::ConeFrame<D>(region),
-                                      std::array{Point(t.a), Point(t.b), Point(t.c)});
+    return detail::hull_overlaps(std::array{Point(t.a), Point(t.b), Point(t.c)}, cone);
 }
 template <class T, int D>
-bool overlap(const Segment<T, D>& s, const Cone<T, D>& region) {
+bool overlap(const Segment<T, D>& s, const Cone<T, D>& cone) {
     using Point = Vec<double, D>;
-    return detail::hull_overlaps_cone(detail::ConeFrame<D>(region), std::array{Point(s.a), Point(s.b)});
+    return detail::hull_overlaps(std::array{Point(s.a), Point(s.b)}, cone);
 }
 
 }  // namespace hedgerow

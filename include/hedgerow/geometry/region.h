@@ -21,7 +21,8 @@ struct Extent {
 /// - `containment` tells how a box lies to the region. It may say across of a box that is outside or inside,
 ///   but never outside of a box with a primitive that `overlap` finds, nor inside of one with a primitive
 ///   that `overlap` or `lies_in` does not.
-/// - `bounds_in` returns a box around the region's part in a box. It is no larger than that box.
+/// - `bounds_in` returns a box around the part in a box of the region, widened by a margin. It is no larger
+///   than that box.
 /// - `extent` returns numbers that normal·x is never beyond for any point x of the region.
 /// - `lies_in` tells whether a shape lies in the region wholly, and `overlap` whether it has a point in it.
 ///   Both are needed for the primitives of the sets that are asked: points (`Vec`, which need `lies_in`
@@ -34,7 +35,7 @@ concept Region = std::is_trivially_copyable_v<R> &&
     { is_empty(region) } -> std::same_as<bool>;
     { containment(region, box) } -> std::same_as<Containment>;
     { containment(region, wide) } -> std::same_as<Containment>;
-    { bounds_in(region, wide) } -> std::same_as<Box<double, R::dimension>>;
+    { bounds_in(region, wide, 0.0) } -> std::same_as<Box<double, R::dimension>>;
     { extent(region, normal) } -> std::same_as<Extent>;
     { lies_in(point, region) } -> std::same_as<bool>;
 };
@@ -73,7 +74,7 @@ Containment containment(const Box<T, D>& region, const Box<U, D>& box) {
     return inside ? Containment::inside : Containment::across;
 }
 template <class T, int D>
-Box<double, D> bounds_in(const Box<T, D>& region, const Box<double, D>& box) {
+Box<double, D> bounds_in(const Box<T, D>& region, const Box<double, D>& box, double) {
     return intersection(detail::in_double(region), box);
 }
 /// The heights of the box's extreme corners, rounded outward. NaN where an unbounded side meets a 0 of the

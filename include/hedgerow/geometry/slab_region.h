@@ -207,20 +207,19 @@ Containment containment(const V& region, const Box<U, V::dimension>& box) {
 /// Moves each side of the box inward to where every plane leaves room between the other sides, twice. Not the
 /// smallest box.
 template <SlabVolume V>
-Box<double, V::dimension> bounds_in(const V& region, const Box<double, V::dimension>& box) {
+Box<double, V::dimension> bounds_in(const V& region, const Box<double, V::dimension>& box, double margin) {
     constexpr int D = V::dimension;
     Box<double, D> part = box;
     for (int pass = 0; pass < 2; ++pass)
         detail::for_each_face(region, [&](const Vec<double, D>& normal, double offset) {
-            const detail::BoxHeights heights(part, normal);
-            const double room =
-                offset - heights.low +
-                detail::height_error(detail::box_heights_err, heights.size + std::abs(offset));
+            const double size = detail::BoxHeights(box, normal).size + std::abs(offset);
+            const double wider = detail::height_error(detail::box_heights_err, size) +
+                                 product(margin, dot(abs(normal), Vec<double, D>::all(1)));
+            const double room = offset + wider - detail::BoxHeights(part, normal).low;
             for (int k = 0; k < D; ++k) {
-                const double side =
-                    room / normal[k];  // how far the plane is along the axis from the low side
-                if (normal[k] > 0) part.high[k] = std::min(part.high[k], part.low[k] + side * (1 + 0x1p-40));
-                if (normal[k] < 0) part.low[k] = std::max(part.low[k], part.high[k] + side * (1 + 0x1p-40));
+                const double side = room / normal[k] * (1 + 0x1p-40);  // from the lowest corner to the plane
+                if (normal[k] > 0) part.high[k] = std::min(part.high[k], part.low[k] + side);
+                if (normal[k] < 0) part.low[k] = std::max(part.low[k], part.high[k] + side);
             }
             return true;
         });

@@ -147,8 +147,8 @@ public:
     template <Region R>
     Box<T, D> inside(const R& region) const {
         if (containment(region, bounds_) == Containment::outside) return {};
-        const Box<double, D> wide =
-            bounds_in(region, {Vec<double, D>(bounds_.low), Vec<double, D>(bounds_.high)});
+        const Box<double, D> own{Vec<double, D>(bounds_.low), Vec<double, D>(bounds_.high)};
+        const Box<double, D> wide = bounds_in(region, own, 0x1p-40 * largest(own));
         if (wide.empty()) return {};
         const auto& back = transform_.back();
         const auto box = back.box(wide);

@@ -15,6 +15,10 @@ enum class Finds : bool { overlapping, contained };
 /// Walks see no shape: they enter what the region's `containment` does not call outside. In a tree of planes
 /// the state is the cell that the cuts have left. A box needs no cell, since cuts across the axes compare its
 /// own sides.
+///
+/// The test of a primitive may err relative to the primitive's size, which can be that of the whole scene,
+/// however small the cell is where it meets the region. So cells are enlarged by a margin: 2^-40 of the
+/// scene's largest coordinate, which is more than any of the tests err by. Boxes around primitives need none.
 template <Region R>
 class RegionProbe {
 public:
@@ -32,8 +36,16 @@ public:
     };
     using State = std::conditional_t<is_box, Here, Cell>;
 
-    explicit RegionProbe(const R& region, Finds finds = Finds::overlapping)
-        : region_(region), finds_(finds) {}
+    /// `scene` contains all primitives.
+    RegionProbe(const R& region, const Box<T, D>& scene, Finds finds = Finds::overlapping)
+        : region_(region), finds_(finds) {
+        const T largest = std::max(max_component(abs(scene.low)), max_component(abs(scene.high)));
+        if (!is_box && !scene.empty())
+            margin_ = product(T(0x1p-40), largest) + 4 * std::numeric_limits<T>::denorm_min();
+    }
+    /// The tests of boxes are exact, and need no margin.
+    explicit RegionProbe(const R& region, Finds finds = Finds::overlapping) requires is_box : region_(region),
+                                                                                              finds_(finds) {}
     const R& region() const { return region_; }
     Finds finds() const { return finds_; }
     const R& box() const requires is_box { return region_; }
@@ -100,7 +112,8 @@ public:
                     region_.high[plane.axis] >= plane.position};
         } else {
             Cut<State> sides{false, s, s, false, false};
-            sides.near.cell.high[plane.axis] = sides.far.cell.low[plane.axis] = plane.position;
+            sides.near.cell.high[plane.axis] = sum_rounded_up(plane.position, margin_);
+            sides.far.cell.low[plane.axis] = -sum_rounded_up(-plane.position, margin_);
             sides.to_near = meets(sides.near.cell), sides.to_far = meets(sides.far.cell);
             return sides;
         }
@@ -108,7 +121,8 @@ public:
     /// Cuts by any plane: compares the heights of the region and of the cell, if there is one. An unbounded
     /// region is on both sides.
     Cut<State> cut(const State& s, const CutPlane<D>& plane, T) const {
-        const double tolerance = plane.margin + product(8 * unit_roundoff<double>, std::abs(plane.offset));
+        const double tolerance = plane.margin + product(plane.reach(), static_cast<double>(margin_)) +
+                                 product(8 * unit_roundoff<double>, std::abs(plane.offset));
         const double low = plane.offset + tolerance, high = plane.offset - tolerance;
         const Extent region = extent(region_, plane.normal);
         Cut<State> sides{false, s, s, !(region.low > low), !(region.high < high)};
@@ -123,11 +137,12 @@ public:
     /// Visits the cells of the lattice that the region may overlap, each enlarged by its pad.
     template <class Limit, class Visit>
     void sweep(const Lattice<D>& lattice, Limit, Visit visit) const {
+        const auto margin = static_cast<double>(margin_);
+        const Vec<double, D> pad = lattice.pad + Vec<double, D>::all(margin);
         typename Lattice<D>::Cell first{}, last{};
         for (std::size_t a = 0; a < D; ++a) last[a] = lattice.resolution[a] - 1;
-        Box<double, D> whole{lattice.bounds(first).low - lattice.pad,
-                             lattice.bounds(last).high + lattice.pad};
-        whole = bounds_in(region_, whole);
+        Box<double, D> whole{lattice.bounds(first).low - pad, lattice.bounds(last).high + pad};
+        whole = bounds_in(region_, whole, margin);
         if (whole.empty()) return;
         for (int a = 0; a < D; ++a) {
             const auto i = static_cast<std::size_t>(a);
@@ -136,7 +151,7 @@ public:
         for_each_cell(first, last, [&](const auto& cell) {
             if constexpr (!is_box) {
                 Box<double, D> box = lattice.bounds(cell);
-                box.low = box.low - lattice.pad, box.high = box.high + lattice.pad;
+                box.low = box.low - pad, box.high = box.high + pad;
                 if (!meets(box)) return true;
             }
             return visit(cell).flow == Flow::go_on;
@@ -179,6 +194,7 @@ private:
     }
 
     R region_;
+    T margin_ = T(0);
     Finds finds_;
 };
 
