@@ -1,7 +1,7 @@
 /// Cones as regions: round in space, wedges in the plane.
 ///
-/// All tests are computed in double. They err by at most 2^-43 of the distances from the apex, of triangles
-/// and segments to the side of finding them.
+/// All tests are computed in double. Heights and distances from the side err by at most 2^-47 of the
+/// distances from the apex, of triangles and segments to the side of finding them.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace hedgerow {
 
 /// The points x within slope·h of the axis, where h is their height above the apex along the axis, from 0 to
 /// `height`, which may be infinite. `slope` is the tangent of the angle between the axis and the side, at
-/// most 2^60. The axis may have any length but 0. What tests need is computed once, in double.
+/// most 2^10. The axis may have any length but 0. What tests need is computed once, in double.
 template <std::floating_point T, int D>
 class Cone {
 public:
@@ -25,7 +25,7 @@ public:
     Cone(const Vec<T, D>& apex, const Vec<T, D>& axis, T slope, T height = std::numeric_limits<T>::infinity())
         : apex_(apex), slope_(static_cast<double>(slope)), height_(static_cast<double>(height)) {
         empty_ = !finite(apex) || !finite(axis) || axis == Vec<T, D>() ||
-                 !(slope >= 0 && slope <= T(0x1p60)) || !(height >= 0);
+                 !(slope >= 0 && slope <= T(0x1p10)) || !(height >= 0);
         const Point a(axis), scaled = a * scale_to_one(max_component(abs(a)));
         axis_ = scaled / length(scaled);
         cosine_ = 1 / std::sqrt(1 + product(slope_, slope_));
@@ -38,7 +38,7 @@ public:
     double slope() const { return slope_; }
     double height() const { return height_; }
     /// Whether a number is NaN, a vector is not finite, the axis has length 0, the slope or height is below
-    /// 0, or the slope is above 2^60.
+    /// 0, or the slope is above 2^10.
     bool empty() const { return empty_; }
 
     /// A place seen from the apex: its height along the axis, and its distance from the axis.
@@ -111,7 +111,7 @@ bool hull_overlaps(const std::array<Vec<double, D>, n>& corners, const Cone<T, D
         polygon[i] = cone.from_apex(corners[i]);
         reach = std::max(reach, length(polygon[i]));
     }
-    const double error = 0x1p-44 * reach + 0x1p-500;
+    const double error = 0x1p-48 * reach + 0x1p-500;
     for (const bool at_apex : {true, false}) {
         const auto beyond = [&](const Point& v) {
             const double h = dot(cone.axis(), v);
@@ -158,7 +158,8 @@ Containment containment(const Cone<T, D>& cone, const Box<U, D>& box) {
     const Vec<double, D> middle = low * 0.5 + high * 0.5;
     const double radius = length(high - low) * 0.5;
     const double reach = length(max(abs(low), abs(high)));
-    const double error = 0x1p-40 * reach + 0x1p-490;
+    // A place that errs in height and side may be farther away, by the slope.
+    const double error = 0x1p-34 * reach + 0x1p-480;
     double least = 0, most = 0;
     for (int k = 0; k < D; ++k) {
         const double a = product(cone.axis()[k], low[k]), b = product(cone.axis()[k], high[k]);
@@ -183,7 +184,7 @@ Extent extent(const Cone<T, D>& cone, const Vec<double, D>& normal) {
     const double aside = product(cone.slope(), length(across));
     const double at = dot(normal, cone.apex()), error = 0x1p-40 * (length(normal) + aside);
     const auto reach = [&](double rate) { return rate > 0 ? product(rate, cone.height()) : 0; };
-    const double rounding = 0x1p-40 * dot(abs(normal), abs(cone.apex())) + 0x1p-490;
+    const double rounding = 0x1p-34 * dot(abs(normal), abs(cone.apex())) + 0x1p-480;
     return {at - reach(aside - along + error) - rounding, at + reach(aside + along + error) + rounding};
 }
 template <class T, int D>

@@ -15,6 +15,10 @@ struct Extent {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
 };
 
+/// What the test of a primitive against a region may err by, as a share of the largest coordinate of the
+/// scene: at most this.
+inline constexpr double scene_margin = 0x1p-34;
+
 /// A region R. The functions are found by the arguments' namespace.
 /// - `is_empty` is true if the region has NaN, or is known to have no points. Queries of it find nothing, and
 ///   call nothing else.

@@ -209,11 +209,14 @@ bool may_overlap(const Box3d& box, const Cylinder<T>& c) {
 }
 
 namespace detail {
-/// Whether a region misses a slab, by the region's extent along the slab's normal.
+/// Whether a region misses a slab, by the region's extent along the slab's normal. The tests of primitives in
+/// the slab err less than the error here (region.h).
 template <class R, int D>
 bool region_beside(const R& region, const Slab<D>& s) {
     const Extent heights = extent(region, s.normal);
-    return heights.low > s.high || heights.high < s.low;
+    const double above = product(scene_margin, std::abs(s.high)),
+                 below = product(scene_margin, std::abs(s.low));
+    return heights.low - above > s.high || heights.high + below < s.low;
 }
 }  // namespace detail
 

@@ -148,7 +148,7 @@ public:
     Box<T, D> inside(const R& region) const {
         if (containment(region, bounds_) == Containment::outside) return {};
         const Box<double, D> own{Vec<double, D>(bounds_.low), Vec<double, D>(bounds_.high)};
-        const Box<double, D> wide = bounds_in(region, own, 0x1p-40 * largest(own));
+        const Box<double, D> wide = bounds_in(region, own, scene_margin * largest(own));
         if (wide.empty()) return {};
         const auto& back = transform_.back();
         const auto box = back.box(wide);

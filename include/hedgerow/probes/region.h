@@ -17,7 +17,7 @@ enum class Finds : bool { overlapping, contained };
 /// own sides.
 ///
 /// The test of a primitive may err relative to the primitive's size, which can be that of the whole scene,
-/// however small the cell is where it meets the region. So cells are enlarged by a margin: 2^-40 of the
+/// however small the cell is where it meets the region. So cells are enlarged by a margin: 2^-34 of the
 /// scene's largest coordinate, which is more than any of the tests err by. Boxes around primitives need none.
 template <Region R>
 class RegionProbe {
@@ -41,7 +41,7 @@ public:
         : region_(region), finds_(finds) {
         const T largest = std::max(max_component(abs(scene.low)), max_component(abs(scene.high)));
         if (!is_box && !scene.empty())
-            margin_ = product(T(0x1p-40), largest) + 4 * std::numeric_limits<T>::denorm_min();
+            margin_ = product(T(scene_margin), largest) + 4 * std::numeric_limits<T>::denorm_min();
     }
     /// The tests of boxes are exact, and need no margin.
     explicit RegionProbe(const R& region, Finds finds = Finds::overlapping) requires is_box : region_(region),
