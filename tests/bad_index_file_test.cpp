@@ -107,8 +107,8 @@ TEST(BadIndexFile, OfAnotherKindIsRefused) {
     };
     EXPECT_EQ(load_index<float>(with([](auto&) {})).validate(), "") << "signed here, not changed";
     // Headers of other versions, byte orders, formats and scalars.
-    expect_refused(with([](auto& h) { h.version = 2; }),
-                   {"other.hedgerow", "version 2", "this is version 1", "save it again"});
+    expect_refused(with([](auto& h) { h.version = 3; }),
+                   {"other.hedgerow", "version 3", "this is version 2", "save it again"});
     expect_refused(with([](auto& h) { h.byte_order = 0x04030201; }),
                    {"other.hedgerow", "byte order", "save it again"});
     expect_refused(with([](auto& h) { h.magic[0] = 'H'; }), {"other.hedgerow", "no saved index"});

@@ -218,7 +218,7 @@ TYPED_TEST(IndexFile, SaysWhatItHolds) {
     const auto path = this->folder / "index.hedgerow";
     save_index(path, index);
     const IndexFileInfo info = index_file_info(path);
-    EXPECT_EQ(info.version, 1);
+    EXPECT_EQ(info.version, 2);
     EXPECT_EQ(info.scalar, sizeof(T) == 4 ? "float" : "double");
     EXPECT_EQ(info.options.width, 4);
     EXPECT_EQ(info.options.builder, WideBuilder::high);

@@ -50,7 +50,8 @@ struct RangeCount {
     const Probe& probe() const { return asked; }
     double limit() const { return std::numeric_limits<double>::max(); }
     Flow offer(const OverlapCandidate&) { return ++counted, Flow::go_on; }
-    Verdict accept(NodeId n) {
+    Verdict accept(const auto& node) {
+        const NodeId n = node.id();
         if (below[n].count == 0) return Verdict::prune;
         if (!asked.box().contains(below[n].box)) return Verdict::open;
         counted += below[n].count;
@@ -76,8 +77,8 @@ struct BarnesHut {
         if (d2 > 0) acceleration = acceleration + r * (mass / (d2 * std::sqrt(d2)));
     }
     Flow offer(const PointCandidate<double, 3>& c) { return attract(c.point, 1), Flow::go_on; }
-    Verdict accept(NodeId n) {
-        const Below& b = below[n];
+    Verdict accept(const auto& node) {
+        const Below& b = below[node.id()];
         if (b.count == 0) return Verdict::prune;
         const Vec3d center = b.sum / b.count;
         if (max_component(b.box.extent()) >= opening_angle * length(center - asked.point()))

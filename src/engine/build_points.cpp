@@ -80,7 +80,7 @@ private:
             const auto block = static_cast<std::uint32_t>(part.first / leaf_size_);
             tree_.nodes.set(node, i, part.box.template box<D>(),
                             leaf ? WideChild::of_leaf(block) : WideChild{static_cast<std::uint32_t>(next)},
-                            leaf ? static_cast<std::uint32_t>(part.count) : 0);
+                            static_cast<std::uint32_t>(part.count));
             next += layout_.nodes(leaves_of(part.count));
         }
         fill(node, count, parts, 0, children);

@@ -20,7 +20,7 @@
 namespace hedgerow::detail {
 
 struct IndexHeader {
-    static constexpr std::uint32_t this_version = 1, this_byte_order = 0x01020304;
+    static constexpr std::uint32_t this_version = 2, this_byte_order = 0x01020304;
 
     char magic[16];
     std::uint32_t byte_order, version, scalar_bytes;

@@ -199,6 +199,11 @@ private:
         executor_.for_each_piece(count, 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t node = begin; node < end; ++node) lay_out(wide, node);
         });
+        // Count what is below the inner children, from the last node up: parents come before their children.
+        for (std::size_t node = count; node-- > 0;)
+            for (int i = 0; i < wide.nodes.children(node); ++i)
+                if (const WideChild child = wide.nodes.child(node, i); !child.leaf())
+                    wide.nodes.set_count(node, i, wide.nodes.count(child.word));
         return wide;
     }
     void lay_out(WideTree<T, D>& wide, std::size_t node) const {

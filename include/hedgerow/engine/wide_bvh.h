@@ -96,6 +96,10 @@ public:
         return c.leaf() ? NodeRef{wide_leaf_size * c.block(), tree_.nodes.count(r.first, i)}
                         : NodeRef{c.word, 0};
     }
+    /// The number of primitives below child i of a node, or in the whole tree if there is no node.
+    std::size_t count_below(NodeRef parent, int i) const {
+        return parent.empty() ? count_ : tree_.nodes.count(parent.first, i);
+    }
     Leaf leaf(NodeRef r) const { return {tree_.items.data(), r.first, r.count}; }
     static NodeId child_id(NodeRef parent, int i) {
         return most_wide * parent.first + 1 + static_cast<NodeId>(i);
@@ -212,7 +216,13 @@ private:
         const WideChild c = tree_.nodes.child(node, i);
         if (i >= boxes.size()) return boxes[i] == Box<T, D>() ? nullptr : "a box around nothing";
         if (c.empty()) return "an empty place before a child";
-        if (!c.leaf()) return c.word > node ? nullptr : "a child before its parent";
+        if (!c.leaf()) {
+            if (c.word <= node) return "a child before its parent";
+            if (c.word >= tree_.nodes.size()) return "a child that is not there";
+            return tree_.nodes.count(node, i) == tree_.nodes.count(c.word)
+                       ? nullptr
+                       : "a node's count is not its children's";
+        }
         if (c.block() >= leaf_count()) return "a leaf that is not there";
         return tree_.nodes.count(node, i) > 0 ? nullptr : "a leaf without primitives";
     }

@@ -30,7 +30,7 @@ struct WideChild {
 };
 
 /// Nodes of `width` children. Each node begins at a cache line and stores 2·D rows of planes, a row of
-/// WideChild and a row of the number of primitives in each child that is a leaf. Bytes of a node: width ·
+/// WideChild and a row of the number of primitives below each child. Bytes of a node: width ·
 /// (2·D·sizeof(T) + 8), rounded up to a multiple of 64; in space with float 32 a child.
 template <std::floating_point T, int D>
 class WideNodes {
@@ -75,12 +75,22 @@ public:
         return n;
     }
     WideChild child(std::size_t node, int i) const { return {words(node)[i]}; }
+    /// The number of primitives below child i.
     std::uint32_t count(std::size_t node, int i) const { return words(node)[width_ + i]; }
+    /// The number of primitives below a node.
+    std::uint32_t count(std::size_t node) const {
+        std::uint32_t sum = 0;
+        for (int i = 0; i < width_; ++i) sum += count(node, i);
+        return sum;
+    }
 
     void set_box(std::size_t node, int i, const Box<T, D>& b) {
         T* const rows = reinterpret_cast<T*>(place(node));
         for (int k = 0; k < D; ++k)
             rows[2 * k * width_ + i] = b.low[k], rows[(2 * k + 1) * width_ + i] = b.high[k];
+    }
+    void set_count(std::size_t node, int i, std::uint32_t count) {
+        reinterpret_cast<std::uint32_t*>(place(node) + boxes_bytes())[width_ + i] = count;
     }
     void set(std::size_t node, int i, const Box<T, D>& box, WideChild child, std::uint32_t count) {
         set_box(node, i, box);

@@ -4,32 +4,22 @@
 #include <span>
 #include <vector>
 
-#include <hedgerow/geometry/slab.h>
+#include <hedgerow/geometry/half_space.h>
 
 namespace hedgerow {
 
-/// The points x with normal·x <= offset.
-template <std::floating_point T>
-struct HalfSpace {
-    Vec<T, 3> normal;
-    T offset;
-};
-
-/// A convex hull: the intersection of half-spaces, which are stored elsewhere. Their normals have length 1 up
-/// to their rounding to T.
-template <std::floating_point T>
+/// A convex hull, or what any planes bound: the intersection of half-spaces, which are stored elsewhere. As a
+/// bounding volume its normals have length 1 up to their rounding to T; as a region they may have any length.
+template <std::floating_point T, int D = 3>
 struct Hull {
     using Scalar = T;
-    static constexpr int dimension = 3;
+    static constexpr int dimension = D;
 
-    std::span<const HalfSpace<T>> faces;
+    std::span<const HalfSpace<T, D>> faces;
 
     static constexpr int orthonormal = 0;
     int slab_count() const { return static_cast<int>(faces.size()); }
-    Slab<3> slab(int i) const {
-        const auto& f = faces[static_cast<std::size_t>(i)];
-        return {Vec3d(f.normal), -std::numeric_limits<double>::infinity(), static_cast<double>(f.offset)};
-    }
+    Slab<D> slab(int i) const { return faces[static_cast<std::size_t>(i)].slab(0); }
 };
 
 /// The outward unit normals of the facets of the points' convex hull, by Qhull (Barber, Dobkin and Huhdanpaa

@@ -61,6 +61,9 @@ struct Segment {
 
 template <std::floating_point T, int D>
 struct Sphere {
+    using Scalar = T;
+    static constexpr int dimension = D;
+
     Vec<T, D> center;
     T radius = T(0);
 

@@ -15,6 +15,7 @@
 #include <hedgerow/geometry/hull.h>
 #include <hedgerow/geometry/kdop.h>
 #include <hedgerow/geometry/obb.h>
+#include <hedgerow/geometry/region.h>
 
 namespace hedgerow {
 
@@ -152,11 +153,37 @@ bool may_overlap(const Box<double, D>& box, const Sphere<T, D>& s) {
     const double away = length(offset_outside(Vec<double, D>(s.center), box));
     return !(away * (1 - 0x1p-40) > static_cast<double>(s.radius) + detail::negligible);
 }
-/// Whether a box may overlap a cylinder. Tests the slab between the cylinder's ends, then its axis-aligned
-/// bounds.
+// Boxes around volumes, rounded outward.
+
+/// A point is the sum of its heights along orthonormal axes. Axes rounded to float err by less than 2^-20.
+/// Hulls, which have no such axes, may be anywhere.
+template <SlabVolume V>
+Box<double, V::dimension> box_around(const V& volume) {
+    constexpr int D = V::dimension;
+    if constexpr (V::orthonormal < D) {
+        const auto infinite = Vec<double, D>::all(std::numeric_limits<double>::infinity());
+        return {-infinite, infinite};
+    } else {
+        Box<double, D> box{Vec<double, D>(), Vec<double, D>()};
+        double size = 0;
+        for (int i = 0; i < D; ++i) {
+            const auto slab = volume.slab(i);
+            for (int k = 0; k < D; ++k) {
+                const double a = product(slab.normal[k], slab.low), b = product(slab.normal[k], slab.high);
+                box.low[k] += std::min(a, b), box.high[k] += std::max(a, b);
+            }
+            size += std::max(std::abs(slab.low), std::abs(slab.high));
+        }
+        const auto error = Vec<double, D>::all(product(0x1p-18, size) + detail::negligible);
+        return {box.low - error, box.high + error};
+    }
+}
+template <class T, int D>
+Box<double, D> box_around(const Sphere<T, D>& s) {
+    return detail::in_double(s.bounds());
+}
 template <class T>
-bool may_overlap(const Box3d& box, const Cylinder<T>& c) {
-    if (detail::beside(box, c.ends())) return false;
+Box3d box_around(const Cylinder<T>& c) {
     const Vec3d a(c.axis), p(c.point);
     const double a2 = length2(a), here = dot(a, p), r = static_cast<double>(c.radius);
     // The centers of the two ends.
@@ -164,13 +191,45 @@ bool may_overlap(const Box3d& box, const Cylinder<T>& c) {
     const Vec3d last = p + a * ((static_cast<double>(c.high) - here) / a2);
     const double error =
         product(0x1p-48, max_component(max(abs(first), abs(last))) + max_component(abs(p)) + r);
+    Box3d box;
     for (int k = 0; k < 3; ++k) {
         // Half the width of an end's disc along axis k.
         const double wide =
             r * std::sqrt(std::max(0.0, 1 - product(a[k], a[k]) / a2)) * (1 + 0x1p-20) + error + r * 0x1p-20;
-        if (box.low[k] > std::max(first[k], last[k]) + wide ||
-            box.high[k] < std::min(first[k], last[k]) - wide)
-            return false;
+        box.low[k] = std::min(first[k], last[k]) - wide, box.high[k] = std::max(first[k], last[k]) + wide;
+    }
+    return box;
+}
+
+/// Whether a box may overlap a cylinder. Tests the slab between the cylinder's ends, then its axis-aligned
+/// bounds.
+template <class T>
+bool may_overlap(const Box3d& box, const Cylinder<T>& c) {
+    return !detail::beside(box, c.ends()) && overlap(box, box_around(c));
+}
+
+namespace detail {
+/// Whether a region misses a slab, by the region's extent along the slab's normal. The tests of primitives in
+/// the slab err less than the error here (region.h).
+template <class R, int D>
+bool region_beside(const R& region, const Slab<D>& s) {
+    const Extent heights = extent(region, s.normal);
+    const double above = product(scene_margin, std::abs(s.high)),
+                 below = product(scene_margin, std::abs(s.low));
+    return heights.low - above > s.high || heights.high + below < s.low;
+}
+}  // namespace detail
+
+/// Whether a region may overlap a volume, by the box around the volume, and by the region's extents along the
+/// volume's normals.
+template <Region R, class V>
+bool may_meet(const R& region, const V& volume) {
+    if (containment(region, box_around(volume)) == Containment::outside) return false;
+    if constexpr (SlabVolume<V>) {
+        for (int i = 0; i < volume.slab_count(); ++i)
+            if (detail::region_beside(region, volume.slab(i))) return false;
+    } else if constexpr (requires { volume.ends(); }) {
+        return !detail::region_beside(region, volume.ends());
     }
     return true;
 }

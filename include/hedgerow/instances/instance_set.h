@@ -144,12 +144,13 @@ public:
         }
         return Flow::go_on;
     }
-    template <class Q>
-    Flow test_leaf(const BoxProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
+    /// Inside of an instance, a box around the region's part there finds the primitives.
+    template <Region R, class Q>
+    Flow test_leaf(const RegionProbe<R>& probe, const Leaf& leaf, Q& query) const {
         using Inside = detail::Inside<Q, BoxProbe<T, D>>;
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             const PlacedIndex<I>& placed = all_[leaf.ids[i]];
-            const Box<T, D> box = placed.inside(probe.box());
+            const Box<T, D> box = placed.inside(probe.region());
             if (box.empty()) continue;
             if (walk(placed, Inside(BoxProbe<T, D>(box), leaf.ids[i], query)) == Flow::stop)
                 return Flow::stop;

@@ -45,10 +45,21 @@ public:
     template <class Query>
     Flow test_leaf(const BoxProbe<T, D>&, const Leaf& leaf, Query& query) const {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-            if (overlap(shape(leaf.ids[i]), query.world().box()) &&
+            if (query.world().takes(*this, leaf.ids[i]) &&
                 query.offer(OverlapCandidate{leaf.ids[i]}) == Flow::stop)
                 return Flow::stop;
         return Flow::go_on;
+    }
+    template <Region R>
+    bool overlaps(std::size_t i, const R& region) const {
+        if constexpr (PointSet<P>)
+            return lies_in(shape(i), region);
+        else
+            return overlap(shape(i), region);
+    }
+    template <Region R>
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(shape(i), region);
     }
 
 private:
@@ -57,7 +68,7 @@ private:
     || requires(const P& s) { s.sphere(0); }
     || requires(const P& s) { s.point(0); };
 
-    auto shape(PrimitiveId i) const requires has_shape {
+    auto shape(std::size_t i) const requires has_shape {
         if constexpr (requires { set_.triangle(i); }) {
             return transformed(there_, set_.triangle(i));
         } else if constexpr (requires { set_.segment(i); }) {
@@ -67,26 +78,18 @@ private:
             return Sphere<T, D>{transformed(there_, ball.center),
                                 rounded_to<T>(static_cast<double>(ball.radius) * similarity())};
         } else {
-            const auto p = transformed(there_, set_.point(i));
-            return Box<T, D>{p, p};
+            return transformed(there_, set_.point(i));
         }
     }
     Foot<T, D> closest_point(PrimitiveId i, const Vec<T, D>& p) const {
         if constexpr (has_shape) {
-            return closest_to(p, shape(i));
+            return hedgerow::closest_point(p, shape(i));
         } else {
             static_cast<void>(similarity());
             const Vec<T, D> inside = transformed(back_, p);
             const Vec<T, D> closest = foot_of(inside, set_.closest_point(i, inside)).point;
             return foot_of(p, clamped(transformed(there_, closest), bounds(i)));
         }
-    }
-    template <class Shape>
-    static Foot<T, D> closest_to(const Vec<T, D>& p, const Shape& s) {
-        if constexpr (std::is_same_v<Shape, Box<T, D>>)
-            return hedgerow::closest_point(p, s.low);
-        else
-            return hedgerow::closest_point(p, s);
     }
     /// The factor of all lengths. Throws InputError if the transform is no similarity.
     double similarity() const {

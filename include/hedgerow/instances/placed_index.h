@@ -142,11 +142,14 @@ public:
         bool known_;
     };
 
-    /// A box in the object's space around everything that may overlap the box `world`. Empty if nothing does.
-    Box<T, D> inside(const Box<T, D>& world) const {
-        const Box<T, D> part = intersection(world, bounds_);
-        if (part.empty()) return {};
-        const Box<double, D> wide{Vec<double, D>(part.low), Vec<double, D>(part.high)};
+    /// A box in the object's space around everything that may overlap a region of the world. Empty if nothing
+    /// does.
+    template <Region R>
+    Box<T, D> inside(const R& region) const {
+        if (containment(region, bounds_) == Containment::outside) return {};
+        const Box<double, D> own{Vec<double, D>(bounds_.low), Vec<double, D>(bounds_.high)};
+        const Box<double, D> wide = bounds_in(region, own, scene_margin * largest(own));
+        if (wide.empty()) return {};
         const auto& back = transform_.back();
         const auto box = back.box(wide);
         const double u = static_cast<double>(unit_roundoff<T>);

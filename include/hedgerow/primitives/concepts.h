@@ -1,6 +1,6 @@
 /// What a primitive set is: primitives with boxes, which can be tested against probes. A set of your own
-/// needs `size` and `bounds`; for ray queries also `meet`, for distance queries `closest_point`, for box
-/// queries `overlaps`.
+/// needs `size` and `bounds`; for ray queries also `meet`, for distance queries `closest_point`, for queries
+/// of a region `overlaps` and `lies_within`.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 #include <hedgerow/geometry/entry.h>
 #include <hedgerow/geometry/overlap.h>
-#include <hedgerow/probes/box.h>
 #include <hedgerow/probes/point.h>
 #include <hedgerow/probes/ray.h>
+#include <hedgerow/probes/region.h>
 
 namespace hedgerow {
 
@@ -57,6 +57,17 @@ concept OverlapsBoxes = PrimitiveSet<P> &&
     { p.overlaps(i, box) } -> std::same_as<bool>;
 };
 
+/// A set that answers queries of a region: `overlaps` tells whether a primitive has a point in the region.
+template <class P, class R>
+concept OverlapsRegions = PrimitiveSet<P> && requires(const P& p, std::size_t i, const R& region) {
+    { p.overlaps(i, region) } -> std::same_as<bool>;
+};
+/// A set that tells which primitives lie in a region wholly.
+template <class P, class R>
+concept LiesWithinRegions = OverlapsRegions<P, R> && requires(const P& p, std::size_t i, const R& region) {
+    { p.lies_within(i, region) } -> std::same_as<bool>;
+};
+
 /// A set whose hits lie within the probe's slack of the primitive itself, not only of its box. Structures may
 /// leave its primitives out of cells that they do not overlap (structures/cells.h).
 template <class P>
@@ -84,7 +95,7 @@ struct PointCandidate {
     Vec<T, D> point;
     std::uint32_t instance = 0;
 };
-/// A candidate of a box query.
+/// A candidate of a query of a region.
 struct OverlapCandidate {
     PrimitiveId element;
     std::uint32_t instance = 0;
@@ -101,8 +112,8 @@ template <std::floating_point T, int D>
 struct CandidateOfProbe<PointProbe<T, D>> {
     using Type = PointCandidate<T, D>;
 };
-template <std::floating_point T, int D>
-struct CandidateOfProbe<BoxProbe<T, D>> {
+template <Region R>
+struct CandidateOfProbe<RegionProbe<R>> {
     using Type = OverlapCandidate;
 };
 template <class Probe>
@@ -197,10 +208,10 @@ Flow test_one(const P& set, const PointProbe<typename P::Scalar, P::dimension>& 
     const auto foot = foot_of(probe.point(), set.closest_point(id, probe.point()));
     return query.offer({foot.distance2, id, foot.point});
 }
-template <OverlapsBoxes P, class Query>
-Flow test_one(const P& set, const BoxProbe<typename P::Scalar, P::dimension>& probe, PrimitiveId id,
-              Query& query) {
-    return set.overlaps(id, probe.box()) ? query.offer({id}) : Flow::go_on;
+template <class P, Region R, class Query>
+requires OverlapsRegions<P, R> Flow test_one(const P& set, const RegionProbe<R>& probe, PrimitiveId id,
+                                             Query& query) {
+    return probe.takes(set, id) ? query.offer({id}) : Flow::go_on;
 }
 
 /// Tests the primitives of a leaf one by one. A set with a faster way has a member `test_leaf(probe, leaf,

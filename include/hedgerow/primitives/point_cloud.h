@@ -25,7 +25,14 @@ public:
     Foot<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
         return hedgerow::closest_point(p, points_[i]);
     }
-    bool overlaps(std::size_t i, const Box<T, D>& box) const { return box.contains(points_[i]); }
+    template <Region R>
+    bool overlaps(std::size_t i, const R& region) const {
+        return lies_in(points_[i], region);
+    }
+    template <Region R>
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(points_[i], region);
+    }
 
 private:
     Strided<Vec<T, D>> points_;

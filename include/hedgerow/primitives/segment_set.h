@@ -30,7 +30,14 @@ public:
     Foot<T, 2> closest_point(std::size_t i, const Vec<T, 2>& p) const {
         return hedgerow::closest_point(p, segments_[i]);
     }
-    bool overlaps(std::size_t i, const Box<T, 2>& box) const { return overlap(segments_[i], box); }
+    template <Region R>
+    bool overlaps(std::size_t i, const R& region) const {
+        return overlap(segments_[i], region);
+    }
+    template <Region R>
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(segments_[i], region);
+    }
     static constexpr bool hits_lie_on_primitives = true;
     std::array<Vec<T, 2>, 2> corners(std::size_t i) const { return {segments_[i].a, segments_[i].b}; }
     Box<T, 2> clipped_bounds(std::size_t i, const Box<T, 2>& box) const {

@@ -25,7 +25,15 @@ public:
     Foot<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
         return hedgerow::closest_point(p, spheres_[i]);
     }
-    bool overlaps(std::size_t i, const Box<T, D>& box) const { return overlap(spheres_[i], box); }
+    /// Spheres are solid here.
+    template <Region R>
+    bool overlaps(std::size_t i, const R& region) const {
+        return overlap(spheres_[i], region);
+    }
+    template <Region R>
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(spheres_[i], region);
+    }
     /// The ray's first crossing of the surface within its interval: the entry, or the exit if the entry lies
     /// before the interval.
     std::optional<Meeting<T>> meet(std::size_t i, const Ray<T, D>& ray) const {

@@ -57,7 +57,14 @@ public:
     Foot<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
         return hedgerow::closest_point(p, triangle(i));
     }
-    bool overlaps(std::size_t i, const Box<T, 3>& box) const { return overlap(triangle(i), box); }
+    template <Region R>
+    bool overlaps(std::size_t i, const R& region) const {
+        return overlap(triangle(i), region);
+    }
+    template <Region R>
+    bool lies_within(std::size_t i, const R& region) const {
+        return lies_in(triangle(i), region);
+    }
     /// The overlap test of one triangle, prepared for many boxes.
     TriangleOverlap<T> overlap_test(std::size_t i) const { return TriangleOverlap<T>(triangle(i)); }
 

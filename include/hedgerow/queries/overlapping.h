@@ -1,33 +1,38 @@
-/// The primitives that overlap a box, ascending, each once.
+/// The primitives that overlap a region, or lie in it, ascending, each once.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
-#include <hedgerow/walks/query.h>
+#include <hedgerow/queries/region_query.h>
 
 namespace hedgerow {
 
 /// Collects elements in the caller's vector, which is cleared and whose capacity is reused. O(k log k) for k
-/// offered, beyond the walk.
-template <class Set>
-class Overlapping {
+/// offered, beyond the walk. What is below a node inside of the region is listed without a test.
+template <class Set, Region R = Box<typename Set::Scalar, Set::dimension>>
+class Overlapping : public RegionQuery<Set, R> {
 public:
-    using Scalar = typename Set::Scalar;
-    using Probe = BoxProbe<Scalar, Set::dimension>;
-    static constexpr Order order = Order::none;
+    using Base = RegionQuery<Set, R>;
 
     template <class Index>
-    Overlapping(const Index&, const Box<Scalar, Set::dimension>& box, std::vector<IdOf<Set>>& found)
-        : probe_(box), found_(found) {
+    Overlapping(const Index& index, const R& region, std::vector<IdOf<Set>>& found,
+                Finds finds = Finds::overlapping)
+        : Base(index, region, finds), found_(found) {
         found_.clear();
     }
 
-    const Probe& probe() const { return probe_; }
-    Scalar limit() const { return std::numeric_limits<Scalar>::max(); }
     Flow offer(const OverlapCandidate& c) {
         found_.push_back(Identity<Set>::of(c));
         return Flow::go_on;
+    }
+    template <class Node>
+    Verdict accept(const Node& node) requires(!Instanced<Set>) {
+        if (!this->takes(node)) return Verdict::open;
+        node.for_each_leaf([&](const Leaf& leaf) {
+            found_.insert(found_.end(), leaf.ids + leaf.first, leaf.ids + leaf.first + leaf.count);
+        });
+        return Verdict::accept;
     }
     std::size_t answer() {
         std::sort(found_.begin(), found_.end());
@@ -36,7 +41,6 @@ public:
     }
 
 private:
-    Probe probe_;
     std::vector<IdOf<Set>>& found_;
 };
 

@@ -37,6 +37,35 @@ concept OrthantTree = requires(const S& s, OrthantNode n) {
     { S::child_id(n, 0u) } -> std::same_as<NodeId>;
 };
 
+/// A node of an OrthantTree as queries see it. Its volume is its cell.
+template <OrthantTree S, class Cell>
+class OrthantCell {
+public:
+    OrthantCell(const S& tree, OrthantNode node, NodeId id, const Cell& cell)
+        : tree_(tree), cell_(cell), node_(node), id_(id) {}
+
+    NodeId id() const { return id_; }
+    auto volume() const { return cell_.box(); }
+    std::size_t count() const { return detail::items_below(*this); }
+    template <class F>
+    void for_each_leaf(F f) const {
+        for_each_leaf(node_, f);
+    }
+
+private:
+    template <class F>
+    void for_each_leaf(OrthantNode node, F& f) const {
+        if (!node.inner()) return f(tree_.leaf(node));
+        for (unsigned left = node.occupied(); left != 0; left &= left - 1)
+            for_each_leaf(tree_.children(node)[std::countr_zero(left)], f);
+    }
+
+    const S& tree_;
+    Cell cell_;
+    OrthantNode node_;
+    NodeId id_;
+};
+
 namespace detail {
 
 /// The bits of the orthants on the high side of an axis.
@@ -95,7 +124,9 @@ private:
             // Push the orthant, unless the query prunes it or takes it whole.
             const auto i = static_cast<unsigned>(std::countr_zero(among));
             if constexpr (SubtreeQuery<Q>)
-                if (query_.accept(S::child_id(node.self, i)) != Verdict::open) return;
+                if (query_.accept(OrthantCell(tree_, node.children[i], S::child_id(node.self, i),
+                                              Cube<T, D>{middle, node.quarter})) != Verdict::open)
+                    return;
             tree_.prefetch(node.children[i]);
             std::construct_at(&stack_[top_++].entry, Entry{node.children[i], state, {middle, node.quarter}});
         } else {
@@ -136,7 +167,7 @@ void walk_orthants(const S& tree, Primitives& primitives, Q& query, Count& count
     typename Waiting::Entry e{tree.root(), query.probe().root(tree.bounds()), tree.cell()};
     if (e.node.empty() || !query.probe().within(e.state, query.limit())) return;
     if constexpr (SubtreeQuery<Q>)
-        if (query.accept(0) != Verdict::open) return;
+        if (query.accept(OrthantCell(tree, e.node, NodeId(0), e.cell)) != Verdict::open) return;
     Waiting waiting(tree, query);
     do {
         if (e.node.inner()) {

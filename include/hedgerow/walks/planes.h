@@ -24,6 +24,41 @@ concept HoldsInNodes = requires(const S& s, NodeId n) {
     { s.own(n) } -> std::same_as<Leaf>;
 };
 
+/// A node of a PlaneTree as queries see it, with the probe's state there.
+template <PlaneTree S, class State>
+class PlaneNode {
+public:
+    PlaneNode(const S& tree, NodeId id, const State& state) : tree_(tree), state_(state), id_(id) {}
+
+    NodeId id() const { return id_; }
+    const auto& volume() const requires requires(const State& s) { s.cell; }
+    { return state_.cell; }
+    std::size_t count() const {
+        if constexpr (requires { tree_.count_below(id_); })
+            return tree_.count_below(id_);
+        else
+            return detail::items_below(*this);
+    }
+    template <class F>
+    void for_each_leaf(F f) const {
+        for_each_leaf(id_, f);
+    }
+
+private:
+    template <class F>
+    void for_each_leaf(NodeId node, F& f) const {
+        if (tree_.is_empty(node)) return;
+        if (tree_.is_leaf(node)) return f(tree_.leaf(node));
+        if constexpr (HoldsInNodes<S>) f(tree_.own(node));
+        for_each_leaf(tree_.low_child(node), f);
+        for_each_leaf(tree_.high_child(node), f);
+    }
+
+    const S& tree_;
+    const State& state_;
+    NodeId id_;
+};
+
 /// Follows the near side of each cut, and pushes the far side on a stack with what is left of the probe
 /// there. At the pop the far side is skipped if it begins beyond the limit by then. Allocates nothing: the
 /// stack holds one entry a level.
@@ -38,16 +73,16 @@ void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) 
     };
     const auto within = [&](const State& s) { return probe.within(s, query.limit()); };
     // Whether a child is opened: it is not empty, and the query neither prunes it nor takes it whole.
-    const auto opened = [&](NodeId n) {
+    const auto opened = [&](NodeId n, [[maybe_unused]] const State& s) {
         if (tree.is_empty(n)) return false;
-        if constexpr (SubtreeQuery<Q>) return query.accept(n) == Verdict::open;
+        if constexpr (SubtreeQuery<Q>) return query.accept(PlaneNode(tree, n, s)) == Verdict::open;
         return true;
     };
     Entry stack[S::max_depth + 1];
     int top = 0;
     NodeId node = 0;
     State state = probe.root(tree.bounds());
-    if (!within(state) || !opened(node)) return;
+    if (!within(state) || !opened(node, state)) return;
     while (true) {
         if (tree.is_leaf(node)) {
             const Leaf leaf = tree.leaf(node);
@@ -65,8 +100,8 @@ void walk_planes(const S& tree, Primitives& primitives, Q& query, Count& count) 
             const auto cut = tree.cut(probe, state, node, query.limit());
             const NodeId near = cut.near_is_high ? tree.high_child(node) : tree.low_child(node);
             const NodeId far = cut.near_is_high ? tree.low_child(node) : tree.high_child(node);
-            const bool far_too = cut.to_far && opened(far);
-            if (cut.to_near && opened(near)) {
+            const bool far_too = cut.to_far && opened(far, cut.far);
+            if (cut.to_near && opened(near, cut.near)) {
                 if (far_too) stack[top++] = {far, cut.far};
                 node = near, state = cut.near;
                 continue;

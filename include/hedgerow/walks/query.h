@@ -43,10 +43,40 @@ using NodeId = std::uint32_t;
 /// What a query says of a whole subtree before the walk opens it.
 enum class Verdict { prune, open, accept };
 
-/// A query that can take a whole subtree at once (counts, containment, multipoles). What it knows of each
-/// node comes from `fold`.
+/// A node of a tree, as `accept` of a query sees it before the walk opens it.
+/// - `id` is the index of what `fold` computed for the node.
+/// - `volume` contains all primitives below, or in trees that hold a primitive in several leaves the parts
+///   that are below. In trees of planes it is the `cell` of the probe's state, if there is one.
+/// - `for_each_leaf` calls a function with every Leaf below, in no particular order.
+/// - `count` is the number of items in these leaves: O(1) where the tree stores it, else O(leaves below).
+template <class N>
+concept WalkedNode = requires(const N& node) {
+    { node.id() } -> std::same_as<NodeId>;
+    {node.volume()};
+    { node.count() } -> std::same_as<std::size_t>;
+    node.for_each_leaf([](const Leaf&) {});
+};
+namespace detail {
+/// A node for concepts alone, which look up `accept` with it.
+struct AnyNode {
+    NodeId id() const;
+    Box<float, 3> volume() const;
+    std::size_t count() const;
+    void for_each_leaf(auto f) const;
+};
+/// The items of all leaves of a node.
+template <class Node>
+std::size_t items_below(const Node& node) {
+    std::size_t items = 0;
+    node.for_each_leaf([&](const Leaf& leaf) { items += leaf.count; });
+    return items;
+}
+}  // namespace detail
+
+/// A query that can take a whole subtree at once (counts, containment, multipoles). `accept` is a template
+/// over the node (WalkedNode).
 template <class Q>
-concept SubtreeQuery = Query<Q> && requires(Q& q, NodeId node) {
+concept SubtreeQuery = Query<Q> && requires(Q& q, const detail::AnyNode& node) {
     { q.accept(node) } -> std::same_as<Verdict>;
 };
 

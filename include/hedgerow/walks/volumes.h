@@ -30,6 +30,40 @@ concept VolumeTree = requires(const S& s, NodeRef ref) {
     { S::child_id(ref, 0) } -> std::same_as<NodeId>;
 };
 
+/// A node of a VolumeTree as queries see it: child i of `parent`, or the root if there is no parent.
+template <VolumeTree S, class V>
+class VolumeNode {
+public:
+    VolumeNode(const S& tree, NodeRef parent, int i, const V& volume)
+        : tree_(tree), volume_(volume), parent_(parent), i_(i) {}
+
+    NodeId id() const { return parent_.empty() ? 0 : S::child_id(parent_, i_); }
+    const V& volume() const { return volume_; }
+    std::size_t count() const {
+        if constexpr (requires { tree_.count_below(parent_, i_); })
+            return tree_.count_below(parent_, i_);
+        else
+            return detail::items_below(*this);
+    }
+    template <class F>
+    void for_each_leaf(F f) const {
+        for_each_leaf(parent_.empty() ? tree_.root() : tree_.child(parent_, i_), f);
+    }
+
+private:
+    template <class F>
+    void for_each_leaf(NodeRef node, F& f) const {
+        if (node.empty()) return;
+        if (node.leaf()) return f(tree_.leaf(node));
+        for (int i = 0; i < S::width; ++i) for_each_leaf(tree_.child(node, i), f);
+    }
+
+    const S& tree_;
+    const V& volume_;
+    NodeRef parent_;
+    int i_;
+};
+
 /// Culling at the pop: skips children that were pushed before the limit shrank, and begin beyond it now. Off
 /// only to measure what culling saves.
 enum class Culling : bool { off, on };
@@ -51,7 +85,7 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
     NodeRef node = tree.root();
     if (node.empty()) return;
     if constexpr (SubtreeQuery<Q>)
-        if (query.accept(0) != Verdict::open) return;
+        if (query.accept(VolumeNode(tree, NodeRef(), 0, tree.bounds())) != Verdict::open) return;
     const auto& probe = query.probe();
     while (true) {
         if (node.leaf()) {
@@ -63,9 +97,11 @@ void walk_volumes(const S& tree, const Primitives& primitives, Q& query, Count& 
             alignas(16) T at[S::width < 4 ? 4 : S::width];
             unsigned entered = probe.enter(tree.volumes(node), query.limit(), at);
             if constexpr (SubtreeQuery<Q>)
-                for (int i = 0; i < S::width; ++i)
-                    if ((entered >> i & 1u) && query.accept(S::child_id(node, i)) != Verdict::open)
+                for (unsigned left = entered; left != 0; left &= left - 1) {
+                    const int i = std::countr_zero(left);
+                    if (query.accept(VolumeNode(tree, node, i, tree.volumes(node)[i])) != Verdict::open)
                         entered &= ~(1u << i);
+                }
             if constexpr (S::width == 2) {
                 // Open the nearer of two children, and push the other. Branches, not selections: a guessed
                 // branch lets the next node's box test begin before this one's is done, where a computed

@@ -55,6 +55,14 @@ public:
     Leaf leaf(NodeId n) const { return {items_.data(), n, n < items_.size() ? 1u : 0u}; }
     /// The node's own point.
     Leaf own(NodeId n) const { return leaf(n); }
+    /// The number of points in the subtree of n: the nodes of a level are side by side.
+    std::size_t count_below(NodeId n) const {
+        std::size_t points = 0;
+        for (std::size_t first = n, last = n; first < items_.size();
+             first = 2 * first + 1, last = 2 * last + 2)
+            points += std::min(last + 1, items_.size()) - first;
+        return points;
+    }
     AxisPlane<T> plane(NodeId n) const { return {axis_of(n), positions_[n]}; }
     static NodeId low_child(NodeId n) { return 2 * n + 1; }
     static NodeId high_child(NodeId n) { return 2 * n + 2; }

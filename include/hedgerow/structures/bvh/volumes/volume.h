@@ -129,6 +129,13 @@ struct AnyVolume {
     [[gnu::noinline]] friend bool may_overlap(const Box<double, D>& box, const AnyVolume& v) {
         return v.visit([&](const auto& volume) { return may_overlap(box, volume); });
     }
+    [[gnu::noinline]] friend Box<double, D> box_around(const AnyVolume& v) {
+        return v.visit([](const auto& volume) { return box_around(volume); });
+    }
+    template <Region R>
+    friend bool may_meet(const R& region, const AnyVolume& v) {
+        return v.visit([&](const auto& volume) { return hedgerow::may_meet(region, volume); });
+    }
 
     template <class F>
     auto visit(F f) const {

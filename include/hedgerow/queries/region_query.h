@@ -1,0 +1,59 @@
+/// The base of the queries of a region: the probe, and when a subtree is taken whole.
+#pragma once
+
+#include <hedgerow/walks/query.h>
+
+namespace hedgerow {
+
+/// Whether a volume lies in the region, so that all primitives in it do. Of volumes that are no boxes, the
+/// box around them decides.
+template <Region R, class V>
+bool takes_whole(const R& region, const V& volume) {
+    if constexpr (requires { region.contains(volume); })
+        return region.contains(volume);
+    else if constexpr (requires { containment(region, volume); })
+        return containment(region, volume) == Containment::inside;
+    else
+        return containment(region, box_around(volume)) == Containment::inside;
+}
+
+/// `Set` names the primitives. A query of an empty region has limit −1, so that no walk begins.
+template <class Set, Region R>
+class RegionQuery {
+public:
+    using Scalar = typename Set::Scalar;
+    using Probe = RegionProbe<R>;
+    static constexpr Order order = Order::none;
+    static_assert(std::same_as<Scalar, typename R::Scalar> && Set::dimension == R::dimension,
+                  "a region has the scalar and the dimension of the index");
+
+    template <class Index>
+    RegionQuery(const Index& index, const R& region, Finds finds)
+        : probe_(region, index.bounds(), finds), limit_(is_empty(region) ? Scalar(-1) : std::numeric_limits<Scalar>::max()) {
+        if constexpr (requires { index.structure(); })
+            takes_subtrees_ = !Instanced<Set> && index.structure().exclusive();
+    }
+
+    const Probe& probe() const { return probe_; }
+    Scalar limit() const { return limit_; }
+
+protected:
+    /// Whether a subtree is taken whole: its volume lies in the region, and no primitive below it is anywhere
+    /// else in the structure. Instances are always asked what is in them.
+    template <class Node>
+    bool takes(const Node& node) const {
+        if constexpr (requires { node.volume(); })
+            return takes_subtrees_ && takes_whole(probe_.region(), node.volume());
+        else
+            return false;
+    }
+    /// Ends the walk.
+    void finish() { limit_ = -1; }
+
+private:
+    Probe probe_;
+    Scalar limit_;
+    bool takes_subtrees_ = false;
+};
+
+}  // namespace hedgerow
