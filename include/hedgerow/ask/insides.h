@@ -1,0 +1,245 @@
+/// The questions of a solid: whether a point is inside of a surface, how often the surface winds around it,
+/// and how far away it is with a sign.
+#pragma once
+
+#include <hedgerow/ask/points.h>
+#include <hedgerow/geometry/closing_angle.h>
+#include <hedgerow/primitives/pseudonormals.h>
+#include <hedgerow/queries/signed_crossings.h>
+
+namespace hedgerow {
+
+enum class Side : std::uint8_t { outside, on, inside };
+
+/// How a Solid tells its sides.
+/// - `crossings`: the winding number, by the signed crossings of one ray and the angle of what would close
+///   the surface. Right for every mesh.
+/// - `parity`: whether a ray crosses the surface an odd number of times. Triangles may be turned either way,
+///   but the surface must be closed.
+/// - `pseudonormal`: the side of the surface at the closest point (Bærentzen and Aanæs 2005). Right for
+///   surfaces that are closed, oriented and do not meet themselves, and fastest for signed distances.
+enum class SideBy : std::uint8_t { crossings, parity, pseudonormal };
+
+/// A distance to a surface: negative inside, +0 on the surface.
+template <std::floating_point T, int D>
+struct SignedDistance {
+    T distance = std::numeric_limits<T>::infinity();
+    Side side = Side::outside;
+    SideBy by = SideBy::crossings;
+    Near<T, D> near;
+
+    /// False for a point that is not finite, and where there is no surface: infinitely far outside.
+    explicit operator bool() const { return static_cast<bool>(near); }
+    friend bool operator==(const SignedDistance&, const SignedDistance&) = default;
+};
+
+/// An index as the surface of a solid: of triangles in space, counterclockwise seen from outside, or of
+/// segments in the plane, which go around it counterclockwise. Made once, in O(n); its questions are
+/// thread-safe and allocate nothing, but for memory that threads keep. The index must outlive it, and must
+/// hold every primitive of its set. Vertices are joined by position.
+///
+/// *Winding number.* How often the surface winds around a point: 1 in a solid, 0 outside, −1 in one turned
+/// inside out, a sum where parts overlap, and a fraction where the surface is open. It is the sum of signed
+/// crossings of a ray along an axis, by exact signs, and for the edges left open the solid angle towards
+/// infinity of what would close them (Jacobson, Kavan and Sorkine-Hornung 2013 define it; Martens and
+/// Bessmeltsev 2025 reduce it to a ray and the boundary). A whole number for closed and oriented surfaces;
+/// otherwise it errs by some roundings of double. It does not depend on the structure of the index.
+///
+/// *Side.* `on` is exact: the point lies in a primitive, edges and corners included. Else a point is inside of
+/// a closed surface if the winding number is not 0, and inside of an open one if that is at least one half.
+/// Where triangles are turned so that edges are open although each has two triangles, the surface counts as
+/// open.
+///
+/// A point that is not finite is outside, with the winding number NaN and an infinite distance.
+template <class I>
+class Solid {
+public:
+    using Scalar = typename I::Scalar;
+    static constexpr int dimension = I::dimension;
+    using Point = Vec<Scalar, dimension>;
+    using Distance = SignedDistance<Scalar, dimension>;
+    static_assert(FacetSet<typename I::Primitives>,
+                  "a solid is made of triangles in space or of segments in the plane");
+
+    /// Throws InputError if the index lacks primitives of its set.
+    explicit Solid(const I& index, SideBy by = SideBy::crossings, Threads threads = {})
+        : index_(&index), by_(by) {
+        in_ieee_mode([&] {
+            expect_all_held();
+            IeeeExecutor executor(threads.over(index.size()));
+            for (std::size_t i = 0; i < index.size(); ++i) bounds_.expand(index.primitives().bounds(i));
+            boundary_ = boundary_of(index.primitives(), executor);
+            closing_ = closing_of(boundary_);
+            if (by == SideBy::pseudonormal)
+                pseudonormals_ = Pseudonormals<Scalar, dimension>(index.primitives(), executor);
+        });
+    }
+    explicit Solid(I&&, SideBy = SideBy::crossings, Threads = {}) = delete;
+
+    /// Whether each edge has an even number of triangles.
+    bool closed() const { return boundary_.closed(); }
+    /// Whether neighbours are turned the same way.
+    bool oriented() const { return boundary_.oriented(); }
+    /// The edges (in the plane: ends) that are left open, and counts of others that are odd.
+    const Boundary<Scalar, dimension>& boundary() const { return boundary_; }
+    SideBy by() const { return by_; }
+    const I& index() const { return *index_; }
+    /// Bytes beyond the index.
+    std::size_t bytes() const {
+        return boundary_.open.capacity() * sizeof(boundary_.open[0]) + closing_.bytes() +
+               pseudonormals_.bytes();
+    }
+
+    template <class Count = const NoVisits>
+    Side side(const Point& point, Count& count = no_visits) const {
+        if (!finite(point)) return Side::outside;
+        if (by_ == SideBy::pseudonormal) return signed_distance(point, count).side;
+        return in_ieee_mode([&] { return side_by_ray(point, count); });
+    }
+    /// On the surface, that of a point next to it.
+    template <class Count = const NoVisits>
+    double winding_number(const Point& point, Count& count = no_visits) const {
+        if (!finite(point)) return std::numeric_limits<double>::quiet_NaN();
+        return in_ieee_mode([&] {
+            const auto ray = way_out(point);
+            const auto found = crossings(point, ray, count, true);
+            return static_cast<double>(found.winding) + closing_.missing(ray);
+        });
+    }
+    /// The magnitude is the root of the squared distance of `closest_point`, rounded once, except that it is
+    /// +0 wherever the side is `on`.
+    template <class Count = const NoVisits>
+    Distance signed_distance(const Point& point, Count& count = no_visits) const {
+        if (!finite(point)) return Distance{.by = by_, .near = {}};
+        const auto near = closest_point(*index_, point, std::numeric_limits<Scalar>::max(), count);
+        return in_ieee_mode([&] { return with_side(point, near, count); });
+    }
+
+private:
+    using Ray = AxisRay<dimension>;
+    using Closing = std::conditional_t<dimension == 3, BoundingLoops, OpenEnds>;
+
+    void expect_all_held() const {
+        std::vector<bool> held(index_->size());
+        std::size_t count = 0;
+        for (const PrimitiveId id : index_->structure().items())
+            if (id != no_primitive && !held[id]) held[id] = true, ++count;
+        if (count < held.size())
+            throw InputError("a solid is made of all primitives of a set, but the index holds " +
+                             std::to_string(count) + " of " + std::to_string(held.size()) +
+                             ": build an index of those that it is to have");
+    }
+    static Closing closing_of(const Boundary<Scalar, dimension>& boundary) {
+        if constexpr (dimension == 3) {
+            std::vector<std::array<Vec3d, 2>> edges;
+            for (const auto& f : boundary.open)
+                edges.insert(edges.end(), static_cast<std::size_t>(f.times),
+                             {Vec3d(f.corners[0]), Vec3d(f.corners[1])});
+            return BoundingLoops(std::move(edges));
+        } else {
+            std::vector<OpenEnds::End> ends;
+            for (const auto& f : boundary.open) ends.push_back({Vec2d(f.corners[0]), f.times});
+            return OpenEnds(std::move(ends));
+        }
+    }
+
+    /// The ray along an axis that leaves the bounds soonest.
+    Ray way_out(const Point& p) const {
+        Ray ray{Vec<double, dimension>(p)};
+        Scalar least = std::numeric_limits<Scalar>::infinity();
+        for (int k = 0; k < dimension; ++k) {
+            if (const Scalar up = bounds_.high[k] - p[k]; up < least) least = up, ray.axis = k, ray.direction = 1;
+            if (const Scalar down = p[k] - bounds_.low[k]; down < least)
+                least = down, ray.axis = k, ray.direction = -1;
+        }
+        return ray;
+    }
+    template <class Count>
+    CrossingCount crossings(const Point& p, const Ray& ray, Count& count, bool past_surface = false) const {
+        SignedCrossings<typename I::Primitives> query(index_->primitives(), p, ray.axis, ray.direction, bounds_,
+                                                      index_->structure().exclusive(), past_surface);
+        index_->structure().walk(detail::CrossedLeaves<I>(*index_), query, count);
+        return query.answer();
+    }
+    template <class Count>
+    Side side_by_ray(const Point& p, Count& count) const {
+        const auto ray = way_out(p);
+        const auto found = crossings(p, ray, count);
+        if (found.on) return Side::on;
+        bool inside;
+        if (by_ == SideBy::parity)
+            inside = found.crossings % 2 != 0;
+        else if (closing_.empty())
+            inside = found.winding != 0;
+        else
+            inside = static_cast<double>(found.winding) + closing_.missing(ray) >= 0.5;
+        return inside ? Side::inside : Side::outside;
+    }
+    template <class Count>
+    Distance with_side(const Point& p, const Near<Scalar, dimension>& near, Count& count) const {
+        Distance d{std::sqrt(near.distance2), Side::outside, by_, near};
+        if (by_ != SideBy::pseudonormal) {
+            d.side = side_by_ray(p, count);
+        } else if (near) {
+            const int side = near.distance2 == 0 ? 0 : pseudonormals_.side(index_->primitives(), near.element, p);
+            d.side = near.distance2 == 0 ? Side::on : (side < 0 ? Side::inside : Side::outside);
+        }
+        if (d.side == Side::on) d.distance = 0;
+        if (d.side == Side::inside && d.distance > 0) d.distance = -d.distance;
+        return d;
+    }
+
+    const I* index_;
+    SideBy by_;
+    Box<Scalar, dimension> bounds_;
+    Boundary<Scalar, dimension> boundary_;
+    Closing closing_;
+    Pseudonormals<Scalar, dimension> pseudonormals_;
+
+    template <class J>
+    friend void signed_distances(const Solid<J>&, const Strided<PointOf<J>>&, std::span<typename J::Scalar>,
+                                 Threads);
+};
+
+/// Writes the side of point i to sides[i], as `Solid::side` tells it; `winding_numbers` and `signed_distances`
+/// write the other answers. Large batches are cut into pieces over all cores, unless an executor is given
+/// (Threads). The points may have any layout in memory. Throws InputError, and writes nothing, if there are
+/// fewer places for answers than points.
+template <class I>
+void sides(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<Side> sides_of,
+           Threads threads = {}) {
+    detail::expect_room("points", points.size(), sides_of.size());
+    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) sides_of[i] = solid.side(points[i]);
+    });
+}
+template <class I>
+void winding_numbers(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<double> numbers,
+                     Threads threads = {}) {
+    detail::expect_room("points", points.size(), numbers.size());
+    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) numbers[i] = solid.winding_number(points[i]);
+    });
+}
+template <class I>
+void signed_distances(const Solid<I>& solid, const Strided<PointOf<I>>& points,
+                      std::span<typename I::Scalar> distances, Threads threads = {}) {
+    detail::expect_room("points", points.size(), distances.size());
+    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        // Closest points are found for some hundred points at once, then their sides.
+        constexpr std::size_t most = 256;
+        NearOf<I> near[most];
+        for (std::size_t i = begin; i < end; i += most) {
+            const std::size_t some = std::min(most, end - i);
+            closest_points(solid.index(), points.part(i, some), std::span(near, some), serial_executor());
+            in_ieee_mode([&] {
+                for (std::size_t k = 0; k < some; ++k)
+                    distances[i + k] = finite(points[i + k])
+                                           ? solid.with_side(points[i + k], near[k], no_visits).distance
+                                           : std::numeric_limits<typename I::Scalar>::infinity();
+            });
+        }
+    });
+}
+
+}  // namespace hedgerow
