@@ -198,7 +198,7 @@ TYPED_TEST(Insides, OfClosedMeshes) {
     expect_insides("touching", joined(cube, cube_at<T>(V(4, 0, 0), 4)));
     expect_insides("coincident", joined(cube, cube));
     expect_insides("cancelling", joined(cube, turned(cube)));
-    expect_insides("boulder", scene<T>("boulder:1000"));
+    expect_insides("boulder", scene<T>("gen:boulder:1000"));
 }
 TYPED_TEST(Insides, OfTetrahedraOnALattice) {
     using T = TypeParam;
@@ -228,7 +228,7 @@ TYPED_TEST(Insides, OfOpenMeshes) {
     expect_insides("some of tetrahedra", some);
     for (std::size_t i = 0; i < some.size(); i += 3) std::swap(some.triangles[i][0], some.triangles[i][1]);
     expect_insides("some turned", some);
-    expect_insides("terrain", scene<T>("terrain:500"));
+    expect_insides("terrain", scene<T>("gen:terrain:500"));
     expect_insides("soup", soup<T>(100));
 }
 TYPED_TEST(Insides, OfPolygons) {

@@ -45,10 +45,10 @@ struct SignedDistance {
 /// Bessmeltsev 2025 reduce it to a ray and the boundary). A whole number for closed and oriented surfaces;
 /// otherwise it errs by some roundings of double. It does not depend on the structure of the index.
 ///
-/// *Side.* `on` is exact: the point lies in a primitive, edges and corners included. Else a point is inside of
-/// a closed surface if the winding number is not 0, and inside of an open one if that is at least one half.
-/// Where triangles are turned so that edges are open although each has two triangles, the surface counts as
-/// open.
+/// *Side.* `on` is exact: the point lies in a primitive, edges and corners included. Else a point is inside
+/// of a closed surface if the winding number is not 0, and inside of an open one if that is at least one
+/// half. Where triangles are turned so that edges are open although each has two triangles, the surface
+/// counts as open.
 ///
 /// A point that is not finite is outside, with the winding number NaN and an infinite distance.
 template <class I>
@@ -148,7 +148,8 @@ private:
         Ray ray{Vec<double, dimension>(p)};
         Scalar least = std::numeric_limits<Scalar>::infinity();
         for (int k = 0; k < dimension; ++k) {
-            if (const Scalar up = bounds_.high[k] - p[k]; up < least) least = up, ray.axis = k, ray.direction = 1;
+            if (const Scalar up = bounds_.high[k] - p[k]; up < least)
+                least = up, ray.axis = k, ray.direction = 1;
             if (const Scalar down = p[k] - bounds_.low[k]; down < least)
                 least = down, ray.axis = k, ray.direction = -1;
         }
@@ -156,8 +157,8 @@ private:
     }
     template <class Count>
     CrossingCount crossings(const Point& p, const Ray& ray, Count& count, bool past_surface = false) const {
-        SignedCrossings<typename I::Primitives> query(index_->primitives(), p, ray.axis, ray.direction, bounds_,
-                                                      index_->structure().exclusive(), past_surface);
+        SignedCrossings<typename I::Primitives> query(index_->primitives(), p, ray.axis, ray.direction,
+                                                      bounds_, index_->structure().exclusive(), past_surface);
         index_->structure().walk(detail::CrossedLeaves<I>(*index_), query, count);
         return query.answer();
     }
@@ -181,7 +182,8 @@ private:
         if (by_ != SideBy::pseudonormal) {
             d.side = side_by_ray(p, count);
         } else if (near) {
-            const int side = near.distance2 == 0 ? 0 : pseudonormals_.side(index_->primitives(), near.element, p);
+            const int side =
+                near.distance2 == 0 ? 0 : pseudonormals_.side(index_->primitives(), near.element, p);
             d.side = near.distance2 == 0 ? Side::on : (side < 0 ? Side::inside : Side::outside);
         }
         if (d.side == Side::on) d.distance = 0;
@@ -201,10 +203,10 @@ private:
                                  Threads);
 };
 
-/// Writes the side of point i to sides[i], as `Solid::side` tells it; `winding_numbers` and `signed_distances`
-/// write the other answers. Large batches are cut into pieces over all cores, unless an executor is given
-/// (Threads). The points may have any layout in memory. Throws InputError, and writes nothing, if there are
-/// fewer places for answers than points.
+/// Writes the side of point i to sides[i], as `Solid::side` tells it; `winding_numbers` and
+/// `signed_distances` write the other answers. Large batches are cut into pieces over all cores, unless an
+/// executor is given (Threads). The points may have any layout in memory. Throws InputError, and writes
+/// nothing, if there are fewer places for answers than points.
 template <class I>
 void sides(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<Side> sides_of,
            Threads threads = {}) {

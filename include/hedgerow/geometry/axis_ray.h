@@ -63,8 +63,8 @@ inline AxisCrossing crossing(const AxisRay<3>& ray, const std::array<Vec3d, 3>& 
         if (of_plane == 0) return {0, true};
         if (of_plane == facing * ray.direction) return {};
     }
-    const bool crosses = half_open_turn(a, b, ray, ab) == facing &&
-                         half_open_turn(b, c, ray, bc) == facing && half_open_turn(c, a, ray, ca) == facing;
+    const bool crosses = half_open_turn(a, b, ray, ab) == facing && half_open_turn(b, c, ray, bc) == facing &&
+                         half_open_turn(c, a, ray, ca) == facing;
     return {crosses ? facing * ray.direction : 0};
 }
 /// The crossing of a ray and a segment in the plane, whose front is to the right of the way from a to b: a

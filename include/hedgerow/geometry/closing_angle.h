@@ -134,6 +134,9 @@ private:
             const double across2 = product(u, u) + product(v, v);
             const double length = std::sqrt(across2 + product(along, along));
             w = along > 0 ? across2 / (length + along) : length - along;
+            // The ray passes a point that it meets as half_open_turn has it: the point is seen to be off the
+            // ray by −ε along u.
+            if (u == 0 && v == 0 && along > 0) u = -1, w = 0;
         }
     };
     void add_half(SumOfAngles& halves, const Seen& a, const Seen& b, std::size_t i,
@@ -179,7 +182,8 @@ public:
             const Vec2d p = (point - ray.origin) * scale;
             const double along = -p[ray.axis] * ray.direction;
             // An end on the line of the ray is below it, as for crossings.
-            const double across = detail::with_sign(p[ray.u()], point[ray.u()] > ray.origin[ray.u()] ? 1 : -1);
+            const double across =
+                detail::with_sign(p[ray.u()], point[ray.u()] > ray.origin[ray.u()] ? 1 : -1);
             const double y = (ray.axis == 0 ? -across : across) * ray.direction;
             if (times == 1 || times == -1)
                 angles.add(along, y * static_cast<double>(times));

@@ -16,8 +16,10 @@ namespace hedgerow {
 /// A set of triangles in space, or of segments in the plane: D corners in D dimensions.
 template <class P>
 concept FacetSet = PrimitiveSet<P> && requires(const P& set, std::size_t i) {
-    { set.corners(i) } -> std::same_as<std::array<Vec<typename P::Scalar, P::dimension>,
-                                                  static_cast<std::size_t>(P::dimension)>>;
+    {
+        set.corners(i)
+        } -> std::same_as<
+            std::array<Vec<typename P::Scalar, P::dimension>, static_cast<std::size_t>(P::dimension)>>;
 };
 
 /// An edge of triangles, from its first end to its second; in the plane the end of a segment. `times` is how
@@ -174,8 +176,7 @@ auto boundary_of(const P& set, Executor& executor) {
             add(sides, along);
         });
         for (Found& f : open)
-            if (f.facet.times < 0)
-                f.facet = {{f.facet.corners[1], f.facet.corners[0]}, -f.facet.times};
+            if (f.facet.times < 0) f.facet = {{f.facet.corners[1], f.facet.corners[0]}, -f.facet.times};
     }
     // In the order of the primitives, whatever the hash.
     std::sort(open.begin(), open.end(), [](const Found& a, const Found& b) {

@@ -33,8 +33,8 @@ inline double angle_at(const std::array<Vec3d, 3>& t, std::size_t corner) {
 }
 }  // namespace detail
 
-/// The part of a primitive that is closest to a point: corner 0, 1 or 2; for triangles the side from corner 0,
-/// 1 or 2 to the next (3, 4, 5); or the primitive's inside (−1). `foot` is the closest point.
+/// The part of a primitive that is closest to a point: corner 0, 1 or 2; for triangles the side from corner
+/// 0, 1 or 2 to the next (3, 4, 5); or the primitive's inside (−1). `foot` is the closest point.
 template <int D>
 struct ClosestFeature {
     int number;
@@ -52,8 +52,7 @@ inline ClosestFeature<3> closest_feature(const Vec3d& p, const std::array<Vec3d,
     const auto beside = [&](std::size_t i) {
         return dot(cross(normal, (t[(i + 1) % 3] - t[i]) * scale), (p - t[i]) * scale);
     };
-    if (beside(0) > 0 && beside(1) > 0 && beside(2) > 0)
-        return {-1, p - normal * dot(normal, p - t[0])};
+    if (beside(0) > 0 && beside(1) > 0 && beside(2) > 0) return {-1, p - normal * dot(normal, p - t[0])};
     ClosestFeature<3> closest{-1, t[0]};
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -108,8 +107,9 @@ public:
         const auto corners = detail::in_double(set.corners(element));
         const Vec<double, D> p(point);
         const auto [number, foot] = closest_feature(p, corners);
-        const auto normal = number < 0 ? detail::facet_normal(corners)
-                                       : Vec<double, D>(of_element_[element][static_cast<std::size_t>(number)]);
+        const auto normal = number < 0
+                                ? detail::facet_normal(corners)
+                                : Vec<double, D>(of_element_[element][static_cast<std::size_t>(number)]);
         const Vec<double, D> away = p - foot;
         const double height = dot(away * scale_to_one(max_component(abs(away))), normal);
         return height > 0 ? 1 : (height < 0 ? -1 : 0);

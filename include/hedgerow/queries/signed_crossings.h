@@ -115,7 +115,9 @@ public:
     template <class Probe, class Query>
     Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) const {
         const auto& box = probe.box();
-        if constexpr (requires { index_.packed().for_each_overlapping(leaf, box, [](const auto&, auto) {}); }) {
+        if constexpr (requires {
+                          index_.packed().for_each_overlapping(leaf, box, [](const auto&, auto) {});
+                      }) {
             Flow flow = Flow::go_on;
             index_.packed().for_each_overlapping(leaf, box, [&](const auto& t, PrimitiveId id) {
                 if (flow == Flow::go_on) flow = query.offer({t.a, t.b, t.c}, id);
