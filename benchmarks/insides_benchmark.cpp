@@ -49,7 +49,8 @@ void measure_queries(const char* kind, const Solid<MeshIndex<float>>& solid,
     Contest contest;
     if (peer != nullptr) contest.add(peer->name(), [&] { return peer->sides(points, theirs); });
     contest.add("side", each([&](const Vec3f& p) { return solid.side(p) == Side::inside; }));
-    contest.add("sides", [&] { return sides(solid, all, std::span(ours), serial_executor()), points.size(); });
+    contest.add("sides",
+                [&] { return sides(solid, all, std::span(ours), serial_executor()), points.size(); });
     contest.add("side, holes", each([&](const Vec3f& p) { return open.side(p) == Side::inside; }));
     contest.add("closest_point",
                 each([&](const Vec3f& p) { return closest_point(solid.index(), p).distance2 > 1; }));
@@ -89,8 +90,8 @@ void measure_scene(const std::string& name) {
     const double build_time = median_seconds(
         3, [&] { static_cast<void>(build(mesh, serial_executor())); }, Clock::thread);
     const double solid_time = median_seconds(
-        3, [&] { static_cast<void>(Solid(index, SideBy::crossings, serial_executor())); }, Clock::thread);
-    const Solid solid(index), by_normals(index, SideBy::pseudonormal), open(of_holed);
+        3, [&] { static_cast<void>(Solid(index, {}, serial_executor())); }, Clock::thread);
+    const Solid solid(index), by_normals(index, {.by = SideBy::pseudonormal}), open(of_holed);
     std::printf("\n%s: %zu triangles, %zu edges open; the index takes %.1f ms, the solid %.1f ms\n",
                 name.c_str(), mesh.size(), solid.boundary().open.size(), build_time * 1e3, solid_time * 1e3);
     const auto peer = cgal_insides(mesh);

@@ -65,6 +65,31 @@ TriangleMesh<T> cube_at(const Vec<T, 3>& low, T width) {
                       {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     return mesh;
 }
+/// A ball of `rings` rings of twice as many vertices.
+template <class T>
+TriangleMesh<T> ball(std::uint32_t rings) {
+    const std::uint32_t around = 2 * rings, top = rings * around, bottom = top + 1;
+    TriangleMesh<T> mesh;
+    for (std::uint32_t i = 0; i < rings; ++i)
+        for (std::uint32_t k = 0; k < around; ++k) {
+            const double down = std::numbers::pi * (i + 1) / (rings + 1), turn = std::numbers::pi * k / rings;
+            const Vec3d p(std::sin(down) * std::cos(turn), std::sin(down) * std::sin(turn), std::cos(down));
+            mesh.vertices.emplace_back(p);
+        }
+    mesh.vertices.push_back({0, 0, 1});
+    mesh.vertices.push_back({0, 0, -1});
+    for (std::uint32_t k = 0; k < around; ++k) {
+        const std::uint32_t next = (k + 1) % around;
+        mesh.triangles.push_back({top, k, next});
+        for (std::uint32_t i = 0; i + 1 < rings; ++i) {
+            const std::uint32_t above = i * around, below = above + around;
+            mesh.triangles.push_back({above + k, below + k, below + next});
+            mesh.triangles.push_back({above + k, below + next, above + next});
+        }
+        mesh.triangles.push_back({bottom, top - around + next, top - around + k});
+    }
+    return mesh;
+}
 template <class T>
 TriangleMesh<T> joined(TriangleMesh<T> a, const TriangleMesh<T>& b) {
     const auto first = static_cast<std::uint32_t>(a.vertices.size());
@@ -244,6 +269,172 @@ TYPED_TEST(Insides, OfPolygons) {
         if (i % 5 != 0) kept.push_back(open.segments[i]);
     open.segments = kept;
     expect_insides("open", open);
+}
+
+/// Closed, oriented and without self-intersections, pseudonormals give the sides of crossings; so does
+/// parity, which asks for no orientation.
+template <class P>
+void expect_equal_methods(const P& set, const P& turned_some) {
+    const auto index = build(set), other = build(turned_some);
+    const Solid by_crossings(index);
+    const Solid by_normals(index, {.by = SideBy::pseudonormal});
+    const Solid by_parity(other, {.by = SideBy::parity});
+    EXPECT_EQ(by_crossings.by(), SideBy::crossings);
+    for (const auto& p : queries_around(set, 2000, 2)) {
+        const auto want = by_crossings.signed_distance(p);
+        const auto by_normal = by_normals.signed_distance(p);
+        EXPECT_EQ(by_normal.by, SideBy::pseudonormal);
+        // Exactly on the surface, the distance may be rounded to more than 0.
+        if (want.side == Side::on) continue;
+        ASSERT_EQ(by_normal.distance, want.distance);
+        ASSERT_EQ(by_normal.side, want.side);
+        ASSERT_EQ(by_parity.side(p), want.side);
+    }
+}
+TYPED_TEST(Insides, AreTheSameByParityAndPseudonormals) {
+    using T = TypeParam;
+    const auto sphere = ball<T>(20), cube = cube_at<T>(Vec<T, 3>(1, 2, 3), 2);
+    for (const auto& mesh : {sphere, cube}) {
+        auto some = mesh;
+        for (std::size_t i = 0; i < some.size(); i += 3)
+            std::swap(some.triangles[i][0], some.triangles[i][1]);
+        expect_equal_methods(mesh, some);
+    }
+    SegmentSet<T> star;  // sharp, hollow corners
+    for (int i = 0; i < 10; ++i) {
+        const auto at = [](int k) {
+            const double angle = k * std::numbers::pi / 5, radius = k % 2 == 0 ? 5 : 1;
+            return Vec<T, 2>(Vec2d(radius * std::cos(angle), radius * std::sin(angle)));
+        };
+        star.segments.push_back({at(i), at((i + 1) % 10)});
+    }
+    auto some = star;
+    for (std::size_t i = 0; i < some.size(); i += 3) std::swap(some.segments[i].a, some.segments[i].b);
+    expect_equal_methods(star, some);
+}
+
+/// Compares expansions with the sums, by every structure.
+template <class T>
+void expect_promises(const char* scene, const TriangleMesh<T>& mesh, std::size_t count = 200) {
+    SCOPED_TRACE(scene);
+    const auto index = build(mesh);
+    const Solid by_crossings(index);
+    for (const double error : {1e-1, 1e-2, 1e-3, 1e-4, 1e-7}) {
+        const Solid solid(index, {.by = SideBy::expansion, .error = error});
+        for (const auto& p : queries_around(mesh, count, 3)) {
+            if (by_crossings.side(p) == Side::on) continue;
+            const double sum = static_cast<double>(sum_of_turns(mesh, p)), found = solid.winding_number(p);
+            ASSERT_NEAR(found, sum, error);
+            ASSERT_EQ(solid.side(p), found >= 0.5 ? Side::inside : Side::outside);
+        }
+    }
+    const auto grid = build<Grid>(mesh);
+    const Solid of_wide(index, {.by = SideBy::expansion}), of_grid(grid, {.by = SideBy::expansion});
+    for (const auto& p : queries_around(mesh, count, 4))
+        ASSERT_EQ(of_wide.winding_number(p), of_grid.winding_number(p));
+}
+TYPED_TEST(Insides, ExpansionsKeepTheirPromises) {
+    using T = TypeParam;
+    constexpr int most = std::is_same_v<T, float> ? 56 : 476;
+    expect_promises("soup", soup<T>(2000));
+    expect_promises("boulder", scene<T>("gen:boulder:2000"));
+    expect_promises("terrain", scene<T>("gen:terrain:2000"));
+    expect_promises("cube", cube_at<T>(Vec<T, 3>(0, 0, 0), 1));
+    expect_promises("coincident",
+                    joined(cube_at<T>(Vec<T, 3>(0, 0, 0), 1), cube_at<T>(Vec<T, 3>(0, 0, 0), 1)));
+    expect_promises("huge", tetrahedra<T>(40, 4, 6, most));
+    expect_promises("tiny", tetrahedra<T>(40, 4, 7, -most));
+}
+
+TYPED_TEST(Insides, OfNothing) {
+    using T = TypeParam;
+    const auto expect_nothing = [](const auto& index, const auto& options) {
+        const Solid solid(index, options);
+        using Point = typename std::remove_cvref_t<decltype(solid)>::Point;
+        EXPECT_TRUE(solid.closed());
+        EXPECT_EQ(solid.side(Point()), Side::outside);
+        EXPECT_EQ(solid.winding_number(Point()), 0);
+        EXPECT_FALSE(solid.signed_distance(Point()));
+        EXPECT_EQ(solid.signed_distance(Point()).distance, std::numeric_limits<T>::infinity());
+    };
+    const TriangleMesh<T> none;
+    const SegmentSet<T> no_segments;
+    for (const auto by : {SideBy::crossings, SideBy::parity, SideBy::pseudonormal, SideBy::expansion})
+        expect_nothing(build(none), SolidOptions{.by = by});
+    expect_nothing(build(no_segments), SolidOptions{});
+    expect_nothing(build<Bvh>(no_segments), SolidOptions{.by = SideBy::pseudonormal});
+}
+TYPED_TEST(Insides, OfPointsThatAreNotFinite) {
+    using T = TypeParam;
+    const T infinity = std::numeric_limits<T>::infinity();
+    const auto cube = cube_at<T>(Vec<T, 3>(0, 0, 0), 4);
+    auto open = cube;
+    open.triangles.pop_back();
+    for (const auto& mesh : {cube, open})
+        for (const auto by : {SideBy::crossings, SideBy::parity, SideBy::pseudonormal, SideBy::expansion}) {
+            const auto index = build(mesh);
+            const Solid solid(index, {.by = by});
+            for (const T bad : {std::numeric_limits<T>::quiet_NaN(), infinity, -infinity})
+                for (int k = 0; k < 3; ++k) {
+                    Vec<T, 3> p(1, 1, 1);
+                    p[k] = bad;
+                    EXPECT_EQ(solid.side(p), Side::outside);
+                    EXPECT_TRUE(std::isnan(solid.winding_number(p)));
+                    EXPECT_FALSE(solid.signed_distance(p));
+                    EXPECT_EQ(solid.signed_distance(p).distance, infinity);
+                    T distance = 0;
+                    signed_distances(solid, std::span<const Vec<T, 3>>(&p, 1), std::span(&distance, 1));
+                    EXPECT_EQ(distance, infinity);
+                }
+            // The largest numbers are points like others.
+            const T most = std::numeric_limits<T>::max();
+            for (const auto& p :
+                 {Vec<T, 3>(most, most, most), Vec<T, 3>(-most, 0, most), Vec<T, 3>(1, 1, -most)}) {
+                EXPECT_EQ(solid.side(p), Side::outside);
+                EXPECT_NEAR(solid.winding_number(p), 0, 1e-3);
+                EXPECT_FALSE(std::isnan(solid.signed_distance(p).distance));
+            }
+        }
+}
+TYPED_TEST(Insides, BadRequestsAreRefused) {
+    using T = TypeParam;
+    const auto cube = cube_at<T>(Vec<T, 3>(0, 0, 0), 4);
+    auto index = build<Bvh>(cube);
+    for (const double error : {0.0, -1.0, 1e-12, 2.0, std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THROW(Solid(index, {.by = SideBy::expansion, .error = error}), UsageError);
+    const auto square = polygons<T>(1, 5, 1);
+    const auto plane = build(square);
+    EXPECT_THROW(Solid(plane, {.by = SideBy::expansion}), UsageError);
+    const Solid solid(index);
+    const std::vector<Vec<T, 3>> points(3);
+    std::vector<Side> some(2);
+    std::vector<double> numbers(2);
+    std::vector<T> distances(2);
+    EXPECT_THROW(sides(solid, points, std::span(some)), InputError);
+    EXPECT_THROW(winding_numbers(solid, points, std::span(numbers)), InputError);
+    EXPECT_THROW(signed_distances(solid, points, std::span(distances)), InputError);
+    ASSERT_TRUE(index.erase(cube, 3));
+    EXPECT_THROW(Solid{index}, InputError);
+}
+TYPED_TEST(Insides, AreTheSameForAnyNumberOfThreads) {
+    using T = TypeParam;
+    auto mesh = scene<T>("gen:boulder:20000");
+    mesh.triangles.resize(19000);
+    const auto index = build(mesh);
+    const ThreadLimit limit(2);
+    for (const auto by : {SideBy::crossings, SideBy::pseudonormal, SideBy::expansion}) {
+        const SolidOptions options{.by = by, .error = 1e-2};
+        const Solid one(index, options, serial_executor()), many(index, options, default_executor());
+        const auto points = queries_around(mesh, 3000, 6);
+        std::vector<double> numbers(points.size()), more_numbers(points.size());
+        std::vector<T> distances(points.size()), more_distances(points.size());
+        winding_numbers(one, points, std::span(numbers), serial_executor());
+        winding_numbers(many, points, std::span(more_numbers), default_executor());
+        EXPECT_EQ(numbers, more_numbers);
+        signed_distances(one, points, std::span(distances), serial_executor());
+        signed_distances(many, points, std::span(more_distances), default_executor());
+        EXPECT_EQ(distances, more_distances);
+    }
 }
 
 }  // namespace

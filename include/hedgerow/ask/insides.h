@@ -2,10 +2,13 @@
 /// and how far away it is with a sign.
 #pragma once
 
+#include <optional>
+
 #include <hedgerow/ask/points.h>
 #include <hedgerow/geometry/closing_angle.h>
 #include <hedgerow/primitives/pseudonormals.h>
 #include <hedgerow/queries/signed_crossings.h>
+#include <hedgerow/queries/winding_expansion.h>
 
 namespace hedgerow {
 
@@ -18,7 +21,15 @@ enum class Side : std::uint8_t { outside, on, inside };
 ///   but the surface must be closed.
 /// - `pseudonormal`: the side of the surface at the closest point (Bærentzen and Aanæs 2005). Right for
 ///   surfaces that are closed, oriented and do not meet themselves, and fastest for signed distances.
-enum class SideBy : std::uint8_t { crossings, parity, pseudonormal };
+/// - `expansion`: the winding number within a promised error, by multipole expansions (Barill et al. 2018).
+///   For soups of triangles in space, most of whose edges are open. Points on the surface are not told.
+enum class SideBy : std::uint8_t { crossings, parity, pseudonormal, expansion };
+
+struct SolidOptions {
+    SideBy by = SideBy::crossings;
+    /// How far winding numbers by expansion may be off, from 1e-9 to 1.
+    double error = 1e-3;
+};
 
 /// A distance to a surface: negative inside, +0 on the surface.
 template <std::floating_point T, int D>
@@ -32,6 +43,48 @@ struct SignedDistance {
     explicit operator bool() const { return static_cast<bool>(near); }
     friend bool operator==(const SignedDistance&, const SignedDistance&) = default;
 };
+
+namespace detail {
+/// The expansion of an index over the tree of a WideBvh: that of the index, or of one that is built.
+template <class I>
+class ExpandedIndex {
+public:
+    using Scalar = typename I::Scalar;
+    using Tree = WideBvh<Scalar, 3>;
+
+    ExpandedIndex(const I& index, Executor& executor)
+        : index_(&index), own_(own_tree(index, executor)), expansion_(tree(), index.primitives()) {}
+
+    template <class Count>
+    double winding_number(const Vec3d& point, double error, Count& count) const {
+        return expansion_.winding_number(tree(), index_->primitives(), point, error, count);
+    }
+    std::size_t bytes() const { return expansion_.bytes() + own_.bytes(); }
+
+private:
+    static constexpr bool has_tree = std::same_as<typename I::Structure, Tree>;
+
+    static Tree own_tree(const I& index, Executor& executor) {
+        return has_tree ? Tree() : Tree::build(index.primitives(), {}, executor);
+    }
+    const Tree& tree() const {
+        if constexpr (has_tree)
+            return index_->structure();
+        else
+            return own_;
+    }
+
+    const I* index_;
+    Tree own_;
+    WindingExpansion<Tree> expansion_;
+};
+struct NoExpansion {
+    static std::size_t bytes() { return 0; }
+};
+template <class I>
+using ExpansionOf = typename std::conditional_t<I::dimension == 3, std::type_identity<ExpandedIndex<I>>,
+                                                std::type_identity<NoExpansion>>::type;
+}  // namespace detail
 
 /// An index as the surface of a solid: of triangles in space, counterclockwise seen from outside, or of
 /// segments in the plane, which go around it counterclockwise. Made once, in O(n); its questions are
@@ -61,20 +114,24 @@ public:
     static_assert(FacetSet<typename I::Primitives>,
                   "a solid is made of triangles in space or of segments in the plane");
 
-    /// Throws InputError if the index lacks primitives of its set.
-    explicit Solid(const I& index, SideBy by = SideBy::crossings, Threads threads = {})
-        : index_(&index), by_(by) {
+    /// Throws InputError if the index lacks primitives of its set, and UsageError for an error that cannot be
+    /// promised and for expansions in the plane.
+    explicit Solid(const I& index, const SolidOptions& options = {}, Threads threads = {})
+        : index_(&index), options_(options) {
+        expect_possible(options);
         in_ieee_mode([&] {
             expect_all_held();
             IeeeExecutor executor(threads.over(index.size()));
             for (std::size_t i = 0; i < index.size(); ++i) bounds_.expand(index.primitives().bounds(i));
             boundary_ = boundary_of(index.primitives(), executor);
             closing_ = closing_of(boundary_);
-            if (by == SideBy::pseudonormal)
+            if (by() == SideBy::pseudonormal)
                 pseudonormals_ = Pseudonormals<Scalar, dimension>(index.primitives(), executor);
+            if constexpr (dimension == 3)
+                if (by() == SideBy::expansion) expansion_.emplace(index, executor);
         });
     }
-    explicit Solid(I&&, SideBy = SideBy::crossings, Threads = {}) = delete;
+    explicit Solid(I&&, const SolidOptions& = {}, Threads = {}) = delete;
 
     /// Whether each edge has an even number of triangles.
     bool closed() const { return boundary_.closed(); }
@@ -82,25 +139,29 @@ public:
     bool oriented() const { return boundary_.oriented(); }
     /// The edges (in the plane: ends) that are left open, and counts of others that are odd.
     const Boundary<Scalar, dimension>& boundary() const { return boundary_; }
-    SideBy by() const { return by_; }
+    SideBy by() const { return options_.by; }
+    const SolidOptions& options() const { return options_; }
     const I& index() const { return *index_; }
     /// Bytes beyond the index.
     std::size_t bytes() const {
         return boundary_.open.capacity() * sizeof(boundary_.open[0]) + closing_.bytes() +
-               pseudonormals_.bytes();
+               pseudonormals_.bytes() + (expansion_ ? expansion_->bytes() : 0);
     }
 
     template <class Count = const NoVisits>
     Side side(const Point& point, Count& count = no_visits) const {
         if (!finite(point)) return Side::outside;
-        if (by_ == SideBy::pseudonormal) return signed_distance(point, count).side;
-        return in_ieee_mode([&] { return side_by_ray(point, count); });
+        if (by() == SideBy::pseudonormal) return signed_distance(point, count).side;
+        return in_ieee_mode([&] { return side_by_number(point, count); });
     }
     /// On the surface, that of a point next to it.
     template <class Count = const NoVisits>
     double winding_number(const Point& point, Count& count = no_visits) const {
         if (!finite(point)) return std::numeric_limits<double>::quiet_NaN();
         return in_ieee_mode([&] {
+            if constexpr (dimension == 3)
+                if (by() == SideBy::expansion)
+                    return expansion_->winding_number(Vec3d(point), options_.error, count);
             const auto ray = way_out(point);
             const auto found = crossings(point, ray, count, true);
             return static_cast<double>(found.winding) + closing_.missing(ray);
@@ -110,7 +171,7 @@ public:
     /// +0 wherever the side is `on`.
     template <class Count = const NoVisits>
     Distance signed_distance(const Point& point, Count& count = no_visits) const {
-        if (!finite(point)) return Distance{.by = by_, .near = {}};
+        if (!finite(point)) return Distance{.by = by(), .near = {}};
         const auto near = closest_point(*index_, point, std::numeric_limits<Scalar>::max(), count);
         return in_ieee_mode([&] { return with_side(point, near, count); });
     }
@@ -118,6 +179,7 @@ public:
 private:
     using Ray = AxisRay<dimension>;
     using Closing = std::conditional_t<dimension == 3, BoundingLoops, OpenEnds>;
+    using Expanded = detail::ExpansionOf<I>;
 
     void expect_all_held() const {
         std::vector<bool> held(index_->size());
@@ -163,12 +225,13 @@ private:
         return query.answer();
     }
     template <class Count>
-    Side side_by_ray(const Point& p, Count& count) const {
+    Side side_by_number(const Point& p, Count& count) const {
+        if (by() == SideBy::expansion) return winding_number(p, count) >= 0.5 ? Side::inside : Side::outside;
         const auto ray = way_out(p);
         const auto found = crossings(p, ray, count);
         if (found.on) return Side::on;
         bool inside;
-        if (by_ == SideBy::parity)
+        if (by() == SideBy::parity)
             inside = found.crossings % 2 != 0;
         else if (closing_.empty())
             inside = found.winding != 0;
@@ -178,9 +241,9 @@ private:
     }
     template <class Count>
     Distance with_side(const Point& p, const Near<Scalar, dimension>& near, Count& count) const {
-        Distance d{std::sqrt(near.distance2), Side::outside, by_, near};
-        if (by_ != SideBy::pseudonormal) {
-            d.side = side_by_ray(p, count);
+        Distance d{std::sqrt(near.distance2), Side::outside, by(), near};
+        if (by() != SideBy::pseudonormal) {
+            d.side = side_by_number(p, count);
         } else if (near) {
             const int side =
                 near.distance2 == 0 ? 0 : pseudonormals_.side(index_->primitives(), near.element, p);
@@ -191,12 +254,21 @@ private:
         return d;
     }
 
+    static void expect_possible(const SolidOptions& options) {
+        if (!(options.error >= 1e-9 && options.error <= 1))
+            throw UsageError("winding numbers can be promised to be within an error of 1e-9 to 1, not " +
+                             std::to_string(options.error));
+        if (dimension == 2 && options.by == SideBy::expansion)
+            throw UsageError("expansions are of triangles in space: choose crossings for segments");
+    }
+
     const I* index_;
-    SideBy by_;
+    SolidOptions options_;
     Box<Scalar, dimension> bounds_;
     Boundary<Scalar, dimension> boundary_;
     Closing closing_;
     Pseudonormals<Scalar, dimension> pseudonormals_;
+    std::optional<Expanded> expansion_;
 
     template <class J>
     friend void signed_distances(const Solid<J>&, const Strided<PointOf<J>>&, std::span<typename J::Scalar>,
