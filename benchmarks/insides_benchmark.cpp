@@ -2,9 +2,13 @@
 /// and far (in the doubled box). Beside CGAL's Side_of_triangle_mesh in the same run, if CGAL was found and
 /// the mesh is closed; and after some triangles were taken away, which leaves edges open.
 ///
+/// Of soups, whose edges are nearly all open: winding numbers by expansions beside the sum of all solid
+/// angles, and how far they are off.
+///
 ///   insides_benchmark [SCENE ...]    a mesh file or gen:NAME[:SIZE]; default: gen:boulder:70000
-///                                    gen:boulder:800000
+///                                    gen:boulder:800000 gen:soup:100000
 #include <cstdio>
+#include <numbers>
 
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/measure/contest.h>
@@ -100,13 +104,67 @@ void measure_scene(const std::string& name) {
     measure_queries("far", solid, by_normals, open, peer.get(), far_points(index.bounds(), query_count));
 }
 
+/// The sum of the solid angles of all triangles, over 4π (Van Oosterom and Strackee 1983).
+double sum_of_angles(const TriangleMesh<float>& mesh, const Vec3f& point) {
+    const TriangleMeshView<float> view = mesh.view();
+    const Vec3d q(point);
+    double sum = 0;
+    for (std::size_t i = 0; i < view.size(); ++i) {
+        const auto t = view.triangle(i);
+        const Vec3d a = Vec3d(t.a) - q, b = Vec3d(t.b) - q, c = Vec3d(t.c) - q;
+        const double la = length(a), lb = length(b), lc = length(c);
+        sum +=
+            std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    }
+    return sum / (2 * std::numbers::pi);
+}
+void measure_expansions(const char* kind, const TriangleMesh<float>& mesh, const MeshIndex<float>& index,
+                        const std::vector<Vec3f>& points) {
+    constexpr std::size_t few = 200;
+    std::vector<double> sums(few), found(points.size());
+    const double sum_time = median_seconds(
+        rounds,
+        [&] {
+            for (std::size_t i = 0; i < few; ++i) sums[i] = sum_of_angles(mesh, points[i]);
+        },
+        Clock::thread);
+    const double sum_rate = few / sum_time;
+    std::printf("%s: %.0f sums of all solid angles a second\n", kind, sum_rate);
+    for (const double error : {1e-2, 1e-3, 1e-4}) {
+        const Solid solid(index, {.by = SideBy::expansion, .error = error}, serial_executor());
+        const double time = median_seconds(
+            rounds,
+            [&] {
+                for (std::size_t i = 0; i < points.size(); ++i) found[i] = solid.winding_number(points[i]);
+            },
+            Clock::thread);
+        double worst = 0;
+        for (std::size_t i = 0; i < few; ++i) worst = std::max(worst, std::abs(found[i] - sums[i]));
+        const double rate = static_cast<double>(points.size()) / time;
+        std::printf(
+            "    within %.0e %8.0f a second, %6.1f times the sum's rate; the worst of %zu is off by %.1e\n",
+            error, rate, rate / sum_rate, few, worst);
+    }
+}
+void measure_soup(const std::string& name) {
+    const TriangleMesh<float> mesh = scene(name);
+    const MeshIndex<float> index = build(mesh, serial_executor());
+    const double solid_time = median_seconds(
+        3, [&] { static_cast<void>(Solid(index, {.by = SideBy::expansion}, serial_executor())); },
+        Clock::thread);
+    std::printf("\n%s: %zu triangles; the solid takes %.1f ms\n", name.c_str(), mesh.size(),
+                solid_time * 1e3);
+    measure_expansions("near", mesh, index, near_points(mesh, index.bounds(), 2000));
+    measure_expansions("far", mesh, index, far_points(index.bounds(), 2000));
+}
+
 }  // namespace
 
 int main(int count, char** arguments) try {
     std::printf("%s, %s, one thread, medians of %d\n", processor().c_str(), compiler().c_str(), rounds);
     std::vector<std::string> names(arguments + 1, arguments + count);
-    if (names.empty()) names = {"gen:boulder:70000", "gen:boulder:800000"};
-    for (const auto& name : names) measure_scene(name);
+    if (names.empty()) names = {"gen:boulder:70000", "gen:boulder:800000", "gen:soup:100000"};
+    for (const auto& name : names) name.starts_with("gen:soup") ? measure_soup(name) : measure_scene(name);
 } catch (const InputError& error) {
     std::fprintf(stderr, "insides_benchmark: %s\n", error.what());
     return 3;

@@ -84,6 +84,64 @@ struct NoExpansion {
 template <class I>
 using ExpansionOf = typename std::conditional_t<I::dimension == 3, std::type_identity<ExpandedIndex<I>>,
                                                 std::type_identity<NoExpansion>>::type;
+
+/// Fans of triangles that close a surface with few open edges, in an index of their own. Mesh and caps
+/// together have whole winding numbers. A point that sees the caps under less than half of all directions is
+/// inside of the open mesh exactly if it is inside of the closed one, so its side needs no angles.
+template <std::floating_point T>
+class Caps {
+public:
+    Caps() = default;
+    Caps(const BoundingLoops& loops, Executor& executor) {
+        TriangleMesh<T> mesh;
+        loops.for_each([&](std::span<const Vec3d> loop) {
+            Cap cap;
+            const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+            for (const Vec3d& p : loop) {
+                cap.box.expand(p);
+                mesh.vertices.emplace_back(p);
+            }
+            for (std::uint32_t i = 1; i + 2 < loop.size(); ++i) {
+                mesh.triangles.push_back({first, first + i + 1, first + i});
+                const Vec3d a = loop[i] - loop[0], b = loop[i + 1] - loop[0];
+                cap.area += length(cross(a, b)) / 2;
+            }
+            caps_.push_back(cap);
+        });
+        index_ = build<WideBvh>(std::move(mesh), {}, executor);
+    }
+
+    const auto& index() const { return index_; }
+    /// Whether all caps are surely seen under less than half of all directions: each under at most its area
+    /// by the square of its distance.
+    bool look_small(const Vec3d& point) const {
+        double seen = 0;
+        for (const Cap& cap : caps_)
+            if (seen += cap.area / distance2(point, cap.box); !(seen < most)) return false;
+        return !caps_.empty();
+    }
+    std::size_t bytes() const {
+        return caps_.capacity() * sizeof(Cap) + index_.bytes() +
+               index_.size() * (sizeof(TriangleIndices) + sizeof(Vec<T, 3>));
+    }
+
+private:
+    struct Cap {
+        Box3d box;
+        double area = 0;
+    };
+    static constexpr double most = 2 * std::numbers::pi * (1 - 1e-6);  // of the solid angle
+
+    std::vector<Cap> caps_;
+    IndexOf<WideBvh, TriangleMesh<T>> index_;
+};
+/// In the plane, ends are as quick to look at as caps.
+struct NoCaps {
+    static std::size_t bytes() { return 0; }
+};
+template <class I>
+using CapsOf = typename std::conditional_t<I::dimension == 3, std::type_identity<Caps<typename I::Scalar>>,
+                                           std::type_identity<NoCaps>>::type;
 }  // namespace detail
 
 /// An index as the surface of a solid: of triangles in space, counterclockwise seen from outside, or of
@@ -125,6 +183,9 @@ public:
             for (std::size_t i = 0; i < index.size(); ++i) bounds_.expand(index.primitives().bounds(i));
             boundary_ = boundary_of(index.primitives(), executor);
             closing_ = closing_of(boundary_);
+            if constexpr (dimension == 3)
+                if (!closing_.empty() && closing_.edges() <= index.size() / few_open)
+                    caps_ = detail::Caps<Scalar>(closing_, executor);
             if (by() == SideBy::pseudonormal)
                 pseudonormals_ = Pseudonormals<Scalar, dimension>(index.primitives(), executor);
             if constexpr (dimension == 3)
@@ -144,7 +205,7 @@ public:
     const I& index() const { return *index_; }
     /// Bytes beyond the index.
     std::size_t bytes() const {
-        return boundary_.open.capacity() * sizeof(boundary_.open[0]) + closing_.bytes() +
+        return boundary_.open.capacity() * sizeof(boundary_.open[0]) + closing_.bytes() + caps_.bytes() +
                pseudonormals_.bytes() + (expansion_ ? expansion_->bytes() : 0);
     }
 
@@ -163,7 +224,7 @@ public:
                 if (by() == SideBy::expansion)
                     return expansion_->winding_number(Vec3d(point), options_.error, count);
             const auto ray = way_out(point);
-            const auto found = crossings(point, ray, count, true);
+            const auto found = crossings(*index_, point, ray, count, true);
             return static_cast<double>(found.winding) + closing_.missing(ray);
         });
     }
@@ -178,6 +239,8 @@ public:
 
 private:
     using Ray = AxisRay<dimension>;
+    /// Caps are made where less than one in so many edges is open: they cost as much as triangles do.
+    static constexpr std::size_t few_open = 8;
     using Closing = std::conditional_t<dimension == 3, BoundingLoops, OpenEnds>;
     using Expanded = detail::ExpansionOf<I>;
 
@@ -217,27 +280,30 @@ private:
         }
         return ray;
     }
-    template <class Count>
-    CrossingCount crossings(const Point& p, const Ray& ray, Count& count, bool past_surface = false) const {
-        SignedCrossings<typename I::Primitives> query(index_->primitives(), p, ray.axis, ray.direction,
-                                                      bounds_, index_->structure().exclusive(), past_surface);
-        index_->structure().walk(detail::CrossedLeaves<I>(*index_), query, count);
+    template <class J, class Count>
+    CrossingCount crossings(const J& index, const Point& p, const Ray& ray, Count& count,
+                            bool past_surface = false) const {
+        SignedCrossings<typename J::Primitives> query(index.primitives(), p, ray.axis, ray.direction, bounds_,
+                                                      index.structure().exclusive(), past_surface);
+        index.structure().walk(detail::CrossedLeaves<J>(index), query, count);
         return query.answer();
     }
     template <class Count>
     Side side_by_number(const Point& p, Count& count) const {
         if (by() == SideBy::expansion) return winding_number(p, count) >= 0.5 ? Side::inside : Side::outside;
         const auto ray = way_out(p);
-        const auto found = crossings(p, ray, count);
+        const auto found = crossings(*index_, p, ray, count);
         if (found.on) return Side::on;
-        bool inside;
-        if (by() == SideBy::parity)
-            inside = found.crossings % 2 != 0;
-        else if (closing_.empty())
-            inside = found.winding != 0;
-        else
-            inside = static_cast<double>(found.winding) + closing_.missing(ray) >= 0.5;
-        return inside ? Side::inside : Side::outside;
+        return is_inside(p, ray, found, count) ? Side::inside : Side::outside;
+    }
+    template <class Count>
+    bool is_inside(const Point& p, const Ray& ray, const CrossingCount& found, Count& count) const {
+        if (by() == SideBy::parity) return found.crossings % 2 != 0;
+        if (closing_.empty()) return found.winding != 0;
+        if constexpr (dimension == 3)
+            if (caps_.look_small(ray.origin))
+                return found.winding + crossings(caps_.index(), p, ray, count).winding > 0;
+        return static_cast<double>(found.winding) + closing_.missing(ray) >= 0.5;
     }
     template <class Count>
     Distance with_side(const Point& p, const Near<Scalar, dimension>& near, Count& count) const {
@@ -267,6 +333,7 @@ private:
     Box<Scalar, dimension> bounds_;
     Boundary<Scalar, dimension> boundary_;
     Closing closing_;
+    detail::CapsOf<I> caps_;
     Pseudonormals<Scalar, dimension> pseudonormals_;
     std::optional<Expanded> expansion_;
 

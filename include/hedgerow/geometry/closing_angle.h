@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include <hedgerow/geometry/axis_ray.h>
@@ -100,6 +101,17 @@ public:
     }
 
     bool empty() const { return points_.empty(); }
+    /// The number of edges of all loops.
+    std::size_t edges() const { return points_.size() - ends_.size(); }
+    /// Calls f(points) for each loop.
+    template <class F>
+    void for_each(F f) const {
+        std::size_t begin = 0;
+        for (const std::size_t end : ends_) {
+            f(std::span<const Vec3d>(points_).subspan(begin, end - begin));
+            begin = end;
+        }
+    }
     /// How much the crossings of a ray lack of the winding number about its origin: the sum of Ω(−r, a, b),
     /// over 4π. About 20 ns an edge.
     double missing(const AxisRay<3>& ray) const {

@@ -1,6 +1,7 @@
 /// Normals of corners and edges by which the closest point alone tells the side of a closed surface.
 #pragma once
 
+#include <hedgerow/geometry/orientation.h>
 #include <hedgerow/primitives/boundary.h>
 
 namespace hedgerow {
@@ -34,7 +35,8 @@ inline double angle_at(const std::array<Vec3d, 3>& t, std::size_t corner) {
 }  // namespace detail
 
 /// The part of a primitive that is closest to a point: corner 0, 1 or 2; for triangles the side from corner
-/// 0, 1 or 2 to the next (3, 4, 5); or the primitive's inside (−1). `foot` is the closest point.
+/// 0, 1 or 2 to the next (3, 4, 5); or the primitive's inside (−1). `foot` is the
+/// closest point, if it is on a corner or a side.
 template <int D>
 struct ClosestFeature {
     int number;
@@ -48,11 +50,11 @@ inline ClosestFeature<2> closest_feature(const Vec2d& p, const std::array<Vec2d,
 }
 inline ClosestFeature<3> closest_feature(const Vec3d& p, const std::array<Vec3d, 3>& t) {
     const double scale = detail::safe_scale<double>(t[1] - t[0], t[2] - t[0], p - t[0]);
-    const Vec3d normal = detail::facet_normal(t);
+    const Vec3d normal = cross((t[1] - t[0]) * scale, (t[2] - t[0]) * scale);
     const auto beside = [&](std::size_t i) {
         return dot(cross(normal, (t[(i + 1) % 3] - t[i]) * scale), (p - t[i]) * scale);
     };
-    if (beside(0) > 0 && beside(1) > 0 && beside(2) > 0) return {-1, p - normal * dot(normal, p - t[0])};
+    if (beside(0) > 0 && beside(1) > 0 && beside(2) > 0) return {-1, p};
     ClosestFeature<3> closest{-1, t[0]};
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -107,9 +109,13 @@ public:
         const auto corners = detail::in_double(set.corners(element));
         const Vec<double, D> p(point);
         const auto [number, foot] = closest_feature(p, corners);
-        const auto normal = number < 0
-                                ? detail::facet_normal(corners)
-                                : Vec<double, D>(of_element_[element][static_cast<std::size_t>(number)]);
+        if (number < 0) {  // the plane's or the line's side, exactly
+            if constexpr (D == 3)
+                return hedgerow::side(corners[0], corners[1], corners[2], p);
+            else
+                return -turn(corners[0], corners[1], p, 0, 1);
+        }
+        const Vec<double, D> normal(of_element_[element][static_cast<std::size_t>(number)]);
         const Vec<double, D> away = p - foot;
         const double height = dot(away * scale_to_one(max_component(abs(away))), normal);
         return height > 0 ? 1 : (height < 0 ? -1 : 0);
