@@ -311,8 +311,7 @@ private:
         if (by() != SideBy::pseudonormal) {
             d.side = side_by_number(p, count);
         } else if (near) {
-            const int side =
-                near.distance2 == 0 ? 0 : pseudonormals_.side(index_->primitives(), near.element, p);
+            const int side = near.distance2 == 0 ? 0 : pseudonormals_.side(near.element, p);
             d.side = near.distance2 == 0 ? Side::on : (side < 0 ? Side::inside : Side::outside);
         }
         if (d.side == Side::on) d.distance = 0;
@@ -367,12 +366,15 @@ void signed_distances(const Solid<I>& solid, const Strided<PointOf<I>>& points,
                       std::span<typename I::Scalar> distances, Threads threads = {}) {
     detail::expect_room("points", points.size(), distances.size());
     threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        // Closest points are found for some hundred points at once, then their sides.
-        constexpr std::size_t most = 256;
+        // Closest points are found for a hundred points at once, then their sides.
+        constexpr std::size_t most = 128;
         NearOf<I> near[most];
         for (std::size_t i = begin; i < end; i += most) {
             const std::size_t some = std::min(most, end - i);
             closest_points(solid.index(), points.part(i, some), std::span(near, some), serial_executor());
+            if (solid.by() == SideBy::pseudonormal)
+                for (std::size_t k = 0; k < some; ++k)
+                    if (near[k]) solid.pseudonormals_.prefetch(near[k].element);
             in_ieee_mode([&] {
                 for (std::size_t k = 0; k < some; ++k)
                     distances[i + k] = finite(points[i + k])

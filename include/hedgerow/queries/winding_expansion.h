@@ -1,6 +1,7 @@
 /// Winding numbers within a promised error, by multipole expansions of the clusters of a tree.
 #pragma once
 
+#include <algorithm>
 #include <numbers>
 #include <vector>
 
@@ -153,63 +154,69 @@ public:
         if (!tree.root().empty()) add_below(tree, set, tree.root(), 0, path);
     }
 
-    /// The winding number of the triangles about x, which errs by at most `error`. Clusters whose bounds are
-    /// above a threshold are opened, and the threshold sinks until the sum of all bounds is within the error.
-    /// Each node is looked at once.
+    /// The winding number of the triangles about a point, which errs by at most `error`. Opens the cluster of
+    /// the largest bound until the sum of all bounds is within the error. Each node is looked at once.
     template <class Set, class Count>
     double winding_number(const Tree& tree, const Set& set, const Vec3d& point, double error,
                           Count& count) const {
         if (tree.root().empty()) return 0;
         const Vec3d x = point * scale_;
-        static thread_local std::vector<Cluster> clusters;
-        clusters.clear();
-        clusters.push_back({tree.root(), 0, expanded(moments_[0], x)});
         const double scale = 1 / std::max(moments_[0].radius, length(moments_[0].center - x));
+        static thread_local std::vector<Cluster> largest;  // a heap
+        static thread_local std::vector<NodeRef> opened;
+        largest.clear();
+        opened.clear();
         SumOfAngles triangles;
-        double of_triangles = 0;  // the error of the sum over triangles
-        for (double threshold = error / 8;;) {
-            // Open each cluster above the threshold: the children that are above it, too, come up in turn.
-            double sum = of_triangles;
-            for (std::size_t i = 0; i < clusters.size();) {
-                const Cluster c = clusters[i];
-                if (c.term.error <= threshold) {
-                    sum += c.term.error;
-                    ++i;
-                    continue;
-                }
-                clusters[i] = clusters.back();
-                clusters.pop_back();
-                if (c.node.leaf()) {
-                    const Leaf leaf = tree.leaf(c.node);
-                    count.leaf(leaf.count, c.node.place());
-                    for (std::uint32_t k = leaf.first; k < leaf.first + leaf.count; ++k)
-                        detail::add_half_angle(triangles, corners_of(set, leaf.ids[k]), x, scale);
-                    const double more = leaf.count * 0x1p-45;
-                    of_triangles += more, sum += more;
-                    continue;
-                }
-                count.node(c.node.place());
-                for (int k = 0; k < Tree::width; ++k)
-                    if (const NodeRef child = tree.child(c.node, k); !child.empty()) {
-                        const NodeId id = Tree::child_id(c.node, k);
-                        clusters.push_back({child, id, expanded(moments_[id], x)});
-                    }
+        double whole = 0, bound = 0;
+        // Take a cluster by its expansion for now, or open it at once if it can be no part of the answer.
+        const auto take = [&](NodeRef node, NodeId id) {
+            const WindingTerm term = expanded(moments_[id], x);
+            if (!(term.error <= error)) return opened.push_back(node);
+            whole += term.value, bound += term.error;
+            if (term.error < error * negligible) return;
+            largest.push_back({term, node});
+            std::push_heap(largest.begin(), largest.end());
+        };
+        take(tree.root(), 0);
+        while (true) {
+            if (opened.empty()) {
+                if (bound <= error || largest.empty()) break;
+                // Take the largest bound back, and open its cluster.
+                std::pop_heap(largest.begin(), largest.end());
+                const Cluster& c = largest.back();
+                whole -= c.term.value, bound -= c.term.error;
+                opened.push_back(c.node);
+                largest.pop_back();
             }
-            if (sum <= error || clusters.empty()) break;
-            threshold *= std::clamp(0.7 * error / sum, 0x1p-5, 0.7);
+            const NodeRef node = opened.back();
+            opened.pop_back();
+            if (node.leaf()) {
+                const Leaf leaf = tree.leaf(node);
+                count.leaf(leaf.count, node.place());
+                for (std::uint32_t k = leaf.first; k < leaf.first + leaf.count; ++k)
+                    detail::add_half_angle(triangles, corners_of(set, leaf.ids[k]), x, scale);
+                bound += leaf.count * 0x1p-45;
+            } else {
+                count.node(node.place());
+                for (int k = 0; k < Tree::width; ++k)
+                    if (const NodeRef child = tree.child(node, k); !child.empty())
+                        take(child, Tree::child_id(node, k));
+            }
         }
-        double whole = triangles.turns();
-        for (const Cluster& c : clusters) whole += c.term.value;
-        return whole;
+        return triangles.turns() + whole;
     }
     std::size_t bytes() const { return moments_.capacity() * sizeof(WindingMoments); }
 
 private:
     struct Cluster {
-        NodeRef node;
-        NodeId id;
         WindingTerm term;
+        NodeRef node;
+
+        friend bool operator<(const Cluster& a, const Cluster& b) { return a.term.error < b.term.error; }
     };
+    /// Bounds below this share of the error are never taken back: all nodes of a tree of 2³² triangles
+    /// together have less than the error.
+    static constexpr double negligible = 0x1p-40;
 
     template <class Set>
     std::array<Vec3d, 3> corners_of(const Set& set, PrimitiveId id) const {
