@@ -12,6 +12,7 @@
 
 #include "every_structure.h"
 #include "exact.h"
+#include "matrix.h"
 
 using namespace hedgerow;
 
@@ -233,6 +234,34 @@ TYPED_TEST(Insides, OfTetrahedraOnALattice) {
     expect_insides("huge", tetrahedra<T>(10, 3, 3, most));
     expect_insides("tiny", tetrahedra<T>(10, 3, 4, -most));
 }
+/// A ball whose vertices lie on a lattice, so that queries are level with many of them, or on the surface.
+TYPED_TEST(Insides, OfManyPointsLevelWithVertices) {
+    using T = TypeParam;
+    auto mesh = ball<T>(8);
+    for (auto& v : mesh.vertices)
+        for (int k = 0; k < 3; ++k) v[k] = std::round(v[k] * 8);
+    const auto index = build(mesh);
+    const Solid solid(index);
+    ASSERT_TRUE(solid.closed() && solid.oriented());
+    Random random(30, 1);
+    const std::size_t count = matrix::in_long_runs(10'000'000, 20'000);
+    std::size_t on = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto p = exact::integers<T, 3>(random, 20) * T(0.5);
+        const Side side = solid.side(p);
+        if (side == Side::on) {
+            ASSERT_LT(closest_point(index, p).distance2, T(1e-12));
+            ++on;
+            continue;
+        }
+        ASSERT_GT(closest_point(index, p).distance2, T(1e-12));
+        const double sum = static_cast<double>(sum_of_turns(mesh, p));
+        ASSERT_EQ(solid.winding_number(p), std::round(sum)) << i;
+        ASSERT_NEAR(sum, std::round(sum), 1e-9) << i;
+        ASSERT_EQ(side == Side::inside, std::round(sum) != 0) << i;
+    }
+    EXPECT_GT(on, count / 200);
+}
 TYPED_TEST(Insides, OfOpenMeshes) {
     using T = TypeParam;
     using V = Vec<T, 3>;
@@ -329,7 +358,8 @@ void expect_promises(const char* scene, const TriangleMesh<T>& mesh, std::size_t
         }
     }
     const auto grid = build<Grid>(mesh);
-    const Solid of_wide(index, {.by = SideBy::expansion}), of_grid(grid, {.by = SideBy::expansion});
+    const Solid of_wide(index, {.by = SideBy::expansion});
+    const Solid of_grid(grid, {.by = SideBy::expansion});
     for (const auto& p : queries_around(mesh, count, 4))
         ASSERT_EQ(of_wide.winding_number(p), of_grid.winding_number(p));
 }
