@@ -1,0 +1,388 @@
+/// The questions of a solid: whether a point is inside of a surface, how often the surface winds around it,
+/// and how far away it is with a sign.
+#pragma once
+
+#include <optional>
+
+#include <hedgerow/ask/points.h>
+#include <hedgerow/geometry/closing_angle.h>
+#include <hedgerow/primitives/pseudonormals.h>
+#include <hedgerow/queries/signed_crossings.h>
+#include <hedgerow/queries/winding_expansion.h>
+
+namespace hedgerow {
+
+enum class Side : std::uint8_t { outside, on, inside };
+
+/// How a Solid tells its sides.
+/// - `crossings`: the winding number, by the signed crossings of one ray and the angle of what would close
+///   the surface. Right for every mesh.
+/// - `parity`: whether a ray crosses the surface an odd number of times. Triangles may be turned either way,
+///   but the surface must be closed.
+/// - `pseudonormal`: the side of the surface at the closest point (Bærentzen and Aanæs 2005). Right for
+///   surfaces that are closed, oriented and do not meet themselves, and fastest for signed distances.
+/// - `expansion`: the winding number within a promised error, by multipole expansions (Barill et al. 2018).
+///   For soups of triangles in space, most of whose edges are open. Points on the surface are not told.
+enum class SideBy : std::uint8_t { crossings, parity, pseudonormal, expansion };
+
+struct SolidOptions {
+    SideBy by = SideBy::crossings;
+    /// How far winding numbers by expansion may be off, from 1e-9 to 1.
+    double error = 1e-3;
+};
+
+/// A distance to a surface: negative inside, +0 on the surface.
+template <std::floating_point T, int D>
+struct SignedDistance {
+    T distance = std::numeric_limits<T>::infinity();
+    Side side = Side::outside;
+    SideBy by = SideBy::crossings;
+    Near<T, D> near;
+
+    /// False for a point that is not finite, and where there is no surface: infinitely far outside.
+    explicit operator bool() const { return static_cast<bool>(near); }
+    friend bool operator==(const SignedDistance&, const SignedDistance&) = default;
+};
+
+namespace detail {
+/// The expansion of an index over the tree of a WideBvh: that of the index, or of one that is built.
+template <class I>
+class ExpandedIndex {
+public:
+    using Scalar = typename I::Scalar;
+    using Tree = WideBvh<Scalar, 3>;
+
+    ExpandedIndex(const I& index, Executor& executor)
+        : index_(&index), own_(own_tree(index, executor)), expansion_(tree(), index.primitives()) {}
+
+    template <class Count>
+    double winding_number(const Vec3d& point, double error, Count& count) const {
+        return expansion_.winding_number(tree(), index_->primitives(), point, error, count);
+    }
+    std::size_t bytes() const { return expansion_.bytes() + own_.bytes(); }
+
+private:
+    static constexpr bool has_tree = std::same_as<typename I::Structure, Tree>;
+
+    static Tree own_tree(const I& index, Executor& executor) {
+        return has_tree ? Tree() : Tree::build(index.primitives(), {}, executor);
+    }
+    const Tree& tree() const {
+        if constexpr (has_tree)
+            return index_->structure();
+        else
+            return own_;
+    }
+
+    const I* index_;
+    Tree own_;
+    WindingExpansion<Tree> expansion_;
+};
+struct NoExpansion {
+    static std::size_t bytes() { return 0; }
+};
+template <class I>
+using ExpansionOf = typename std::conditional_t<I::dimension == 3, std::type_identity<ExpandedIndex<I>>,
+                                                std::type_identity<NoExpansion>>::type;
+
+/// Fans of triangles that close a surface with few open edges, in an index of their own. Mesh and caps
+/// together have whole winding numbers. A point that sees the caps under less than half of all directions is
+/// inside of the open mesh exactly if it is inside of the closed one, so its side needs no angles.
+template <std::floating_point T>
+class Caps {
+public:
+    Caps() = default;
+    Caps(const BoundingLoops& loops, Executor& executor) {
+        TriangleMesh<T> mesh;
+        loops.for_each([&](std::span<const Vec3d> loop) {
+            Cap cap;
+            const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+            for (const Vec3d& p : loop) {
+                cap.box.expand(p);
+                mesh.vertices.emplace_back(p);
+            }
+            for (std::uint32_t i = 1; i + 2 < loop.size(); ++i) {
+                mesh.triangles.push_back({first, first + i + 1, first + i});
+                const Vec3d a = loop[i] - loop[0], b = loop[i + 1] - loop[0];
+                cap.area += length(cross(a, b)) / 2;
+            }
+            caps_.push_back(cap);
+        });
+        index_ = build<WideBvh>(std::move(mesh), {}, executor);
+    }
+
+    const auto& index() const { return index_; }
+    /// Whether all caps are surely seen under less than half of all directions: each under at most its area
+    /// by the square of its distance.
+    bool look_small(const Vec3d& point) const {
+        double seen = 0;
+        for (const Cap& cap : caps_)
+            if (seen += cap.area / distance2(point, cap.box); !(seen < most)) return false;
+        return !caps_.empty();
+    }
+    std::size_t bytes() const {
+        return caps_.capacity() * sizeof(Cap) + index_.bytes() +
+               index_.size() * (sizeof(TriangleIndices) + sizeof(Vec<T, 3>));
+    }
+
+private:
+    struct Cap {
+        Box3d box;
+        double area = 0;
+    };
+    static constexpr double most = 2 * std::numbers::pi * (1 - 1e-6);  // of the solid angle
+
+    std::vector<Cap> caps_;
+    IndexOf<WideBvh, TriangleMesh<T>> index_;
+};
+/// In the plane, ends are as quick to look at as caps.
+struct NoCaps {
+    static std::size_t bytes() { return 0; }
+};
+template <class I>
+using CapsOf = typename std::conditional_t<I::dimension == 3, std::type_identity<Caps<typename I::Scalar>>,
+                                           std::type_identity<NoCaps>>::type;
+}  // namespace detail
+
+/// An index as the surface of a solid: of triangles in space, counterclockwise seen from outside, or of
+/// segments in the plane, which go around it counterclockwise. Made once, in O(n); its questions are
+/// thread-safe and allocate nothing, but for memory that threads keep. The index must outlive it, and must
+/// hold every primitive of its set. Vertices are joined by position.
+///
+/// *Winding number.* How often the surface winds around a point: 1 in a solid, 0 outside, −1 in one turned
+/// inside out, a sum where parts overlap, and a fraction where the surface is open. It is the sum of signed
+/// crossings of a ray along an axis, by exact signs, and for the edges left open the solid angle towards
+/// infinity of what would close them (Jacobson, Kavan and Sorkine-Hornung 2013 define it; Martens and
+/// Bessmeltsev 2025 reduce it to a ray and the boundary). A whole number for closed and oriented surfaces;
+/// otherwise it errs by some roundings of double. It does not depend on the structure of the index.
+///
+/// *Side.* `on` is exact: the point lies in a primitive, edges and corners included. Else a point is inside
+/// of a closed surface if the winding number is not 0, and inside of an open one if that is at least one
+/// half. Where triangles are turned so that edges are open although each has two triangles, the surface
+/// counts as open.
+///
+/// A point that is not finite is outside, with the winding number NaN and an infinite distance.
+template <class I>
+class Solid {
+public:
+    using Scalar = typename I::Scalar;
+    static constexpr int dimension = I::dimension;
+    using Point = Vec<Scalar, dimension>;
+    using Distance = SignedDistance<Scalar, dimension>;
+    static_assert(FacetSet<typename I::Primitives>,
+                  "a solid is made of triangles in space or of segments in the plane");
+
+    /// Throws InputError if the index lacks primitives of its set, and UsageError for an error that cannot be
+    /// promised and for expansions in the plane.
+    explicit Solid(const I& index, const SolidOptions& options = {}, Threads threads = {})
+        : index_(&index), options_(options) {
+        expect_possible(options);
+        in_ieee_mode([&] {
+            expect_all_held();
+            IeeeExecutor executor(threads.over(index.size()));
+            for (std::size_t i = 0; i < index.size(); ++i) bounds_.expand(index.primitives().bounds(i));
+            boundary_ = boundary_of(index.primitives(), executor);
+            closing_ = closing_of(boundary_);
+            if constexpr (dimension == 3)
+                if (!closing_.empty() && closing_.edges() <= index.size() / few_open)
+                    caps_ = detail::Caps<Scalar>(closing_, executor);
+            if (by() == SideBy::pseudonormal)
+                pseudonormals_ = Pseudonormals<Scalar, dimension>(index.primitives(), executor);
+            if constexpr (dimension == 3)
+                if (by() == SideBy::expansion) expansion_.emplace(index, executor);
+        });
+    }
+    explicit Solid(I&&, const SolidOptions& = {}, Threads = {}) = delete;
+
+    /// Whether each edge has an even number of triangles.
+    bool closed() const { return boundary_.closed(); }
+    /// Whether neighbours are turned the same way.
+    bool oriented() const { return boundary_.oriented(); }
+    /// The edges (in the plane: ends) that are left open, and counts of others that are odd.
+    const Boundary<Scalar, dimension>& boundary() const { return boundary_; }
+    SideBy by() const { return options_.by; }
+    const SolidOptions& options() const { return options_; }
+    const I& index() const { return *index_; }
+    /// Bytes beyond the index.
+    std::size_t bytes() const {
+        return boundary_.open.capacity() * sizeof(boundary_.open[0]) + closing_.bytes() + caps_.bytes() +
+               pseudonormals_.bytes() + (expansion_ ? expansion_->bytes() : 0);
+    }
+
+    template <class Count = const NoVisits>
+    Side side(const Point& point, Count& count = no_visits) const {
+        if (!finite(point)) return Side::outside;
+        if (by() == SideBy::pseudonormal) return signed_distance(point, count).side;
+        return in_ieee_mode([&] { return side_by_number(point, count); });
+    }
+    /// On the surface, that of a point next to it.
+    template <class Count = const NoVisits>
+    double winding_number(const Point& point, Count& count = no_visits) const {
+        if (!finite(point)) return std::numeric_limits<double>::quiet_NaN();
+        return in_ieee_mode([&] {
+            if constexpr (dimension == 3)
+                if (by() == SideBy::expansion)
+                    return expansion_->winding_number(Vec3d(point), options_.error, count);
+            const auto ray = way_out(point);
+            const auto found = crossings(*index_, point, ray, count, true);
+            return static_cast<double>(found.winding) + closing_.missing(ray);
+        });
+    }
+    /// The magnitude is the root of the squared distance of `closest_point`, rounded once, except that it is
+    /// +0 wherever the side is `on`.
+    template <class Count = const NoVisits>
+    Distance signed_distance(const Point& point, Count& count = no_visits) const {
+        if (!finite(point)) return Distance{.by = by(), .near = {}};
+        const auto near = closest_point(*index_, point, {}, count);
+        return in_ieee_mode([&] { return with_side(point, near, count); });
+    }
+
+private:
+    using Ray = AxisRay<dimension>;
+    /// Caps are made where less than one in so many edges is open: they cost as much as triangles do.
+    static constexpr std::size_t few_open = 8;
+    using Closing = std::conditional_t<dimension == 3, BoundingLoops, OpenEnds>;
+    using Expanded = detail::ExpansionOf<I>;
+
+    void expect_all_held() const {
+        std::vector<bool> held(index_->size());
+        std::size_t count = 0;
+        for (const PrimitiveId id : index_->structure().items())
+            if (id != no_primitive && !held[id]) held[id] = true, ++count;
+        if (count < held.size())
+            throw InputError("a solid is made of all primitives of a set, but the index holds " +
+                             std::to_string(count) + " of " + std::to_string(held.size()) +
+                             ": build an index of those that it is to have");
+    }
+    static Closing closing_of(const Boundary<Scalar, dimension>& boundary) {
+        if constexpr (dimension == 3) {
+            std::vector<std::array<Vec3d, 2>> edges;
+            for (const auto& f : boundary.open)
+                edges.insert(edges.end(), static_cast<std::size_t>(f.times),
+                             {Vec3d(f.corners[0]), Vec3d(f.corners[1])});
+            return BoundingLoops(std::move(edges));
+        } else {
+            std::vector<OpenEnds::End> ends;
+            for (const auto& f : boundary.open) ends.push_back({Vec2d(f.corners[0]), f.times});
+            return OpenEnds(std::move(ends));
+        }
+    }
+
+    /// The ray along an axis that leaves the bounds soonest.
+    Ray way_out(const Point& p) const {
+        Ray ray{Vec<double, dimension>(p)};
+        Scalar least = std::numeric_limits<Scalar>::infinity();
+        for (int k = 0; k < dimension; ++k) {
+            if (const Scalar up = bounds_.high[k] - p[k]; up < least)
+                least = up, ray.axis = k, ray.direction = 1;
+            if (const Scalar down = p[k] - bounds_.low[k]; down < least)
+                least = down, ray.axis = k, ray.direction = -1;
+        }
+        return ray;
+    }
+    template <class J, class Count>
+    CrossingCount crossings(const J& index, const Point& p, const Ray& ray, Count& count,
+                            bool past_surface = false) const {
+        SignedCrossings<typename J::Primitives> query(index.primitives(), p, ray.axis, ray.direction, bounds_,
+                                                      index.structure().exclusive(), past_surface);
+        index.structure().walk(detail::CrossedLeaves<J>(index), query, count);
+        return query.answer();
+    }
+    template <class Count>
+    Side side_by_number(const Point& p, Count& count) const {
+        if (by() == SideBy::expansion) return winding_number(p, count) >= 0.5 ? Side::inside : Side::outside;
+        const auto ray = way_out(p);
+        const auto found = crossings(*index_, p, ray, count);
+        if (found.on) return Side::on;
+        return is_inside(p, ray, found, count) ? Side::inside : Side::outside;
+    }
+    template <class Count>
+    bool is_inside(const Point& p, const Ray& ray, const CrossingCount& found, Count& count) const {
+        if (by() == SideBy::parity) return found.crossings % 2 != 0;
+        if (closing_.empty()) return found.winding != 0;
+        if constexpr (dimension == 3)
+            if (caps_.look_small(ray.origin))
+                return found.winding + crossings(caps_.index(), p, ray, count).winding > 0;
+        return static_cast<double>(found.winding) + closing_.missing(ray) >= 0.5;
+    }
+    template <class Count>
+    Distance with_side(const Point& p, const Near<Scalar, dimension>& near, Count& count) const {
+        Distance d{std::sqrt(near.distance2), Side::outside, by(), near};
+        if (by() != SideBy::pseudonormal) {
+            d.side = side_by_number(p, count);
+        } else if (near) {
+            const int side = near.distance2 == 0 ? 0 : pseudonormals_.side(near.element, p);
+            d.side = near.distance2 == 0 ? Side::on : (side < 0 ? Side::inside : Side::outside);
+        }
+        if (d.side == Side::on) d.distance = 0;
+        if (d.side == Side::inside && d.distance > 0) d.distance = -d.distance;
+        return d;
+    }
+
+    static void expect_possible(const SolidOptions& options) {
+        if (!(options.error >= 1e-9 && options.error <= 1))
+            throw UsageError("winding numbers can be promised to be within an error of 1e-9 to 1, not " +
+                             std::to_string(options.error));
+        if (dimension == 2 && options.by == SideBy::expansion)
+            throw UsageError("expansions are of triangles in space: choose crossings for segments");
+    }
+
+    const I* index_;
+    SolidOptions options_;
+    Box<Scalar, dimension> bounds_;
+    Boundary<Scalar, dimension> boundary_;
+    Closing closing_;
+    detail::CapsOf<I> caps_;
+    Pseudonormals<Scalar, dimension> pseudonormals_;
+    std::optional<Expanded> expansion_;
+
+    template <class J>
+    friend void signed_distances(const Solid<J>&, const Strided<PointOf<J>>&, std::span<typename J::Scalar>,
+                                 Threads);
+};
+
+/// Writes the side of point i to sides[i], as `Solid::side` tells it; `winding_numbers` and
+/// `signed_distances` write the other answers. Large batches are cut into pieces over all cores, unless an
+/// executor is given (Threads). The points may have any layout in memory. Throws InputError, and writes
+/// nothing, if there are fewer places for answers than points.
+template <class I>
+void sides(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<Side> sides_of,
+           Threads threads = {}) {
+    detail::expect_room("points", points.size(), sides_of.size());
+    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) sides_of[i] = solid.side(points[i]);
+    });
+}
+template <class I>
+void winding_numbers(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<double> numbers,
+                     Threads threads = {}) {
+    detail::expect_room("points", points.size(), numbers.size());
+    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) numbers[i] = solid.winding_number(points[i]);
+    });
+}
+template <class I>
+void signed_distances(const Solid<I>& solid, const Strided<PointOf<I>>& points,
+                      std::span<typename I::Scalar> distances, Threads threads = {}) {
+    detail::expect_room("points", points.size(), distances.size());
+    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        // Closest points are found for a hundred points at once, then their sides.
+        constexpr std::size_t most = 128;
+        NearOf<I> near[most];
+        for (std::size_t i = begin; i < end; i += most) {
+            const std::size_t some = std::min(most, end - i);
+            closest_points(solid.index(), points.part(i, some), std::span(near, some), serial_executor());
+            if (solid.by() == SideBy::pseudonormal)
+                for (std::size_t k = 0; k < some; ++k)
+                    if (near[k]) solid.pseudonormals_.prefetch(near[k].element);
+            in_ieee_mode([&] {
+                for (std::size_t k = 0; k < some; ++k)
+                    distances[i + k] = finite(points[i + k])
+                                           ? solid.with_side(points[i + k], near[k], no_visits).distance
+                                           : std::numeric_limits<typename I::Scalar>::infinity();
+            });
+        }
+    });
+}
+
+}  // namespace hedgerow

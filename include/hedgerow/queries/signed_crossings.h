@@ -1,0 +1,144 @@
+/// The signed crossings of a ray along an axis: the winding number of a closed surface about its origin.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <hedgerow/geometry/axis_ray.h>
+#include <hedgerow/primitives/boundary.h>
+#include <hedgerow/walks/query.h>
+
+namespace hedgerow {
+
+/// The sum of the crossings' signs, how many there are, and whether the ray's origin is on a primitive. Where
+/// it is, the search ends, unless told otherwise.
+struct CrossingCount {
+    std::int64_t winding = 0;
+    std::size_t crossings = 0;
+    bool on = false;
+};
+
+/// Sums the crossings of a ray with primitives of D corners. The ray is a half-infinite box without width, so
+/// a walk compares coordinates and nothing is rounded. The box ends at the bounds of the set.
+template <class Set>
+class SignedCrossings {
+public:
+    using Scalar = typename Set::Scalar;
+    static constexpr int dimension = Set::dimension;
+    using V = Vec<Scalar, dimension>;
+    using Probe = BoxProbe<Scalar, dimension>;
+    static constexpr Order order = Order::none;
+
+    /// `once` says that no primitive is offered twice. Otherwise crossings are collected in memory that the
+    /// thread keeps, and repeated ones are removed. With `past_surface` the search does not end where the
+    /// origin is on a primitive, which then counts as behind it.
+    SignedCrossings(const Set& set, const V& origin, int axis, int direction,
+                    const Box<Scalar, dimension>& bounds, bool once, bool past_surface = false)
+        : set_(set),
+          ray_{Vec<double, dimension>(origin), axis, direction},
+          probe_(box_of(origin, axis, direction, bounds)),
+          once_(once),
+          past_surface_(past_surface) {
+        if (!once_) kept().clear();
+    }
+
+    const Probe& probe() const { return probe_; }
+    const AxisRay<dimension>& ray() const { return ray_; }
+    Scalar limit() const { return std::numeric_limits<Scalar>::max(); }
+    Flow offer(const OverlapCandidate& c) { return offer(set_.corners(c.element), c.element); }
+    /// A primitive whose box overlaps the ray.
+    Flow offer(const std::array<V, static_cast<std::size_t>(dimension)>& corners, PrimitiveId id) {
+        std::array<Vec<double, dimension>, static_cast<std::size_t>(dimension)> wide;
+        for (std::size_t i = 0; i < wide.size(); ++i) wide[i] = Vec<double, dimension>(corners[i]);
+        const AxisCrossing found = crossing(ray_, wide);
+        if (found.on) {
+            count_.on = true;
+            return past_surface_ ? Flow::go_on : Flow::stop;
+        }
+        if (found.sign == 0) return Flow::go_on;
+        if (once_)
+            add(found.sign);
+        else
+            kept().push_back({id, found.sign});
+        return Flow::go_on;
+    }
+    CrossingCount answer() {
+        if (!once_) {
+            auto& all = kept();
+            std::sort(all.begin(), all.end());
+            all.erase(std::unique(all.begin(), all.end()), all.end());
+            for (const auto& [id, sign] : all) add(sign);
+        }
+        return count_;
+    }
+
+private:
+    static Box<Scalar, dimension> box_of(const V& origin, int axis, int direction,
+                                         const Box<Scalar, dimension>& bounds) {
+        Box<Scalar, dimension> box{origin, origin};
+        if (direction > 0)
+            box.high[axis] = std::max(origin[axis], bounds.high[axis]);
+        else
+            box.low[axis] = std::min(origin[axis], bounds.low[axis]);
+        return box;
+    }
+    static std::vector<std::pair<PrimitiveId, int>>& kept() {
+        static thread_local std::vector<std::pair<PrimitiveId, int>> found;
+        return found;
+    }
+    void add(int sign) {
+        count_.winding += sign;
+        ++count_.crossings;
+    }
+
+    const Set& set_;
+    AxisRay<dimension> ray_;
+    Probe probe_;
+    bool once_, past_surface_;
+    CrossingCount count_;
+};
+
+namespace detail {
+
+/// The leaves of an index, as crossings are counted in them: by the corners of primitives whose boxes overlap
+/// the ray.
+template <class I>
+class CrossedLeaves {
+public:
+    using Scalar = typename I::Scalar;
+    static constexpr int dimension = I::dimension;
+
+    explicit CrossedLeaves(const I& index) : index_(index) {}
+    std::size_t size() const { return index_.size(); }
+    auto bounds(std::size_t i) const { return index_.primitives().bounds(i); }
+
+    template <class Probe, class Query>
+    Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) const {
+        const auto& box = probe.box();
+        if constexpr (requires {
+                          index_.packed().for_each_overlapping(leaf, box, [](const auto&, auto) {});
+                      }) {
+            Flow flow = Flow::go_on;
+            index_.packed().for_each_overlapping(leaf, box, [&](const auto& t, PrimitiveId id) {
+                if (flow == Flow::go_on) flow = query.offer({t.a, t.b, t.c}, id);
+            });
+            return flow;
+        } else {
+            for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+                const auto corners = index_.primitives().corners(leaf.ids[i]);
+                Box<Scalar, dimension> around;
+                for (const auto& c : corners) around.expand(c);
+                if (overlap(around, box) && query.offer(corners, leaf.ids[i]) == Flow::stop)
+                    return Flow::stop;
+            }
+            return Flow::go_on;
+        }
+    }
+
+private:
+    const I& index_;
+};
+
+}  // namespace detail
+
+}  // namespace hedgerow
