@@ -1,0 +1,441 @@
+/// Hausdorff distances of meshes and clouds, within bounds that are certain.
+///
+/// The directed distance from A to B is that of the point of A that is farthest from B. Any point of A gives a
+/// lower bound. Upper bounds hold for whole triangles of A: the one with the greatest is divided, and
+/// triangles are dropped whose bound cannot change the answer (Tang, Lee and Kim 2009; Kang et al. 2018;
+/// Sacht and Jacobson 2024). Closest points come in batches (ask/points.h), so whatever answers these fast
+/// makes this fast.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <hedgerow/ask/points.h>
+#include <hedgerow/queries/crossings.h>
+
+namespace hedgerow {
+
+/// When to stop: the interval may be as wide as the larger of `absolute`, a length, and `relative` times the
+/// lower bound. It is never narrowed below the rounding of coordinates (see Hausdorff).
+struct HausdorffOptions {
+    double absolute = 0;
+    double relative = 1e-3;
+    /// Parts of triangles that may wait to be divided, beyond the triangles themselves; they take up to 160
+    /// bytes each. If there would be more, the interval is returned as wide as it is then.
+    std::size_t most_parts = std::size_t(1) << 22;
+};
+
+/// The distance lies in [lower, upper]. The witnesses are a point of one set that is at least `lower` away
+/// from all of the other, and the other's point closest to it, with the positions of their primitives.
+/// `point_a` is on A always; `from_b` says that it is the point on B that is far away.
+///
+/// Both bounds allow for all roundings: those of a distance, and those of points where a triangle was
+/// divided, which are rounded to T as queries are. So the interval can be as wide as 2⁻²⁰ of the distance plus
+/// 2⁻²¹ of the largest coordinate (in double 2⁻⁴⁶ and 2⁻⁴²), whatever tolerance is asked for.
+template <std::floating_point T, int D>
+struct Hausdorff {
+    T lower = 0, upper = 0;
+    PrimitiveId element_a = no_primitive, element_b = no_primitive;
+    Vec<T, D> point_a, point_b;
+    bool from_b = false;
+
+    /// False where there are no witnesses: a set is empty.
+    explicit operator bool() const { return element_a != no_primitive; }
+    friend bool operator==(const Hausdorff&, const Hausdorff&) = default;
+};
+
+/// Sets from which there is a directed distance to a set B: points to whatever has closest points, and
+/// triangles to triangles and points.
+template <class A, class B>
+concept FarFrom = std::same_as<typename A::Scalar, typename B::Scalar> && A::dimension == B::dimension &&
+    ((PointSet<A> && HasClosestPoint<B>) || (TriangleSet<A> && (TriangleSet<B> || PointSet<B>)));
+
+namespace detail {
+
+/// What the distances of closest points err by: a part of the distance, and a length that stands for what
+/// sums of coordinates up to `reach` and underflow cost. `rounding` is that of a point.
+template <std::floating_point T>
+struct DistanceError {
+    static constexpr double relative = std::is_same_v<T, float> ? 0x1p-22 : 0x1p-48;
+    double absolute, rounding;
+
+    explicit DistanceError(double reach)
+        : absolute(product(0x1p-45, reach) + (std::is_same_v<T, float> ? 0x1p-74 : 0x1p-536)),
+          rounding(2 * static_cast<double>(unit_roundoff<T>) * reach) {}
+    double below(double distance) const { return std::max(0.0, product(distance, 1 - relative) - absolute); }
+    double above(double distance) const { return product(distance, 1 + relative) + absolute; }
+    /// The narrowest interval around a distance that is worth dividing for.
+    double floor(double distance) const {
+        return 4 * (product(distance, relative) + absolute + rounding);
+    }
+};
+
+/// The corners of A's primitives: a mesh's vertices once each, though several triangles share them.
+template <class A>
+struct Corners {
+    const A& set;
+
+    static constexpr bool shared = requires(const A& a) {
+        a.vertex(a.vertex_count());
+        a.indices(a.size())[0];
+    };
+    static constexpr std::size_t per_element = PointSet<A> ? 1 : 3;
+    std::size_t size() const {
+        if constexpr (shared)
+            return set.vertex_count();
+        else
+            return per_element * set.size();
+    }
+    /// The number of an element's corner k.
+    std::size_t number(std::size_t element, std::size_t k) const {
+        if constexpr (shared)
+            return set.indices(element)[k];
+        else
+            return per_element * element + k;
+    }
+    Vec<typename A::Scalar, A::dimension> operator[](std::size_t i) const {
+        if constexpr (shared)
+            return set.vertex(i);
+        else if constexpr (PointSet<A>)
+            return set.point(i);
+        else
+            return corner(set.triangle(i / 3), static_cast<int>(i % 3));
+    }
+};
+
+/// A triangle of A, or a part of one.
+struct TrianglePart {
+    Vec3d corner[3];
+    double distance[3];      // at least those of the corners to B
+    double bound;            // at least the distance of any point of the part to B
+    double cut[3];           // where to divide the edge from corner k to the next
+    PrimitiveId nearest[3];  // the elements of B closest to the corners
+    PrimitiveId middle;      // and to the centroid, or that of a part around this one
+    PrimitiveId element;     // of A
+    bool asked_middle;
+    bool halved;
+};
+
+/// The directed distance from index A to index B, if it is above `at_least`.
+template <class IA, class IB>
+class DirectedHausdorff {
+public:
+    using A = typename IA::Primitives;
+    using B = typename IB::Primitives;
+    using T = typename A::Scalar;
+    static constexpr int dimension = A::dimension;
+    using Point = Vec<T, dimension>;
+    using Result = Hausdorff<T, dimension>;
+
+    DirectedHausdorff(const IA& a, const IB& b, const HausdorffOptions& options, Executor& executor,
+                      double at_least)
+        : a_(a),
+          b_(b),
+          options_(options),
+          threads_(executor),
+          error_(std::max(reach(a.bounds()), reach(b.bounds()))),
+          lower_(at_least) {}
+
+    Result run() {
+        ask_corners();
+        if constexpr (TriangleSet<A>) {
+            make_parts();
+            const std::size_t most = parts_.size() + options_.most_parts;
+            while (settle(), !parts_.empty() && parts_.size() <= most) refine();
+            for (const auto& part : parts_) upper_ = std::max(upper_, part.bound);
+        }
+        best_.lower = rounded_down<T>(lower_);
+        best_.upper = rounded_up<T>(std::max(lower_, upper_));
+        return best_;
+    }
+
+private:
+    using Parts = std::vector<TrianglePart>;
+    static constexpr std::size_t batch = 1 << 16;      // of corners
+    static constexpr std::size_t parts_a_round = 2048;  // the more, the fuller batches; the fewer, the fewer
+
+    static double reach(const Box<T, dimension>& box) {
+        return static_cast<double>(std::max(T(0), max_component(max(abs(box.low), abs(box.high)))));
+    }
+    bool holds(PrimitiveId element) const {
+        if constexpr (requires { a_.structure().holds(element); }) return a_.structure().holds(element);
+        return true;
+    }
+    double distance(const Near<T, dimension>& near) const {
+        return std::sqrt(static_cast<double>(near.distance2));
+    }
+    /// How far a point of A is from B at least, if the query was rounded to a point that is `away`.
+    void see(const Point& query, double away, PrimitiveId element, const Near<T, dimension>& near) {
+        const double far = error_.below(distance(near)) - away;
+        if (!(far > lower_ || (far == lower_ && !best_))) return;
+        lower_ = far;
+        best_.element_a = element, best_.point_a = query;
+        best_.element_b = near.element, best_.point_b = near.point;
+    }
+    void ask(const std::vector<Point>& points) {
+        near_.resize(points.size());
+        closest_points(b_, Strided<Point>(points), std::span(near_), threads_);
+    }
+
+    /// Asks for all corners of A.
+    void ask_corners() {
+        const Corners<A> corners{a_.primitives()};
+        std::vector<PrimitiveId> element(corners.size(), no_primitive);
+        for (std::size_t i = 0; i < a_.size(); ++i)
+            if (const auto id = static_cast<PrimitiveId>(i); holds(id))
+                for (std::size_t k = 0; k < corners.per_element; ++k)
+                    if (PrimitiveId& of = element[corners.number(i, k)]; of == no_primitive) of = id;
+        corners_.resize(corners.size());
+        std::vector<std::size_t> asked;
+        std::vector<Point> points;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            if (element[i] != no_primitive) asked.push_back(i), points.push_back(corners[i]);
+            if (points.size() < batch && i + 1 < corners.size()) continue;
+            ask(points);
+            for (std::size_t j = 0; j < points.size(); ++j) {
+                see(points[j], 0, element[asked[j]], near_[j]);
+                const double above = error_.above(distance(near_[j]));
+                corners_[asked[j]] = {above, near_[j].element};
+                if constexpr (PointSet<A>) upper_ = std::max(upper_, above);
+            }
+            asked.clear(), points.clear();
+        }
+    }
+
+    /// Makes a part of each triangle whose bound is above the lower bound.
+    void make_parts() {
+        const Corners<A> corners{a_.primitives()};
+        constexpr std::size_t block = 4096;
+        std::vector<Parts> lists((a_.size() + block - 1) / block);
+        threads_.for_each_piece(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin * block; i < std::min(a_.size(), end * block); ++i) {
+                const auto id = static_cast<PrimitiveId>(i);
+                if (!holds(id)) continue;
+                TrianglePart part;
+                part.element = id;
+                part.middle = no_primitive;
+                part.asked_middle = part.halved = false;
+                part.bound = std::numeric_limits<double>::infinity();
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto& c = corners_[corners.number(i, k)];
+                    part.corner[k] = Vec3d(corners[corners.number(i, k)]);
+                    part.distance[k] = c.distance, part.nearest[k] = c.nearest;
+                }
+                if (bound(part); part.bound > lower_) lists[i / block].push_back(part);
+            }
+        });
+        for (const auto& list : lists) parts_.insert(parts_.end(), list.begin(), list.end());
+        corners_ = {};
+    }
+
+    /// Drops the parts that are within the tolerance.
+    void settle() {
+        const double enough =
+            lower_ + std::max({options_.absolute, product(options_.relative, lower_), error_.floor(lower_)});
+        std::erase_if(parts_, [&](const TrianglePart& part) {
+            if (part.bound > enough) return false;
+            upper_ = std::max(upper_, part.bound);
+            return true;
+        });
+    }
+
+    /// Takes the parts of the greatest bounds. Asks for the closest point of each centroid, or, where that is
+    /// known, divides the part in four.
+    void refine() {
+        const std::size_t count = std::min(parts_a_round, parts_.size()), first = parts_.size() - count;
+        std::nth_element(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(first), parts_.end(),
+                         [](const TrianglePart& s, const TrianglePart& t) { return s.bound < t.bound; });
+        Parts taken(parts_.begin() + static_cast<std::ptrdiff_t>(first), parts_.end());
+        parts_.resize(first);
+
+        // Ask for all new points.
+        std::vector<Vec3d> exact;
+        std::vector<Point> points;
+        for (const auto& part : taken) {
+            const auto& [a, b, c] = part.corner;
+            if (!part.asked_middle)
+                exact.push_back((a + b + c) / 3.0);
+            else
+                for (int k = 0; k < 3; ++k)
+                    exact.push_back(part.corner[k] +
+                                    (part.corner[(k + 1) % 3] - part.corner[k]) * part.cut[k]);
+        }
+        for (const auto& p : exact) points.emplace_back(p);
+        ask(points);
+
+        // Raise the lower bound, and make the new parts.
+        std::size_t next = 0;
+        for (const auto& part : taken)
+            for (int k = 0; k < (part.asked_middle ? 3 : 1); ++k, ++next)
+                see(points[next], length(exact[next] - Vec3d(points[next])), part.element, near_[next]);
+        const auto above = [&](std::size_t i) {
+            return error_.above(distance(near_[i])) + length(exact[i] - Vec3d(points[i]));
+        };
+        Parts made;
+        next = 0;
+        for (auto& part : taken) {
+            if (!part.asked_middle) {
+                part.asked_middle = true;
+                part.middle = near_[next].element;
+                double farthest = 0;
+                for (const auto& c : part.corner) farthest = std::max(farthest, length(c - exact[next]));
+                part.bound = std::min(part.bound, above(next) + farthest);
+                made.push_back(part);
+                ++next;
+                continue;
+            }
+            for (int child = 0; child < 4; ++child) {
+                TrianglePart small = part;
+                small.asked_middle = false;
+                small.halved = !part.halved;
+                for (int k = 0; k < 3; ++k) {
+                    if (k == child) continue;  // the corner that the child shares
+                    // Of the middle child, corner k lies on edge k; of child c, on its edge to corner k.
+                    const int edge = child == 3 ? k : ((child + 1) % 3 == k ? child : k);
+                    const std::size_t i = next + static_cast<std::size_t>(edge);
+                    small.corner[k] = exact[i];
+                    small.distance[k] = above(i);
+                    small.nearest[k] = near_[i].element;
+                }
+                made.push_back(small);
+            }
+            next += 3;
+        }
+        threads_.for_each_piece(made.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) bound(made[i]);
+        });
+        parts_.insert(parts_.end(), made.begin(), made.end());
+    }
+
+    /// How far a point is from one element of B at most.
+    double distance_to(PrimitiveId element, const Vec3d& p) const {
+        double d2;
+        if constexpr (TriangleSet<B>) {
+            const auto t = b_.primitives().triangle(element);
+            d2 = closest_point(p, Triangle<double, 3>{Vec3d(t.a), Vec3d(t.b), Vec3d(t.c)}).distance2;
+        } else {
+            d2 = distance2(p, Vec3d(b_.primitives().point(element)));
+        }
+        return product(std::sqrt(d2), 1 + 0x1p-48) + error_.absolute;
+    }
+
+    /// Lowers the bound of a part, by ever dearer means until it is no more than the lower bound. What is left
+    /// is told where to be divided.
+    void bound(TrianglePart& part) const {
+        // No point of the part is farther from a corner than the corner's longer edge, nor from the nearest
+        // corner than the radius of a circle around the part.
+        const auto& c = part.corner;
+        const auto& d = part.distance;
+        const double edge[3] = {length(c[1] - c[0]), length(c[2] - c[1]), length(c[0] - c[2])};
+        const double longest = std::max({edge[0], edge[1], edge[2]});
+        double least = std::max({d[0], d[1], d[2]}) + product(longest, 0.57735026918962584);
+        for (int k = 0; k < 3; ++k) least = std::min(least, d[k] + std::max(edge[k], edge[(k + 2) % 3]));
+        part.bound = std::min(part.bound, product(least, 1 + 0x1p-50));
+        if (part.bound <= lower_) return;
+
+        // An element of B is convex, so a corner is the farthest from it.
+        double to[3][3];
+        for (int i = 0; i < 3; ++i) {
+            double greatest = 0;
+            for (int k = 0; k < 3; ++k) {
+                to[i][k] = part.nearest[i] == part.nearest[k] ? d[k] : distance_to(part.nearest[i], c[k]);
+                greatest = std::max(greatest, to[i][k]);
+            }
+            part.bound = std::min(part.bound, greatest);
+            if (part.bound <= lower_) return;
+        }
+        if (part.middle != no_primitive && part.middle != part.nearest[0] &&
+            part.middle != part.nearest[1] && part.middle != part.nearest[2]) {
+            double greatest = 0;
+            for (int k = 0; k < 3; ++k) greatest = std::max(greatest, distance_to(part.middle, c[k]));
+            part.bound = std::min(part.bound, greatest);
+        }
+
+        // Cut each edge where its ends' elements are equally far away, if distances are as straight as they
+        // are in one plane: then both parts may be next to one element. Halve all edges every other time.
+        for (int k = 0; k < 3; ++k) {
+            const int next = (k + 1) % 3;
+            const auto measure = [](double x) { return PointSet<B> ? product(x, x) : x; };
+            const double here = measure(to[next][k]) - measure(to[k][k]);
+            const double there = measure(to[k][next]) - measure(to[next][next]);
+            part.cut[k] = here > 0 && there > 0 && !part.halved ? here / (here + there) : 0.5;
+        }
+    }
+
+    struct Corner {
+        double distance;
+        PrimitiveId nearest;
+    };
+    const IA& a_;
+    const IB& b_;
+    const HausdorffOptions& options_;
+    IeeeExecutor threads_;
+    DistanceError<T> error_;
+    double lower_, upper_ = 0;
+    Result best_;
+    std::vector<Corner> corners_;
+    Parts parts_;
+    std::vector<Near<T, dimension>> near_;
+};
+
+inline void expect_tolerances(const HausdorffOptions& options) {
+    if (!(options.absolute >= 0) || !(options.relative >= 0))
+        throw UsageError("the tolerances of a Hausdorff distance are not negative");
+}
+template <class IA, class IB>
+auto directed_hausdorff(const IA& a, const IB& b, const HausdorffOptions& options, Executor& executor,
+                        double at_least) {
+    using Result = typename DirectedHausdorff<IA, IB>::Result;
+    constexpr auto infinity = std::numeric_limits<typename IA::Scalar>::infinity();
+    if (a.bounds().empty()) return Result{};
+    if (b.bounds().empty()) return Result{infinity, infinity};
+    return in_ieee_mode([&] { return DirectedHausdorff<IA, IB>(a, b, options, executor, at_least).run(); });
+}
+
+}  // namespace detail
+
+/// The directed (one-sided) Hausdorff distance from A to B: how far the points of A are from B at most, not
+/// only its corners. Triangles to triangles or points, in space; points to whatever has closest points.
+///
+/// A may be any index, since only its primitives are read: `build<BruteForce>(mesh)` costs least. The
+/// distance from an empty set is 0, and that from any other to an empty set is infinite. Throws UsageError for
+/// tolerances that are negative or NaN.
+///
+/// Costs a closest point for each vertex of A, and for some of its triangles a dozen or more, by how alike the
+/// sets are and how narrow the tolerance is. Takes 24 bytes for each vertex, and up to 160 for each triangle
+/// that may be the farthest. Large sets are asked on all cores, unless an executor is given (Threads); the
+/// result is the same.
+template <class SA, class A, class SB, class B>
+requires FarFrom<A, B>
+Hausdorff<typename A::Scalar, A::dimension> directed_hausdorff_distance(const Index<SA, A>& a,
+                                                                        const Index<SB, B>& b,
+                                                                        const HausdorffOptions& options = {},
+                                                                        Threads threads = {}) {
+    detail::expect_tolerances(options);
+    return detail::directed_hausdorff(a, b, options, threads.over(a.size()), 0);
+}
+
+/// The (symmetric) Hausdorff distance: the greater of the directed ones. It is 0 for two empty sets, and
+/// infinite if one is empty.
+template <class SA, class A, class SB, class B>
+requires(FarFrom<A, B>&& FarFrom<B, A>) Hausdorff<typename A::Scalar, A::dimension> hausdorff_distance(
+    const Index<SA, A>& a, const Index<SB, B>& b, const HausdorffOptions& options = {},
+    Threads threads = {}) {
+    detail::expect_tolerances(options);
+    Executor& executor = threads.over(std::max(a.size(), b.size()));
+    auto result = detail::directed_hausdorff(a, b, options, executor, 0);
+    // What is no farther than the distance found is of no interest in the other direction.
+    const auto back = detail::directed_hausdorff(b, a, options, executor, static_cast<double>(result.lower));
+    if (back && back.lower > result.lower) {
+        const auto upper = std::max(result.upper, back.upper);
+        result = {back.lower,   upper,        back.element_b, back.element_a,
+                  back.point_b, back.point_a, true};
+    }
+    result.upper = std::max(result.upper, back.upper);
+    result.lower = std::max(result.lower, back.lower);
+    return result;
+}
+
+}  // namespace hedgerow
