@@ -25,8 +25,8 @@ using Result = Hausdorff<T, 3>;
 /// How far apart bounds may be, whatever tolerance is asked for.
 template <class T>
 double floor_of(double distance, double reach) {
-    return std::is_same_v<T, float> ? 0x1p-20 * distance + 0x1p-21 * reach
-                                    : 0x1p-46 * distance + 0x1p-42 * reach;
+    return std::is_same_v<T, float> ? 0x1p-19 * distance + 0x1p-20 * reach
+                                    : 0x1p-45 * distance + 0x1p-42 * reach;
 }
 
 /// The greatest distance from points spread over A's triangles (corners included) to B: a lower bound of the
@@ -58,7 +58,7 @@ void expect_sound(const Result<T>& found, const A& a, const B& b, const Hausdorf
     ASSERT_LE(0, lower);
     ASSERT_LE(lower, upper);
     ASSERT_LE(upper - lower, std::max({options.absolute, options.relative * lower, floor_of<T>(lower, reach)}) * (1 + 1e-6));
-    const double rounding = 8 * static_cast<double>(unit_roundoff<T>) * (reach + upper);
+    const double rounding = floor_of<T>(upper, reach);
     ASSERT_NEAR(length(Vec3d(found.point_a) - Vec3d(found.point_b)), lower, rounding);
     const auto on_a = foot_of(found.point_a, a.primitives().closest_point(found.element_a, found.point_a));
     const auto on_b = foot_of(found.point_b, b.primitives().closest_point(found.element_b, found.point_b));

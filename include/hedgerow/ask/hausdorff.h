@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <hedgerow/ask/points.h>
@@ -32,13 +33,13 @@ struct HausdorffOptions {
 /// `point_a` is on A always; `from_b` says that it is the point on B that is far away.
 ///
 /// Both bounds allow for all roundings: those of a distance, and those of points where a triangle was
-/// divided, which are rounded to T as queries are. So the interval can be as wide as 2⁻²⁰ of the distance plus
-/// 2⁻²¹ of the largest coordinate (in double 2⁻⁴⁶ and 2⁻⁴²), whatever tolerance is asked for.
+/// divided, which are rounded to T as queries are. So the interval can be as wide as 2⁻¹⁹ of the distance plus
+/// 2⁻²⁰ of the largest coordinate (in double 2⁻⁴⁵ and 2⁻⁴²), whatever tolerance is asked for.
 template <std::floating_point T, int D>
 struct Hausdorff {
     T lower = 0, upper = 0;
     PrimitiveId element_a = no_primitive, element_b = no_primitive;
-    Vec<T, D> point_a, point_b;
+    Vec<T, D> point_a = {}, point_b = {};
     bool from_b = false;
 
     /// False where there are no witnesses: a set is empty.
@@ -109,13 +110,19 @@ struct Corners {
 struct TrianglePart {
     Vec3d corner[3];
     double distance[3];      // at least those of the corners to B
-    double bound;            // at least the distance of any point of the part to B
-    double cut[3];           // where to divide the edge from corner k to the next
     PrimitiveId nearest[3];  // the elements of B closest to the corners
-    PrimitiveId middle;      // and to the centroid, or that of a part around this one
+    PrimitiveId middle;      // and to the centroid, or to that of a part around this one
     PrimitiveId element;     // of A
+    double bound;            // at least the distance of any point of the part to B
+    double at;               // where to divide the edge from corner `edge` to the next, from 0 to 1
+    std::uint8_t edge, age;
     bool asked_middle;
-    bool halved;
+
+    Vec3d centroid() const { return (corner[0] + corner[1] + corner[2]) / 3.0; }
+    Vec3d cut() const { return corner[edge] + (corner[(edge + 1) % 3] - corner[edge]) * at; }
+    void move_corner(int k, const Vec3d& to, double above, PrimitiveId element_of_b) {
+        corner[k] = to, distance[k] = above, nearest[k] = element_of_b;
+    }
 };
 
 /// The directed distance from index A to index B, if it is above `at_least`.
@@ -216,7 +223,8 @@ private:
                 TrianglePart part;
                 part.element = id;
                 part.middle = no_primitive;
-                part.asked_middle = part.halved = false;
+                part.asked_middle = false;
+                part.age = 0;
                 part.bound = std::numeric_limits<double>::infinity();
                 for (std::size_t k = 0; k < 3; ++k) {
                     const auto& c = corners_[corners.number(i, k)];
@@ -241,72 +249,45 @@ private:
         });
     }
 
-    /// Takes the parts of the greatest bounds. Asks for the closest point of each centroid, or, where that is
-    /// known, divides the part in four.
+    /// Takes the parts of the greatest bounds. Asks for the closest point of the centroid, or, where that is
+    /// known, divides the part in two.
     void refine() {
         const std::size_t count = std::min(parts_a_round, parts_.size()), first = parts_.size() - count;
         std::nth_element(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(first), parts_.end(),
                          [](const TrianglePart& s, const TrianglePart& t) { return s.bound < t.bound; });
-        Parts taken(parts_.begin() + static_cast<std::ptrdiff_t>(first), parts_.end());
-        parts_.resize(first);
 
-        // Ask for all new points.
+        // Ask for a point of each.
         std::vector<Vec3d> exact;
         std::vector<Point> points;
-        for (const auto& part : taken) {
-            const auto& [a, b, c] = part.corner;
-            if (!part.asked_middle)
-                exact.push_back((a + b + c) / 3.0);
-            else
-                for (int k = 0; k < 3; ++k)
-                    exact.push_back(part.corner[k] +
-                                    (part.corner[(k + 1) % 3] - part.corner[k]) * part.cut[k]);
+        for (std::size_t i = first; i < parts_.size(); ++i) {
+            exact.push_back(parts_[i].asked_middle ? parts_[i].cut() : parts_[i].centroid());
+            points.emplace_back(exact.back());
         }
-        for (const auto& p : exact) points.emplace_back(p);
         ask(points);
+        for (std::size_t i = 0; i < count; ++i)
+            see(points[i], length(exact[i] - Vec3d(points[i])), parts_[first + i].element, near_[i]);
 
-        // Raise the lower bound, and make the new parts.
-        std::size_t next = 0;
-        for (const auto& part : taken)
-            for (int k = 0; k < (part.asked_middle ? 3 : 1); ++k, ++next)
-                see(points[next], length(exact[next] - Vec3d(points[next])), part.element, near_[next]);
-        const auto above = [&](std::size_t i) {
-            return error_.above(distance(near_[i])) + length(exact[i] - Vec3d(points[i]));
-        };
-        Parts made;
-        next = 0;
-        for (auto& part : taken) {
-            if (!part.asked_middle) {
-                part.asked_middle = true;
-                part.middle = near_[next].element;
+        // Make two of each part that is divided.
+        for (std::size_t i = 0; i < count; ++i) {
+            TrianglePart& part = parts_[first + i];
+            const double above =
+                error_.above(distance(near_[i])) + length(exact[i] - Vec3d(points[i]));
+            if (std::exchange(part.asked_middle, !part.asked_middle)) {
+                part.age = part.age == 2 ? 0 : part.age + 1;
+                TrianglePart other = part;
+                part.move_corner(part.edge, exact[i], above, near_[i].element);
+                other.move_corner((part.edge + 1) % 3, exact[i], above, near_[i].element);
+                parts_.push_back(other);
+            } else {
+                part.middle = near_[i].element;
                 double farthest = 0;
-                for (const auto& c : part.corner) farthest = std::max(farthest, length(c - exact[next]));
-                part.bound = std::min(part.bound, above(next) + farthest);
-                made.push_back(part);
-                ++next;
-                continue;
+                for (const auto& c : part.corner) farthest = std::max(farthest, length(c - exact[i]));
+                part.bound = std::min(part.bound, above + farthest);
             }
-            for (int child = 0; child < 4; ++child) {
-                TrianglePart small = part;
-                small.asked_middle = false;
-                small.halved = !part.halved;
-                for (int k = 0; k < 3; ++k) {
-                    if (k == child) continue;  // the corner that the child shares
-                    // Of the middle child, corner k lies on edge k; of child c, on its edge to corner k.
-                    const int edge = child == 3 ? k : ((child + 1) % 3 == k ? child : k);
-                    const std::size_t i = next + static_cast<std::size_t>(edge);
-                    small.corner[k] = exact[i];
-                    small.distance[k] = above(i);
-                    small.nearest[k] = near_[i].element;
-                }
-                made.push_back(small);
-            }
-            next += 3;
         }
-        threads_.for_each_piece(made.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) bound(made[i]);
+        threads_.for_each_piece(parts_.size() - first, 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) bound(parts_[first + i]);
         });
-        parts_.insert(parts_.end(), made.begin(), made.end());
     }
 
     /// How far a point is from one element of B at most.
@@ -353,14 +334,25 @@ private:
             part.bound = std::min(part.bound, greatest);
         }
 
-        // Cut each edge where its ends' elements are equally far away, if distances are as straight as they
-        // are in one plane: then both parts may be next to one element. Halve all edges every other time.
+        // Cut an edge where its ends' elements are equally far away, if distances are as straight as they are
+        // in one plane: after two cuts such elements have the parts to themselves. Halve the longest edge
+        // every third time, and where no edge is as clear.
+        part.edge = static_cast<std::uint8_t>(std::max_element(edge, edge + 3) - edge);
+        part.at = 0.5;
+        if (part.age == 2) return;
+        double clearest = 0;
         for (int k = 0; k < 3; ++k) {
             const int next = (k + 1) % 3;
             const auto measure = [](double x) { return PointSet<B> ? product(x, x) : x; };
+            const double noise = 4 * (error_.absolute + product(to[k][k] + to[next][next], error_.relative));
+            if (!(to[next][k] - to[k][k] > noise && to[k][next] - to[next][next] > noise)) continue;
             const double here = measure(to[next][k]) - measure(to[k][k]);
             const double there = measure(to[k][next]) - measure(to[next][next]);
-            part.cut[k] = here > 0 && there > 0 && !part.halved ? here / (here + there) : 0.5;
+            const double clear = std::min(here, there) ;
+            if (!(clear > clearest)) continue;
+            clearest = clear;
+            part.edge = static_cast<std::uint8_t>(k);
+            part.at = here / (here + there);
         }
     }
 
@@ -390,7 +382,7 @@ auto directed_hausdorff(const IA& a, const IB& b, const HausdorffOptions& option
     using Result = typename DirectedHausdorff<IA, IB>::Result;
     constexpr auto infinity = std::numeric_limits<typename IA::Scalar>::infinity();
     if (a.bounds().empty()) return Result{};
-    if (b.bounds().empty()) return Result{infinity, infinity};
+    if (b.bounds().empty()) return Result{.lower = infinity, .upper = infinity};
     return in_ieee_mode([&] { return DirectedHausdorff<IA, IB>(a, b, options, executor, at_least).run(); });
 }
 
