@@ -111,11 +111,11 @@ struct TrianglePart {
     Vec3d corner[3];
     double distance[3];      // at least those of the corners to B
     PrimitiveId nearest[3];  // the elements of B closest to the corners
-    PrimitiveId middle;      // and to the centroid, or to that of a part around this one
+    PrimitiveId middle;      // and to the centroid of the triangle
     PrimitiveId element;     // of A
     double bound;            // at least the distance of any point of the part to B
     double at;               // where to divide the edge from corner `edge` to the next, from 0 to 1
-    std::uint8_t edge, age;
+    std::uint8_t edge, age;  // how many cuts ago the longest edge was halved
     bool asked_middle;
 
     Vec3d centroid() const { return (corner[0] + corner[1] + corner[2]) / 3.0; }
@@ -124,6 +124,30 @@ struct TrianglePart {
         corner[k] = to, distance[k] = above, nearest[k] = element_of_b;
     }
 };
+
+/// A point of a triangle that is about the closest to p (Ericson 2005, 5.1.5). Whatever rounding does to its
+/// place in the triangle, the distance to it is no less than that to the triangle, but for the rounding of
+/// coordinates.
+inline Vec3d point_near(const Vec3d& p, const Triangle<double, 3>& t) {
+    const Vec3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, bp = p - t.b, cp = p - t.c;
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return t.a;
+    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return t.b;
+    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return t.c;
+    const auto on_edge = [](const Vec3d& from, const Vec3d& along, double part, double rest) {
+        return from + along * (part / (part + rest));
+    };
+    const double vc = product(d1, d4) - product(d3, d2);
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return on_edge(t.a, ab, d1, -d3);
+    const double vb = product(d5, d2) - product(d1, d6);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return on_edge(t.a, ac, d2, -d6);
+    const double va = product(d3, d6) - product(d5, d4);
+    if (va <= 0 && d4 >= d3 && d5 >= d6) return on_edge(t.b, t.c - t.b, d4 - d3, d5 - d6);
+    const double sum = va + vb + vc;
+    return t.a + ab * (vb / sum) + ac * (vc / sum);
+}
 
 /// The directed distance from index A to index B, if it is above `at_least`.
 template <class IA, class IB>
@@ -148,6 +172,7 @@ public:
     Result run() {
         ask_corners();
         if constexpr (TriangleSet<A>) {
+            settle();
             make_parts();
             const std::size_t most = parts_.size() + options_.most_parts;
             while (settle(), !parts_.empty() && parts_.size() <= most) refine();
@@ -231,7 +256,8 @@ private:
                     part.corner[k] = Vec3d(corners[corners.number(i, k)]);
                     part.distance[k] = c.distance, part.nearest[k] = c.nearest;
                 }
-                if (bound(part); part.bound > lower_) lists[i / block].push_back(part);
+                bound(part);
+                lists[i / block].push_back(part);
             }
         });
         for (const auto& list : lists) parts_.insert(parts_.end(), list.begin(), list.end());
@@ -240,8 +266,8 @@ private:
 
     /// Drops the parts that are within the tolerance.
     void settle() {
-        const double enough =
-            lower_ + std::max({options_.absolute, product(options_.relative, lower_), error_.floor(lower_)});
+        wanted_ = lower_ + std::max(options_.absolute, product(options_.relative, lower_));
+        const double enough = std::max(wanted_, lower_ + error_.floor(lower_));
         std::erase_if(parts_, [&](const TrianglePart& part) {
             if (part.bound > enough) return false;
             upper_ = std::max(upper_, part.bound);
@@ -292,68 +318,111 @@ private:
 
     /// How far a point is from one element of B at most.
     double distance_to(PrimitiveId element, const Vec3d& p) const {
-        double d2;
+        Vec3d q;
         if constexpr (TriangleSet<B>) {
             const auto t = b_.primitives().triangle(element);
-            d2 = closest_point(p, Triangle<double, 3>{Vec3d(t.a), Vec3d(t.b), Vec3d(t.c)}).distance2;
+            q = point_near(p, {Vec3d(t.a), Vec3d(t.b), Vec3d(t.c)});
         } else {
-            d2 = distance2(p, Vec3d(b_.primitives().point(element)));
+            q = Vec3d(b_.primitives().point(element));
         }
-        return product(std::sqrt(d2), 1 + 0x1p-48) + error_.absolute;
+        const double d = length(p - q);
+        return d - d == 0 ? error_.above(d) : std::numeric_limits<double>::infinity();
     }
 
-    /// Lowers the bound of a part, by ever dearer means until it is no more than the lower bound. What is left
-    /// is told where to be divided.
+    /// Lowers the bound of a part, until it is low enough or nothing is left to try.
     void bound(TrianglePart& part) const {
-        // No point of the part is farther from a corner than the corner's longer edge, nor from the nearest
-        // corner than the radius of a circle around the part.
         const auto& c = part.corner;
         const auto& d = part.distance;
-        const double edge[3] = {length(c[1] - c[0]), length(c[2] - c[1]), length(c[0] - c[2])};
-        const double longest = std::max({edge[0], edge[1], edge[2]});
-        double least = std::max({d[0], d[1], d[2]}) + product(longest, 0.57735026918962584);
-        for (int k = 0; k < 3; ++k) least = std::min(least, d[k] + std::max(edge[k], edge[(k + 2) % 3]));
-        part.bound = std::min(part.bound, product(least, 1 + 0x1p-50));
-        if (part.bound <= lower_) return;
-
-        // An element of B is convex, so a corner is the farthest from it.
-        double to[3][3];
-        for (int i = 0; i < 3; ++i) {
-            double greatest = 0;
-            for (int k = 0; k < 3; ++k) {
-                to[i][k] = part.nearest[i] == part.nearest[k] ? d[k] : distance_to(part.nearest[i], c[k]);
-                greatest = std::max(greatest, to[i][k]);
-            }
-            part.bound = std::min(part.bound, greatest);
-            if (part.bound <= lower_) return;
-        }
-        if (part.middle != no_primitive && part.middle != part.nearest[0] &&
-            part.middle != part.nearest[1] && part.middle != part.nearest[2]) {
-            double greatest = 0;
-            for (int k = 0; k < 3; ++k) greatest = std::max(greatest, distance_to(part.middle, c[k]));
-            part.bound = std::min(part.bound, greatest);
-        }
-
-        // Cut an edge where its ends' elements are equally far away, if distances are as straight as they are
-        // in one plane: after two cuts such elements have the parts to themselves. Halve the longest edge
-        // every third time, and where no edge is as clear.
-        part.edge = static_cast<std::uint8_t>(std::max_element(edge, edge + 3) - edge);
+        // No point of the part is farther from a corner than the corner's longer edge, nor from the nearest
+        // corner than the part's circumradius, or half the longest edge of an obtuse part.
+        const double edge2[3] = {length2(c[1] - c[0]), length2(c[2] - c[1]), length2(c[0] - c[2])};
+        const int longest = static_cast<int>(std::max_element(edge2, edge2 + 3) - edge2);
+        const double x2 = edge2[(longest + 1) % 3], y2 = edge2[(longest + 2) % 3];
+        const double turned = x2 + y2 - edge2[longest], double_area2 = product(x2, y2) - product(turned, turned) / 4;
+        double radius2 = edge2[longest] / 4;
+        if (turned > 0) radius2 = std::min(edge2[longest] / 3, product(product(x2, y2) / double_area2, radius2));
+        double least = std::max({d[0], d[1], d[2]}) + std::sqrt(radius2);
+        for (int k = 0; k < 3; ++k)
+            least = std::min(least, d[k] + std::sqrt(std::max(edge2[k], edge2[(k + 2) % 3])));
+        part.bound = std::min(part.bound, product(least, 1 + 0x1p-40));
+        part.edge = static_cast<std::uint8_t>(longest);
         part.at = 0.5;
-        if (part.age == 2) return;
+        if (part.bound <= wanted_) return;
+
+        // Compare with the elements of B that are near.
+        Near3 near;
+        for (const PrimitiveId element : {part.nearest[0], part.nearest[1], part.nearest[2], part.middle}) {
+            const PrimitiveId* const end = near.element + near.count;
+            if (element == no_primitive || std::find<const PrimitiveId*>(near.element, end, element) != end) continue;
+            near.element[near.count++] = element;
+        }
+        Apart3 apart;
+        for (int i = 0; i < near.count; ++i)
+            for (int k = 0; k < 3; ++k)
+                apart.to[i][k] = near.element[i] == part.nearest[k] ? d[k] : distance_to(near.element[i], c[k]);
+        for (int k = 0; k < 3; ++k) apart.corner[k] = c[k];
+        part.bound = std::min(part.bound, bound_by(near, apart, 4));
+        if (part.bound <= wanted_ || part.age == 2) return;
+        if (const Cut cut = cut_between(near, apart)) part.edge = cut.edge, part.at = cut.at;
+    }
+
+    /// Elements of B, and how far the corners of a part are from them at most.
+    struct Near3 {
+        PrimitiveId element[4];
+        int count = 0;
+    };
+    struct Apart3 {
+        Vec3d corner[3];
+        double to[4][3];
+    };
+    struct Cut {
+        std::uint8_t edge = 3;
+        double at = 0.5;
+        explicit operator bool() const { return edge < 3; }
+    };
+    /// Where an edge's ends are nearest to two elements, and some point between equally near to both, if
+    /// distances are as straight as they are in one plane: after two cuts two elements have the parts to
+    /// themselves. The edge that is clearest.
+    Cut cut_between(const Near3& near, const Apart3& apart) const {
+        int nearest[3] = {};
+        for (int k = 0; k < 3; ++k)
+            for (int i = 1; i < near.count; ++i)
+                if (apart.to[i][k] < apart.to[nearest[k]][k]) nearest[k] = i;
+        Cut cut;
         double clearest = 0;
         for (int k = 0; k < 3; ++k) {
-            const int next = (k + 1) % 3;
-            const auto measure = [](double x) { return PointSet<B> ? product(x, x) : x; };
-            const double noise = 4 * (error_.absolute + product(to[k][k] + to[next][next], error_.relative));
-            if (!(to[next][k] - to[k][k] > noise && to[k][next] - to[next][next] > noise)) continue;
-            const double here = measure(to[next][k]) - measure(to[k][k]);
-            const double there = measure(to[k][next]) - measure(to[next][next]);
-            const double clear = std::min(here, there) ;
-            if (!(clear > clearest)) continue;
-            clearest = clear;
-            part.edge = static_cast<std::uint8_t>(k);
-            part.at = here / (here + there);
+            const int next = (k + 1) % 3, i = nearest[k], j = nearest[next];
+            const double noise = 4 * (error_.absolute + product(apart.to[i][k] + apart.to[j][next], error_.relative));
+            double here = apart.to[j][k] - apart.to[i][k], there = apart.to[i][next] - apart.to[j][next];
+            if (!(here > noise && there > noise)) continue;
+            if (std::min(here, there) <= clearest) continue;
+            clearest = std::min(here, there);
+            if constexpr (PointSet<B>) {  // squares are straight
+                here = product(here, apart.to[j][k] + apart.to[i][k]);
+                there = product(there, apart.to[i][next] + apart.to[j][next]);
+            }
+            cut = {static_cast<std::uint8_t>(k), here / (here + there)};
         }
+        return cut;
+    }
+    /// A bound by elements of B alone: of one, which is convex, a corner of the part is the farthest. Where
+    /// none is near all corners, the part is cut, up to `cuts` times.
+    double bound_by(const Near3& near, const Apart3& apart, int cuts) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < near.count; ++i)
+            least = std::min(least, std::max({apart.to[i][0], apart.to[i][1], apart.to[i][2]}));
+        if (least <= wanted_ || cuts == 0) return least;
+        const Cut cut = cut_between(near, apart);
+        if (!cut) return least;
+        const int from = cut.edge, to = (from + 1) % 3;
+        Apart3 first = apart, second = apart;
+        const Vec3d p = apart.corner[from] + (apart.corner[to] - apart.corner[from]) * cut.at;
+        first.corner[from] = second.corner[to] = p;
+        for (int i = 0; i < near.count; ++i)
+            first.to[i][from] = second.to[i][to] = distance_to(near.element[i], p);
+        const double of_first = bound_by(near, first, cuts - 1);
+        if (of_first > wanted_) return least;
+        return std::min(least, std::max(of_first, bound_by(near, second, cuts - 1)));
     }
 
     struct Corner {
@@ -365,7 +434,7 @@ private:
     const HausdorffOptions& options_;
     IeeeExecutor threads_;
     DistanceError<T> error_;
-    double lower_, upper_ = 0;
+    double lower_, wanted_ = 0, upper_ = 0;
     Result best_;
     std::vector<Corner> corners_;
     Parts parts_;
