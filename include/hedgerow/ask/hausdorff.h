@@ -241,6 +241,7 @@ private:
         const Corners<A> corners{a_.primitives()};
         constexpr std::size_t block = 4096;
         std::vector<Parts> lists((a_.size() + block - 1) / block);
+        std::vector<double> greatest(lists.size(), 0);  // of the bounds of triangles that are dropped
         threads_.for_each_piece(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin * block; i < std::min(a_.size(), end * block); ++i) {
                 const auto id = static_cast<PrimitiveId>(i);
@@ -257,19 +258,23 @@ private:
                     part.distance[k] = c.distance, part.nearest[k] = c.nearest;
                 }
                 bound(part);
-                lists[i / block].push_back(part);
+                if (part.bound > enough_)
+                    lists[i / block].push_back(part);
+                else
+                    greatest[i / block] = std::max(greatest[i / block], part.bound);
             }
         });
         for (const auto& list : lists) parts_.insert(parts_.end(), list.begin(), list.end());
+        for (const double bound : greatest) upper_ = std::max(upper_, bound);
         corners_ = {};
     }
 
     /// Drops the parts that are within the tolerance.
     void settle() {
         wanted_ = lower_ + std::max(options_.absolute, product(options_.relative, lower_));
-        const double enough = std::max(wanted_, lower_ + error_.floor(lower_));
+        enough_ = std::max(wanted_, lower_ + error_.floor(lower_));
         std::erase_if(parts_, [&](const TrianglePart& part) {
-            if (part.bound > enough) return false;
+            if (part.bound > enough_) return false;
             upper_ = std::max(upper_, part.bound);
             return true;
         });
@@ -316,18 +321,20 @@ private:
         });
     }
 
-    /// How far a point is from one element of B at most.
-    double distance_to(PrimitiveId element, const Vec3d& p) const {
-        Vec3d q;
+    /// An element of B, and how far a point is from it at most.
+    auto shape(PrimitiveId element) const {
         if constexpr (TriangleSet<B>) {
             const auto t = b_.primitives().triangle(element);
-            q = point_near(p, {Vec3d(t.a), Vec3d(t.b), Vec3d(t.c)});
+            return Triangle<double, 3>{Vec3d(t.a), Vec3d(t.b), Vec3d(t.c)};
         } else {
-            q = Vec3d(b_.primitives().point(element));
+            return Vec3d(b_.primitives().point(element));
         }
-        const double d = length(p - q);
+    }
+    double distance_to(const Triangle<double, 3>& t, const Vec3d& p) const {
+        const double d = length(p - point_near(p, t));
         return d - d == 0 ? error_.above(d) : std::numeric_limits<double>::infinity();
     }
+    double distance_to(const Vec3d& q, const Vec3d& p) const { return error_.above(length(p - q)); }
 
     /// Lowers the bound of a part, until it is low enough or nothing is left to try.
     void bound(TrianglePart& part) const {
@@ -350,16 +357,17 @@ private:
         if (part.bound <= wanted_) return;
 
         // Compare with the elements of B that are near.
-        Near3 near;
-        for (const PrimitiveId element : {part.nearest[0], part.nearest[1], part.nearest[2], part.middle}) {
-            const PrimitiveId* const end = near.element + near.count;
-            if (element == no_primitive || std::find<const PrimitiveId*>(near.element, end, element) != end) continue;
-            near.element[near.count++] = element;
-        }
+        NearShapes near;
         Apart3 apart;
-        for (int i = 0; i < near.count; ++i)
+        PrimitiveId tried[4];
+        for (const PrimitiveId element : {part.nearest[0], part.nearest[1], part.nearest[2], part.middle}) {
+            if (element == no_primitive || std::count(tried, tried + near.count, element) != 0) continue;
+            near.shape[near.count] = shape(element);
             for (int k = 0; k < 3; ++k)
-                apart.to[i][k] = near.element[i] == part.nearest[k] ? d[k] : distance_to(near.element[i], c[k]);
+                apart.to[near.count][k] =
+                    element == part.nearest[k] ? d[k] : distance_to(near.shape[near.count], c[k]);
+            tried[near.count++] = element;
+        }
         for (int k = 0; k < 3; ++k) apart.corner[k] = c[k];
         part.bound = std::min(part.bound, bound_by(near, apart, 4));
         if (part.bound <= wanted_ || part.age == 2) return;
@@ -367,8 +375,8 @@ private:
     }
 
     /// Elements of B, and how far the corners of a part are from them at most.
-    struct Near3 {
-        PrimitiveId element[4];
+    struct NearShapes {
+        decltype(std::declval<DirectedHausdorff>().shape(0)) shape[4];
         int count = 0;
     };
     struct Apart3 {
@@ -383,7 +391,7 @@ private:
     /// Where an edge's ends are nearest to two elements, and some point between equally near to both, if
     /// distances are as straight as they are in one plane: after two cuts two elements have the parts to
     /// themselves. The edge that is clearest.
-    Cut cut_between(const Near3& near, const Apart3& apart) const {
+    Cut cut_between(const NearShapes& near, const Apart3& apart) const {
         int nearest[3] = {};
         for (int k = 0; k < 3; ++k)
             for (int i = 1; i < near.count; ++i)
@@ -407,7 +415,7 @@ private:
     }
     /// A bound by elements of B alone: of one, which is convex, a corner of the part is the farthest. Where
     /// none is near all corners, the part is cut, up to `cuts` times.
-    double bound_by(const Near3& near, const Apart3& apart, int cuts) const {
+    double bound_by(const NearShapes& near, const Apart3& apart, int cuts) const {
         double least = std::numeric_limits<double>::infinity();
         for (int i = 0; i < near.count; ++i)
             least = std::min(least, std::max({apart.to[i][0], apart.to[i][1], apart.to[i][2]}));
@@ -418,8 +426,12 @@ private:
         Apart3 first = apart, second = apart;
         const Vec3d p = apart.corner[from] + (apart.corner[to] - apart.corner[from]) * cut.at;
         first.corner[from] = second.corner[to] = p;
-        for (int i = 0; i < near.count; ++i)
-            first.to[i][from] = second.to[i][to] = distance_to(near.element[i], p);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < near.count; ++i) {
+            first.to[i][from] = second.to[i][to] = distance_to(near.shape[i], p);
+            nearest = std::min(nearest, first.to[i][from]);
+        }
+        if (nearest > wanted_) return least;
         const double of_first = bound_by(near, first, cuts - 1);
         if (of_first > wanted_) return least;
         return std::min(least, std::max(of_first, bound_by(near, second, cuts - 1)));
@@ -434,7 +446,7 @@ private:
     const HausdorffOptions& options_;
     IeeeExecutor threads_;
     DistanceError<T> error_;
-    double lower_, wanted_ = 0, upper_ = 0;
+    double lower_, wanted_ = 0, enough_ = 0, upper_ = 0;
     Result best_;
     std::vector<Corner> corners_;
     Parts parts_;
