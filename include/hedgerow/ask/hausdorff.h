@@ -186,7 +186,9 @@ public:
 private:
     using Parts = std::vector<TrianglePart>;
     static constexpr std::size_t batch = 1 << 16;      // of corners
-    static constexpr std::size_t parts_a_round = 2048;  // the more, the fuller batches; the fewer, the fewer
+    static constexpr std::size_t row = 16;             // of corners
+    static constexpr int most_cuts = 6;
+    static constexpr std::size_t parts_a_round = 4096;  // the more, the fuller batches; the fewer, the fewer
 
     static double reach(const Box<T, dimension>& box) {
         return static_cast<double>(std::max(T(0), max_component(max(abs(box.low), abs(box.high)))));
@@ -211,7 +213,8 @@ private:
         closest_points(b_, Strided<Point>(points), std::span(near_), threads_);
     }
 
-    /// Asks for all corners of A.
+    /// Asks for the corners of A: first for the first of each row, since corners that follow each other are mostly
+    /// near, then for those that may be farther from B than the farthest so far.
     void ask_corners() {
         const Corners<A> corners{a_.primitives()};
         std::vector<PrimitiveId> element(corners.size(), no_primitive);
@@ -222,18 +225,37 @@ private:
         corners_.resize(corners.size());
         std::vector<std::size_t> asked;
         std::vector<Point> points;
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            if (element[i] != no_primitive) asked.push_back(i), points.push_back(corners[i]);
-            if (points.size() < batch && i + 1 < corners.size()) continue;
+        const auto ask_all = [&] {
             ask(points);
             for (std::size_t j = 0; j < points.size(); ++j) {
                 see(points[j], 0, element[asked[j]], near_[j]);
-                const double above = error_.above(distance(near_[j]));
-                corners_[asked[j]] = {above, near_[j].element};
-                if constexpr (PointSet<A>) upper_ = std::max(upper_, above);
+                corners_[asked[j]] = {error_.above(distance(near_[j])), near_[j].element};
             }
             asked.clear(), points.clear();
+        };
+        const auto add = [&](std::size_t i) {
+            asked.push_back(i), points.push_back(corners[i]);
+            if (points.size() == batch) ask_all();
+        };
+        for (std::size_t i = 0; i < corners.size(); i += row)
+            if (element[i] != no_primitive) add(i);
+        ask_all();
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            if (element[i] == no_primitive || i % row == 0) continue;
+            const std::size_t first = i - i % row;
+            if (element[first] != no_primitive) {
+                const double gap =
+                    length(Vec<double, dimension>(corners[i]) - Vec<double, dimension>(corners[first]));
+                corners_[i] = {corners_[first].distance + gap, corners_[first].nearest};
+                // Leave room for the triangles around the corner.
+                if (corners_[i].distance + (PointSet<A> ? 0 : gap) <= lower_) continue;
+            }
+            add(i);
         }
+        ask_all();
+        if constexpr (PointSet<A>)
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                if (element[i] != no_primitive) upper_ = std::max(upper_, corners_[i].distance);
     }
 
     /// Makes a part of each triangle whose bound is above the lower bound.
@@ -369,7 +391,7 @@ private:
             tried[near.count++] = element;
         }
         for (int k = 0; k < 3; ++k) apart.corner[k] = c[k];
-        part.bound = std::min(part.bound, bound_by(near, apart, 4));
+        part.bound = std::min(part.bound, bound_by(near, apart, most_cuts));
         if (part.bound <= wanted_ || part.age == 2) return;
         if (const Cut cut = cut_between(near, apart)) part.edge = cut.edge, part.at = cut.at;
     }
