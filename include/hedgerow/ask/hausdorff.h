@@ -186,7 +186,7 @@ public:
 private:
     using Parts = std::vector<TrianglePart>;
     static constexpr std::size_t batch = 1 << 16;      // of corners
-    static constexpr std::size_t row = 16;             // of corners
+    static constexpr std::size_t row = 8;              // of corners
     static constexpr int most_cuts = 6;
     static constexpr std::size_t parts_a_round = 4096;  // the more, the fuller batches; the fewer, the fewer
 
