@@ -267,7 +267,7 @@ TYPED_TEST(HausdorffOf, BadTolerances) {
 }
 TYPED_TEST(HausdorffOf, ALimitOfPartsGivesAWiderInterval) {
     using T = TypeParam;
-    const auto a = build(soup<T>(50)), b = build(soup<T>(50, 3));
+    const auto a = build(teapot<T>(400)), b = build(teapot<T>(100));
     const auto precise = directed_hausdorff_distance(a, b, {0, 1e-3});
     const auto limited = directed_hausdorff_distance(a, b, {0, 1e-3, 0});
     EXPECT_LE(limited.lower, precise.upper);
@@ -353,7 +353,7 @@ TYPED_TEST(HausdorffOf, StructuresAndThreadsAgree) {
 TYPED_TEST(HausdorffOf, WhatWasErasedDoesNotCount) {
     using T = TypeParam;
     auto mesh = cube<T>(12);
-    const auto part = build(mesh);
+    const auto part = build(cube<T>(12));
     mesh.vertices.push_back({9, 9, 9});
     mesh.vertices.push_back({70, 70, 70});  // of no triangle
     mesh.triangles.push_back({0, 1, 8});

@@ -67,10 +67,10 @@ struct DistanceError {
           rounding(2 * static_cast<double>(unit_roundoff<T>) * reach) {}
     double below(double distance) const { return std::max(0.0, product(distance, 1 - relative) - absolute); }
     double above(double distance) const { return product(distance, 1 + relative) + absolute; }
-    /// The narrowest interval around a distance that is worth dividing for.
-    double floor(double distance) const {
-        return 4 * (product(distance, relative) + absolute + rounding);
-    }
+    /// The width of the narrowest interval around a distance: where points need not be rounded, and where
+    /// they are.
+    double of(double distance) const { return 4 * (product(distance, relative) + absolute); }
+    double of_rounded(double distance) const { return of(distance) + 4 * rounding; }
 };
 
 /// The corners of A's primitives: a mesh's vertices once each, though several triangles share them.
@@ -111,7 +111,7 @@ struct TrianglePart {
     Vec3d corner[3];
     double distance[3];      // at least those of the corners to B
     PrimitiveId nearest[3];  // the elements of B closest to the corners
-    PrimitiveId middle;      // and to the centroid of the triangle
+    PrimitiveId others[2];   // and to points that were asked for before, the latest first
     PrimitiveId element;     // of A
     double bound;            // at least the distance of any point of the part to B
     double at;               // where to divide the edge from corner `edge` to the next, from 0 to 1
@@ -120,7 +120,13 @@ struct TrianglePart {
 
     Vec3d centroid() const { return (corner[0] + corner[1] + corner[2]) / 3.0; }
     Vec3d cut() const { return corner[edge] + (corner[(edge + 1) % 3] - corner[edge]) * at; }
+    void remember(PrimitiveId element_of_b) {
+        if (std::find(others, std::end(others), element_of_b) != std::end(others)) return;
+        std::copy_backward(others, std::end(others) - 1, std::end(others));
+        others[0] = element_of_b;
+    }
     void move_corner(int k, const Vec3d& to, double above, PrimitiveId element_of_b) {
+        remember(nearest[k]);
         corner[k] = to, distance[k] = above, nearest[k] = element_of_b;
     }
 };
@@ -187,6 +193,7 @@ private:
     using Parts = std::vector<TrianglePart>;
     static constexpr std::size_t batch = 1 << 16;      // of corners
     static constexpr std::size_t row = 8;              // of corners
+    static constexpr int most_near = 3 + std::extent_v<decltype(TrianglePart::others)>;
     static constexpr int most_cuts = 6;
     static constexpr std::size_t parts_a_round = 4096;  // the more, the fuller batches; the fewer, the fewer
 
@@ -270,7 +277,7 @@ private:
                 if (!holds(id)) continue;
                 TrianglePart part;
                 part.element = id;
-                part.middle = no_primitive;
+                std::fill(part.others, std::end(part.others), no_primitive);
                 part.asked_middle = false;
                 part.age = 0;
                 part.bound = std::numeric_limits<double>::infinity();
@@ -293,8 +300,8 @@ private:
 
     /// Drops the parts that are within the tolerance.
     void settle() {
-        wanted_ = lower_ + std::max(options_.absolute, product(options_.relative, lower_));
-        enough_ = std::max(wanted_, lower_ + error_.floor(lower_));
+        wanted_ = lower_ + std::max({options_.absolute, product(options_.relative, lower_), error_.of(lower_)});
+        enough_ = std::max(wanted_, lower_ + error_.of_rounded(lower_));
         std::erase_if(parts_, [&](const TrianglePart& part) {
             if (part.bound > enough_) return false;
             upper_ = std::max(upper_, part.bound);
@@ -323,8 +330,10 @@ private:
         // Make two of each part that is divided.
         for (std::size_t i = 0; i < count; ++i) {
             TrianglePart& part = parts_[first + i];
+            // The element that is closest to the rounded point may be closer to the point itself.
             const double above =
-                error_.above(distance(near_[i])) + length(exact[i] - Vec3d(points[i]));
+                std::min(error_.above(distance(near_[i])) + length(exact[i] - Vec3d(points[i])),
+                         distance_to(shape(near_[i].element), exact[i]));
             if (std::exchange(part.asked_middle, !part.asked_middle)) {
                 part.age = part.age == 2 ? 0 : part.age + 1;
                 TrianglePart other = part;
@@ -332,7 +341,7 @@ private:
                 other.move_corner((part.edge + 1) % 3, exact[i], above, near_[i].element);
                 parts_.push_back(other);
             } else {
-                part.middle = near_[i].element;
+                part.remember(near_[i].element);
                 double farthest = 0;
                 for (const auto& c : part.corner) farthest = std::max(farthest, length(c - exact[i]));
                 part.bound = std::min(part.bound, above + farthest);
@@ -381,15 +390,17 @@ private:
         // Compare with the elements of B that are near.
         NearShapes near;
         Apart3 apart;
-        PrimitiveId tried[4];
-        for (const PrimitiveId element : {part.nearest[0], part.nearest[1], part.nearest[2], part.middle}) {
-            if (element == no_primitive || std::count(tried, tried + near.count, element) != 0) continue;
+        PrimitiveId tried[most_near];
+        const auto add = [&](PrimitiveId element) {
+            if (element == no_primitive || std::count(tried, tried + near.count, element) != 0) return;
             near.shape[near.count] = shape(element);
             for (int k = 0; k < 3; ++k)
                 apart.to[near.count][k] =
                     element == part.nearest[k] ? d[k] : distance_to(near.shape[near.count], c[k]);
             tried[near.count++] = element;
-        }
+        };
+        for (const PrimitiveId element : part.nearest) add(element);
+        for (const PrimitiveId element : part.others) add(element);
         for (int k = 0; k < 3; ++k) apart.corner[k] = c[k];
         part.bound = std::min(part.bound, bound_by(near, apart, most_cuts));
         if (part.bound <= wanted_ || part.age == 2) return;
@@ -398,21 +409,21 @@ private:
 
     /// Elements of B, and how far the corners of a part are from them at most.
     struct NearShapes {
-        decltype(std::declval<DirectedHausdorff>().shape(0)) shape[4];
+        decltype(std::declval<DirectedHausdorff>().shape(0)) shape[most_near];
         int count = 0;
     };
     struct Apart3 {
         Vec3d corner[3];
-        double to[4][3];
+        double to[most_near][3];
     };
     struct Cut {
         std::uint8_t edge = 3;
         double at = 0.5;
         explicit operator bool() const { return edge < 3; }
     };
-    /// Where an edge's ends are nearest to two elements, and some point between equally near to both, if
-    /// distances are as straight as they are in one plane: after two cuts two elements have the parts to
-    /// themselves. The edge that is clearest.
+    /// Where to cut an edge whose ends are nearest to two elements: at a point that is about as near to both.
+    /// After two cuts, such elements have the parts to themselves if they are in one plane. The edge whose ends
+    /// are clearest.
     Cut cut_between(const NearShapes& near, const Apart3& apart) const {
         int nearest[3] = {};
         for (int k = 0; k < 3; ++k)
@@ -422,18 +433,43 @@ private:
         double clearest = 0;
         for (int k = 0; k < 3; ++k) {
             const int next = (k + 1) % 3, i = nearest[k], j = nearest[next];
-            const double noise = 4 * (error_.absolute + product(apart.to[i][k] + apart.to[j][next], error_.relative));
-            double here = apart.to[j][k] - apart.to[i][k], there = apart.to[i][next] - apart.to[j][next];
-            if (!(here > noise && there > noise)) continue;
-            if (std::min(here, there) <= clearest) continue;
+            const double noise = error_.of(apart.to[i][k] + apart.to[j][next]);
+            const double here = apart.to[j][k] - apart.to[i][k], there = apart.to[i][next] - apart.to[j][next];
+            if (std::min(here, there) <= std::max(noise, clearest)) continue;
             clearest = std::min(here, there);
-            if constexpr (PointSet<B>) {  // squares are straight
-                here = product(here, apart.to[j][k] + apart.to[i][k]);
-                there = product(there, apart.to[i][next] + apart.to[j][next]);
+            cut.edge = static_cast<std::uint8_t>(k);
+        }
+        if (!cut) return cut;
+
+        // Find the place on the edge by false position (the Illinois rule), as well as the tolerance asks for.
+        const int from = cut.edge, to = (from + 1) % 3, i = nearest[from], j = nearest[to];
+        double low = 0, high = 1, here = measure(apart.to[j][from]) - measure(apart.to[i][from]);
+        double there = measure(apart.to[i][to]) - measure(apart.to[j][to]);
+        for (int tries = 0, side = 0; tries < 5; ++tries) {
+            cut.at = low + product(high - low, here / (here + there));
+            const Vec3d p = point_on(apart, cut);
+            const double of_i = distance_to(near.shape[i], p), of_j = distance_to(near.shape[j], p);
+            if (std::abs(of_j - of_i) <= (wanted_ - lower_) / 4) break;
+            const double ahead = measure(of_j) - measure(of_i);
+            if (ahead > 0) {
+                low = cut.at, here = ahead;
+                if (side == 1) there /= 2;
+                side = 1;
+            } else {
+                high = cut.at, there = -ahead;
+                if (side == -1) here /= 2;
+                side = -1;
             }
-            cut = {static_cast<std::uint8_t>(k), here / (here + there)};
         }
         return cut;
+    }
+    static Vec3d point_on(const Apart3& apart, const Cut& cut) {
+        return apart.corner[cut.edge] + (apart.corner[(cut.edge + 1) % 3] - apart.corner[cut.edge]) * cut.at;
+    }
+    /// What is straight along an edge: the squared distances of points, and the distances of triangles where
+    /// these are in one plane.
+    static double measure(double distance) {
+        return PointSet<B> ? product(distance, distance) : distance;
     }
     /// A bound by elements of B alone: of one, which is convex, a corner of the part is the farthest. Where
     /// none is near all corners, the part is cut, up to `cuts` times.
@@ -446,7 +482,7 @@ private:
         if (!cut) return least;
         const int from = cut.edge, to = (from + 1) % 3;
         Apart3 first = apart, second = apart;
-        const Vec3d p = apart.corner[from] + (apart.corner[to] - apart.corner[from]) * cut.at;
+        const Vec3d p = point_on(apart, cut);
         first.corner[from] = second.corner[to] = p;
         double nearest = std::numeric_limits<double>::infinity();
         for (int i = 0; i < near.count; ++i) {
