@@ -441,6 +441,7 @@ private:
         }
         if (!cut) return cut;
 
+        const double slack = (wanted_ - lower_) / 4;
         // Find the place on the edge by false position (the Illinois rule), as well as the tolerance asks for.
         const int from = cut.edge, to = (from + 1) % 3, i = nearest[from], j = nearest[to];
         double low = 0, high = 1, here = measure(apart.to[j][from]) - measure(apart.to[i][from]);
@@ -449,7 +450,7 @@ private:
             cut.at = low + product(high - low, here / (here + there));
             const Vec3d p = point_on(apart, cut);
             const double of_i = distance_to(near.shape[i], p), of_j = distance_to(near.shape[j], p);
-            if (std::abs(of_j - of_i) <= (wanted_ - lower_) / 4) break;
+            if (std::abs(of_j - of_i) <= slack || std::min(of_i, of_j) > wanted_ + slack) break;
             const double ahead = measure(of_j) - measure(of_i);
             if (ahead > 0) {
                 low = cut.at, here = ahead;
