@@ -267,7 +267,7 @@ TYPED_TEST(HausdorffOf, BadTolerances) {
 }
 TYPED_TEST(HausdorffOf, ALimitOfPartsGivesAWiderInterval) {
     using T = TypeParam;
-    const auto a = build(teapot<T>(400)), b = build(teapot<T>(100));
+    const auto a = build(boulder<T>(400)), b = build(boulder<T>(3000));
     const auto precise = directed_hausdorff_distance(a, b, {0, 1e-3});
     const auto limited = directed_hausdorff_distance(a, b, {0, 1e-3, 0});
     EXPECT_LE(limited.lower, precise.upper);

@@ -362,8 +362,9 @@ private:
         }
     }
     double distance_to(const Triangle<double, 3>& t, const Vec3d& p) const {
-        const double d = length(p - point_near(p, t));
-        return d - d == 0 ? error_.above(d) : std::numeric_limits<double>::infinity();
+        double d = length(p - point_near(p, t));
+        if (!(d - d == 0)) d = std::min({length(p - t.a), length(p - t.b), length(p - t.c)});  // no area
+        return error_.above(d);
     }
     double distance_to(const Vec3d& q, const Vec3d& p) const { return error_.above(length(p - q)); }
 
@@ -433,7 +434,7 @@ private:
         double clearest = 0;
         for (int k = 0; k < 3; ++k) {
             const int next = (k + 1) % 3, i = nearest[k], j = nearest[next];
-            const double noise = error_.of(apart.to[i][k] + apart.to[j][next]);
+            const double noise = error_.of(apart.to[i][k] + apart.to[j][next]) / 4;
             const double here = apart.to[j][k] - apart.to[i][k], there = apart.to[i][next] - apart.to[j][next];
             if (std::min(here, there) <= std::max(noise, clearest)) continue;
             clearest = std::min(here, there);
