@@ -1,7 +1,6 @@
 /// Hausdorff distances against those that are known, against dense samples, and against all pairs of points.
 #include <gtest/gtest.h>
 
-#include <hedgerow/ask/hausdorff.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
@@ -52,20 +51,23 @@ double sampled(const TriangleMesh<T>& a, const TriangleMesh<T>& b, int samples) 
 
 /// The interval is sound: ordered, as narrow as was asked for, and its witnesses are as far apart as it says.
 template <class T, class A, class B>
-void expect_sound(const Result<T>& found, const A& a, const B& b, const HausdorffOptions& options, double reach) {
+void expect_sound(const Result<T>& found, const A& a, const B& b, const HausdorffOptions& options,
+                  double reach) {
     const double lower = static_cast<double>(found.lower), upper = static_cast<double>(found.upper);
     ASSERT_TRUE(found);
     ASSERT_LE(0, lower);
     ASSERT_LE(lower, upper);
-    ASSERT_LE(upper - lower, std::max({options.absolute, options.relative * lower, floor_of<T>(lower, reach)}) * (1 + 1e-6));
+    ASSERT_LE(upper - lower,
+              std::max({options.absolute, options.relative * lower, floor_of<T>(lower, reach)}) * (1 + 1e-6));
     const double rounding = floor_of<T>(upper, reach);
     ASSERT_NEAR(length(Vec3d(found.point_a) - Vec3d(found.point_b)), lower, rounding);
     const auto on_a = foot_of(found.point_a, a.primitives().closest_point(found.element_a, found.point_a));
     const auto on_b = foot_of(found.point_b, b.primitives().closest_point(found.element_b, found.point_b));
     ASSERT_LE(std::sqrt(static_cast<double>(on_a.distance2)), rounding);
     ASSERT_LE(std::sqrt(static_cast<double>(on_b.distance2)), rounding);
-    const double witnessed = found.from_b ? std::sqrt(static_cast<double>(closest_point(a, found.point_b).distance2))
-                                          : std::sqrt(static_cast<double>(closest_point(b, found.point_a).distance2));
+    const double witnessed = found.from_b
+                                 ? std::sqrt(static_cast<double>(closest_point(a, found.point_b).distance2))
+                                 : std::sqrt(static_cast<double>(closest_point(b, found.point_a).distance2));
     ASSERT_GE(witnessed * (1 + 1e-6) + rounding, lower);
 }
 
@@ -147,7 +149,8 @@ TYPED_TEST(HausdorffOf, AMeshAndItself) {
     for (std::size_t i = 0; i < coarse.size(); ++i) {
         const auto t = coarse.view().triangle(i);
         const auto first = static_cast<std::uint32_t>(fine.vertices.size());
-        for (const auto& v : {t.a, t.b, t.c, (t.a + t.b) * T(0.5), (t.b + t.c) * T(0.5), (t.c + t.a) * T(0.5)})
+        for (const auto& v :
+             {t.a, t.b, t.c, (t.a + t.b) * T(0.5), (t.b + t.c) * T(0.5), (t.c + t.a) * T(0.5)})
             fine.vertices.push_back(v);
         for (const auto& [a, b, c] : {TriangleIndices{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}})
             fine.triangles.push_back({first + a, first + b, first + c});
@@ -174,7 +177,8 @@ TYPED_TEST(HausdorffOf, AMovedCube) {
 }
 TYPED_TEST(HausdorffOf, SamplesAreInTheInterval) {
     using T = TypeParam;
-    const auto teapot_mesh = teapot<T>(400), coarse = teapot<T>(100), few = soup<T>(40), others = soup<T>(60, 1);
+    const auto teapot_mesh = teapot<T>(400), coarse = teapot<T>(100), few = soup<T>(40),
+               others = soup<T>(60, 1);
     const std::pair<const TriangleMesh<T>*, const TriangleMesh<T>*> pairs[] = {
         {&teapot_mesh, &coarse}, {&coarse, &teapot_mesh}, {&few, &others}, {&others, &few}, {&few, &coarse}};
     for (const auto& [a, b] : pairs) {
@@ -245,8 +249,9 @@ TYPED_TEST(HausdorffOf, EmptySets) {
     const auto some = build(cube<T>(12));
     const auto cloud = build(PointCloud<T, 3>());
     constexpr T infinity = std::numeric_limits<T>::infinity();
-    for (const auto& found : {directed_hausdorff_distance(none, some), hausdorff_distance(none, none),
-                              directed_hausdorff_distance(cloud, some), directed_hausdorff_distance(none, none)}) {
+    for (const auto& found :
+         {directed_hausdorff_distance(none, some), hausdorff_distance(none, none),
+          directed_hausdorff_distance(cloud, some), directed_hausdorff_distance(none, none)}) {
         EXPECT_FALSE(found);
         EXPECT_EQ(found.lower, 0);
         EXPECT_EQ(found.upper, 0);
@@ -291,7 +296,8 @@ double of_all_pairs(const A& a, const B& b) {
 template <class Cloud>
 void expect_clouds(const Cloud& a, const Cloud& b) {
     using T = typename Cloud::Scalar;
-    const double to = of_all_pairs(a, b), from = of_all_pairs(b, a), error = floor_of<T>(std::max(to, from), 1);
+    const double to = of_all_pairs(a, b), from = of_all_pairs(b, a),
+                 error = floor_of<T>(std::max(to, from), 1);
     const auto other = build(b);
     for_each_index(a, [&](const char* name, const auto& index) {
         const auto found = directed_hausdorff_distance(index, other, {0, 0});
@@ -348,7 +354,8 @@ TYPED_TEST(HausdorffOf, StructuresAndThreadsAgree) {
     const ThreadLimit limit(2);
     const auto large = boulder<T>(20000), other = boulder<T>(10000);
     const auto from = build(large), to = build(other);
-    EXPECT_EQ(hausdorff_distance(from, to, {}, serial_executor()), hausdorff_distance(from, to, {}, default_executor()));
+    EXPECT_EQ(hausdorff_distance(from, to, {}, serial_executor()),
+              hausdorff_distance(from, to, {}, default_executor()));
 }
 TYPED_TEST(HausdorffOf, WhatWasErasedDoesNotCount) {
     using T = TypeParam;
@@ -369,12 +376,14 @@ TYPED_TEST(HausdorffOf, WhatWasErasedDoesNotCount) {
 template <class T>
 void expect_properties() {
     generated::expect_always([] {
-        const auto a = generated::any_set<TriangleMesh<T>>(false), b = generated::any_set<TriangleMesh<T>>(false);
+        const auto a = generated::any_set<TriangleMesh<T>>(false),
+                   b = generated::any_set<TriangleMesh<T>>(false);
         RC_PRE(a.size() > 0 && b.size() > 0);
         const auto from = build(a), to = build(b);
         const HausdorffOptions options{0.05, 0};
         const auto there = directed_hausdorff_distance(from, to, options),
-                   back = directed_hausdorff_distance(to, from, options), both = hausdorff_distance(from, to, options);
+                   back = directed_hausdorff_distance(to, from, options),
+                   both = hausdorff_distance(from, to, options);
         const auto width = [](const Hausdorff<T, 3>& h) { return static_cast<double>(h.upper - h.lower); };
         RC_ASSERT(width(there) <= 0.0501 && width(back) <= 0.0501 && width(both) <= 0.0501);
         // The interval has the samples below it, and the samples are dense.

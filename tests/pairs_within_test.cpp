@@ -99,12 +99,15 @@ TYPED_TEST(PairsWithinRadius, RadiusAndRadius2) {
     EXPECT_EQ(pairs_within_radius2(index, T(0.0625), squared), found.size());
     EXPECT_EQ(found, squared);
     EXPECT_EQ(pairs_within_radius(index, index, T(0.05), found), 8u);  // each with itself
-    // A radius that is the distance of two points, rounded to T, has that pair or not as its exact square has.
+    // A radius that is the distance of two points, rounded to T, has that pair or not as its exact square
+    // has.
     Random random(31);
     for (int i = 0; i < 1000; ++i) {
         PointCloud<T, 3> two;
         two.points = {Vec<T, 3>(), Vec<T, 3>(T(random.uniform()), T(0), T(0))};
-        ASSERT_EQ(pairs_within_radius(build(two), two.points[1][0], found), detail::square_of_radius(two.points[1][0]) >= closest_point(two.points[0], two.points[1]).distance2);
+        ASSERT_EQ(pairs_within_radius(build(two), two.points[1][0], found),
+                  detail::square_of_radius(two.points[1][0]) >=
+                      closest_point(two.points[0], two.points[1]).distance2);
     }
     for (const T bad : {T(-1), std::numeric_limits<T>::quiet_NaN(), -std::numeric_limits<T>::infinity()}) {
         EXPECT_EQ(pairs_within_radius(index, bad, found), 0u);

@@ -1,4 +1,5 @@
-/// CGAL's Hausdorff distance within a bound (Kang, Kim, Yoon and Kim's method: CGAL::Polygon_mesh_processing).
+/// CGAL's Hausdorff distance within a bound (Kang, Kim, Yoon and Kim's method:
+/// CGAL::Polygon_mesh_processing).
 #include "peers/hausdorff.h"
 
 #include <cmath>

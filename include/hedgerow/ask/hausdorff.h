@@ -1,7 +1,7 @@
 /// Hausdorff distances of meshes and clouds, within bounds that are certain.
 ///
-/// The directed distance from A to B is that of the point of A that is farthest from B. Any point of A gives a
-/// lower bound. Upper bounds hold for whole triangles of A: the one with the greatest is divided, and
+/// The directed distance from A to B is that of the point of A that is farthest from B. Any point of A gives
+/// a lower bound. Upper bounds hold for whole triangles of A: the one with the greatest is divided, and
 /// triangles are dropped whose bound cannot change the answer (Tang, Lee and Kim 2009; Kang et al. 2018;
 /// Sacht and Jacobson 2024). Closest points come in batches (ask/points.h), so whatever answers these fast
 /// makes this fast.
@@ -33,8 +33,8 @@ struct HausdorffOptions {
 /// `point_a` is on A always; `from_b` says that it is the point on B that is far away.
 ///
 /// Both bounds allow for all roundings: those of a distance, and those of points where a triangle was
-/// divided, which are rounded to T as queries are. So the interval can be as wide as 2⁻¹⁹ of the distance plus
-/// 2⁻²⁰ of the largest coordinate (in double 2⁻⁴⁵ and 2⁻⁴²), whatever tolerance is asked for.
+/// divided, which are rounded to T as queries are. So the interval can be as wide as 2⁻¹⁹ of the distance
+/// plus 2⁻²⁰ of the largest coordinate (in double 2⁻⁴⁵ and 2⁻⁴²), whatever tolerance is asked for.
 template <std::floating_point T, int D>
 struct Hausdorff {
     T lower = 0, upper = 0;
@@ -51,7 +51,8 @@ struct Hausdorff {
 /// triangles to triangles and points.
 template <class A, class B>
 concept FarFrom = std::same_as<typename A::Scalar, typename B::Scalar> && A::dimension == B::dimension &&
-    ((PointSet<A> && HasClosestPoint<B>) || (TriangleSet<A> && (TriangleSet<B> || PointSet<B>)));
+                  ((PointSet<A> && HasClosestPoint<B>) ||
+                   (TriangleSet<A> && (TriangleSet<B> || PointSet<B>)));
 
 namespace detail {
 
@@ -191,8 +192,8 @@ public:
 
 private:
     using Parts = std::vector<TrianglePart>;
-    static constexpr std::size_t batch = 1 << 16;      // of corners
-    static constexpr std::size_t row = 8;              // of corners
+    static constexpr std::size_t batch = 1 << 16;  // of corners
+    static constexpr std::size_t row = 8;          // of corners
     static constexpr int most_near = 3 + std::extent_v<decltype(TrianglePart::others)>;
     static constexpr int most_cuts = 6;
     static constexpr std::size_t parts_a_round = 4096;  // the more, the fuller batches; the fewer, the fewer
@@ -220,8 +221,8 @@ private:
         closest_points(b_, Strided<Point>(points), std::span(near_), threads_);
     }
 
-    /// Asks for the corners of A: first for the first of each row, since corners that follow each other are mostly
-    /// near, then for those that may be farther from B than the farthest so far.
+    /// Asks for the corners of A: first for the first of each row, since corners that follow each other are
+    /// mostly near, then for those that may be farther from B than the farthest so far.
     void ask_corners() {
         const Corners<A> corners{a_.primitives()};
         std::vector<PrimitiveId> element(corners.size(), no_primitive);
@@ -300,7 +301,8 @@ private:
 
     /// Drops the parts that are within the tolerance.
     void settle() {
-        wanted_ = lower_ + std::max({options_.absolute, product(options_.relative, lower_), error_.of(lower_)});
+        wanted_ =
+            lower_ + std::max({options_.absolute, product(options_.relative, lower_), error_.of(lower_)});
         enough_ = std::max(wanted_, lower_ + error_.of_rounded(lower_));
         std::erase_if(parts_, [&](const TrianglePart& part) {
             if (part.bound > enough_) return false;
@@ -377,9 +379,11 @@ private:
         const double edge2[3] = {length2(c[1] - c[0]), length2(c[2] - c[1]), length2(c[0] - c[2])};
         const int longest = static_cast<int>(std::max_element(edge2, edge2 + 3) - edge2);
         const double x2 = edge2[(longest + 1) % 3], y2 = edge2[(longest + 2) % 3];
-        const double turned = x2 + y2 - edge2[longest], double_area2 = product(x2, y2) - product(turned, turned) / 4;
+        const double turned = x2 + y2 - edge2[longest],
+                     double_area2 = product(x2, y2) - product(turned, turned) / 4;
         double radius2 = edge2[longest] / 4;
-        if (turned > 0) radius2 = std::min(edge2[longest] / 3, product(product(x2, y2) / double_area2, radius2));
+        if (turned > 0)
+            radius2 = std::min(edge2[longest] / 3, product(product(x2, y2) / double_area2, radius2));
         double least = std::max({d[0], d[1], d[2]}) + std::sqrt(radius2);
         for (int k = 0; k < 3; ++k)
             least = std::min(least, d[k] + std::sqrt(std::max(edge2[k], edge2[(k + 2) % 3])));
@@ -423,8 +427,8 @@ private:
         explicit operator bool() const { return edge < 3; }
     };
     /// Where to cut an edge whose ends are nearest to two elements: at a point that is about as near to both.
-    /// After two cuts, such elements have the parts to themselves if they are in one plane. The edge whose ends
-    /// are clearest.
+    /// After two cuts, such elements have the parts to themselves if they are in one plane. The edge whose
+    /// ends are clearest.
     Cut cut_between(const NearShapes& near, const Apart3& apart) const {
         int nearest[3] = {};
         for (int k = 0; k < 3; ++k)
@@ -435,7 +439,8 @@ private:
         for (int k = 0; k < 3; ++k) {
             const int next = (k + 1) % 3, i = nearest[k], j = nearest[next];
             const double noise = error_.of(apart.to[i][k] + apart.to[j][next]) / 4;
-            const double here = apart.to[j][k] - apart.to[i][k], there = apart.to[i][next] - apart.to[j][next];
+            const double here = apart.to[j][k] - apart.to[i][k],
+                         there = apart.to[i][next] - apart.to[j][next];
             if (std::min(here, there) <= std::max(noise, clearest)) continue;
             clearest = std::min(here, there);
             cut.edge = static_cast<std::uint8_t>(k);
@@ -443,7 +448,8 @@ private:
         if (!cut) return cut;
 
         const double slack = (wanted_ - lower_) / 4;
-        // Find the place on the edge by false position (the Illinois rule), as well as the tolerance asks for.
+        // Find the place on the edge by false position (the Illinois rule), as well as the tolerance asks
+        // for.
         const int from = cut.edge, to = (from + 1) % 3, i = nearest[from], j = nearest[to];
         double low = 0, high = 1, here = measure(apart.to[j][from]) - measure(apart.to[i][from]);
         double there = measure(apart.to[i][to]) - measure(apart.to[j][to]);
@@ -470,9 +476,7 @@ private:
     }
     /// What is straight along an edge: the squared distances of points, and the distances of triangles where
     /// these are in one plane.
-    static double measure(double distance) {
-        return PointSet<B> ? product(distance, distance) : distance;
-    }
+    static double measure(double distance) { return PointSet<B> ? product(distance, distance) : distance; }
     /// A bound by elements of B alone: of one, which is convex, a corner of the part is the farthest. Where
     /// none is near all corners, the part is cut, up to `cuts` times.
     double bound_by(const NearShapes& near, const Apart3& apart, int cuts) const {
@@ -533,19 +537,17 @@ auto directed_hausdorff(const IA& a, const IB& b, const HausdorffOptions& option
 /// only its corners. Triangles to triangles or points, in space; points to whatever has closest points.
 ///
 /// A may be any index, since only its primitives are read: `build<BruteForce>(mesh)` costs least. The
-/// distance from an empty set is 0, and that from any other to an empty set is infinite. Throws UsageError for
-/// tolerances that are negative or NaN.
+/// distance from an empty set is 0, and that from any other to an empty set is infinite. Throws UsageError
+/// for tolerances that are negative or NaN.
 ///
-/// Costs a closest point for each vertex of A, and for some of its triangles a dozen or more, by how alike the
-/// sets are and how narrow the tolerance is. Takes 24 bytes for each vertex, and up to 160 for each triangle
-/// that may be the farthest. Large sets are asked on all cores, unless an executor is given (Threads); the
-/// result is the same.
+/// Costs a closest point for each vertex of A, and for some of its triangles a dozen or more, by how alike
+/// the sets are and how narrow the tolerance is. Takes 24 bytes for each vertex, and up to 160 for each
+/// triangle that may be the farthest. Large sets are asked on all cores, unless an executor is given
+/// (Threads); the result is the same.
 template <class SA, class A, class SB, class B>
-requires FarFrom<A, B>
-Hausdorff<typename A::Scalar, A::dimension> directed_hausdorff_distance(const Index<SA, A>& a,
-                                                                        const Index<SB, B>& b,
-                                                                        const HausdorffOptions& options = {},
-                                                                        Threads threads = {}) {
+requires FarFrom<A, B> Hausdorff<typename A::Scalar, A::dimension> directed_hausdorff_distance(
+    const Index<SA, A>& a, const Index<SB, B>& b, const HausdorffOptions& options = {},
+    Threads threads = {}) {
     detail::expect_tolerances(options);
     return detail::directed_hausdorff(a, b, options, threads.over(a.size()), 0);
 }
@@ -563,8 +565,7 @@ requires(FarFrom<A, B>&& FarFrom<B, A>) Hausdorff<typename A::Scalar, A::dimensi
     const auto back = detail::directed_hausdorff(b, a, options, executor, static_cast<double>(result.lower));
     if (back && back.lower > result.lower) {
         const auto upper = std::max(result.upper, back.upper);
-        result = {back.lower,   upper,        back.element_b, back.element_a,
-                  back.point_b, back.point_a, true};
+        result = {back.lower, upper, back.element_b, back.element_a, back.point_b, back.point_a, true};
     }
     result.upper = std::max(result.upper, back.upper);
     result.lower = std::max(result.lower, back.lower);
