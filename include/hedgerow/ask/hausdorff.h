@@ -132,11 +132,13 @@ struct TrianglePart {
     }
 };
 
-/// A point of a triangle that is about the closest to p (Ericson 2005, 5.1.5). Whatever rounding does to its
-/// place in the triangle, the distance to it is no less than that to the triangle, but for the rounding of
-/// coordinates.
-inline Vec3d point_near(const Vec3d& p, const Triangle<double, 3>& t) {
-    const Vec3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, bp = p - t.b, cp = p - t.c;
+/// A point of a triangle that is about the closest to p (Ericson 2005, 5.1.5). However its place in the
+/// triangle is rounded, the distance to it is no less than that to the triangle, but for the rounding of
+/// coordinates. `scale` is a power of two that brings coordinates to about 1.
+inline Vec3d point_near(const Vec3d& p, const Triangle<double, 3>& t, double scale) {
+    const Vec3d whole_ab = t.b - t.a, whole_ac = t.c - t.a;
+    const Vec3d ab = whole_ab * scale, ac = whole_ac * scale;
+    const Vec3d ap = (p - t.a) * scale, bp = (p - t.b) * scale, cp = (p - t.c) * scale;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return t.a;
     const double d3 = dot(ab, bp), d4 = dot(ac, bp);
@@ -147,13 +149,14 @@ inline Vec3d point_near(const Vec3d& p, const Triangle<double, 3>& t) {
         return from + along * (part / (part + rest));
     };
     const double vc = product(d1, d4) - product(d3, d2);
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return on_edge(t.a, ab, d1, -d3);
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return on_edge(t.a, whole_ab, d1, -d3);
     const double vb = product(d5, d2) - product(d1, d6);
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return on_edge(t.a, ac, d2, -d6);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return on_edge(t.a, whole_ac, d2, -d6);
     const double va = product(d3, d6) - product(d5, d4);
     if (va <= 0 && d4 >= d3 && d5 >= d6) return on_edge(t.b, t.c - t.b, d4 - d3, d5 - d6);
-    const double sum = va + vb + vc;
-    return t.a + ab * (vb / sum) + ac * (vc / sum);
+    // In a sliver these may be no more than roundings: keep the point in the triangle.
+    const double sum = va + vb + vc, v = std::min(1.0, std::max(0.0, vb / sum));
+    return t.a + whole_ab * v + whole_ac * std::min(1 - v, std::max(0.0, vc / sum));
 }
 
 /// The directed distance from index A to index B, if it is above `at_least`.
@@ -173,6 +176,7 @@ public:
           b_(b),
           options_(options),
           threads_(executor),
+          scale_(scale_to_one(std::max(reach(a.bounds()), reach(b.bounds())))),
           error_(std::max(reach(a.bounds()), reach(b.bounds()))),
           lower_(at_least) {}
 
@@ -364,7 +368,7 @@ private:
         }
     }
     double distance_to(const Triangle<double, 3>& t, const Vec3d& p) const {
-        double d = length(p - point_near(p, t));
+        double d = length(p - point_near(p, t, scale_));
         if (!(d - d == 0)) d = std::min({length(p - t.a), length(p - t.b), length(p - t.c)});  // no area
         return error_.above(d);
     }
@@ -378,12 +382,12 @@ private:
         // corner than the part's circumradius, or half the longest edge of an obtuse part.
         const double edge2[3] = {length2(c[1] - c[0]), length2(c[2] - c[1]), length2(c[0] - c[2])};
         const int longest = static_cast<int>(std::max_element(edge2, edge2 + 3) - edge2);
-        const double x2 = edge2[(longest + 1) % 3], y2 = edge2[(longest + 2) % 3];
-        const double turned = x2 + y2 - edge2[longest],
-                     double_area2 = product(x2, y2) - product(turned, turned) / 4;
-        double radius2 = edge2[longest] / 4;
+        const double x2 = edge2[(longest + 1) % 3], y2 = edge2[(longest + 2) % 3], z2 = edge2[longest];
+        const double turned = x2 + y2 - z2 + product(z2, 0x1p-48);  // |x|·|y|·cos, doubled and rounded up
+        const double sine = product(x2, y2) - product(turned, turned) / 4;  // (|x|·|y|·sin)²
+        double radius2 = z2 / 4;
         if (turned > 0)
-            radius2 = std::min(edge2[longest] / 3, product(product(x2, y2) / double_area2, radius2));
+            radius2 = sine > 0x1p-900 ? std::min(z2 / 3, product(radius2, product(x2, y2) / sine)) : z2 / 3;
         double least = std::max({d[0], d[1], d[2]}) + std::sqrt(radius2);
         for (int k = 0; k < 3; ++k)
             least = std::min(least, d[k] + std::sqrt(std::max(edge2[k], edge2[(k + 2) % 3])));
@@ -509,6 +513,7 @@ private:
     const IB& b_;
     const HausdorffOptions& options_;
     IeeeExecutor threads_;
+    double scale_;
     DistanceError<T> error_;
     double lower_, wanted_ = 0, enough_ = 0, upper_ = 0;
     Result best_;
