@@ -272,12 +272,18 @@ TYPED_TEST(HausdorffOf, BadTolerances) {
 }
 TYPED_TEST(HausdorffOf, ALimitOfPartsGivesAWiderInterval) {
     using T = TypeParam;
-    const auto a = build(boulder<T>(400)), b = build(boulder<T>(3000));
-    const auto precise = directed_hausdorff_distance(a, b, {0, 1e-3});
-    const auto limited = directed_hausdorff_distance(a, b, {0, 1e-3, 0});
+    // The lid of a trough, whose two triangles are the farthest of all.
+    TriangleMesh<T> trough, lid;
+    trough.vertices = {{0, 0, 0}, {0, 0, 4}, {1, 2, 0}, {1, 2, 4}, {-1, 2, 0}, {-1, 2, 4}};
+    trough.triangles = {{0, 1, 2}, {1, 3, 2}, {0, 4, 1}, {1, 4, 5}};
+    lid = trough;
+    lid.triangles = {{2, 3, 4}, {3, 5, 4}};
+    const auto precise = directed_hausdorff_distance(build(lid), build(trough), {0, 1e-6});
+    const auto limited = directed_hausdorff_distance(build(lid), build(trough), {0, 1e-6, 0});
     EXPECT_LE(limited.lower, precise.upper);
     EXPECT_GE(limited.upper, precise.lower);
-    EXPECT_GT(limited.upper - limited.lower, precise.upper - precise.lower);
+    EXPECT_GT(limited.upper - limited.lower, T(0.01));
+    EXPECT_LT(precise.upper - precise.lower, T(0.0001));
 }
 
 // ---- Clouds

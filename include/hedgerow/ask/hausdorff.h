@@ -138,6 +138,8 @@ struct TrianglePart {
 inline Vec3d point_near(const Vec3d& p, const Triangle<double, 3>& t, double scale) {
     const Vec3d whole_ab = t.b - t.a, whole_ac = t.c - t.a;
     const Vec3d ab = whole_ab * scale, ac = whole_ac * scale;
+    const double both = product(length2(ab), length2(ac)), turned = dot(ab, ac);
+    if (!(both - product(turned, turned) > 0x1p-30 * both)) return closest_point(p, t).point;  // a sliver
     const Vec3d ap = (p - t.a) * scale, bp = (p - t.b) * scale, cp = (p - t.c) * scale;
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0 && d2 <= 0) return t.a;
@@ -154,7 +156,6 @@ inline Vec3d point_near(const Vec3d& p, const Triangle<double, 3>& t, double sca
     if (vb <= 0 && d2 >= 0 && d6 <= 0) return on_edge(t.a, whole_ac, d2, -d6);
     const double va = product(d3, d6) - product(d5, d4);
     if (va <= 0 && d4 >= d3 && d5 >= d6) return on_edge(t.b, t.c - t.b, d4 - d3, d5 - d6);
-    // In a sliver these may be no more than roundings: keep the point in the triangle.
     const double sum = va + vb + vc, v = std::min(1.0, std::max(0.0, vb / sum));
     return t.a + whole_ab * v + whole_ac * std::min(1 - v, std::max(0.0, vc / sum));
 }
@@ -368,9 +369,7 @@ private:
         }
     }
     double distance_to(const Triangle<double, 3>& t, const Vec3d& p) const {
-        double d = length(p - point_near(p, t, scale_));
-        if (!(d - d == 0)) d = std::min({length(p - t.a), length(p - t.b), length(p - t.c)});  // no area
-        return error_.above(d);
+        return error_.above(length(p - point_near(p, t, scale_)));
     }
     double distance_to(const Vec3d& q, const Vec3d& p) const { return error_.above(length(p - q)); }
 
