@@ -1,11 +1,14 @@
 /// Pairs of triangles, builds included, on one thread: the self-intersections of a mesh, and the crossings of
-/// a mesh and its moved copy. Beside CGAL in the same run, if CGAL was found.
+/// a mesh and its moved copy. Beside CGAL in the same run, if CGAL was found. Pairs of vertices within a
+/// radius, beside a query of `within` for each.
 ///
 ///   pairs_benchmark [SCENE ...]     a mesh file or gen:NAME[:SIZE]; default: gen:teapot:70000
 ///   gen:terrain:70000
+#include <cmath>
 #include <cstdio>
 
 #include <hedgerow/ask/pairs.h>
+#include <hedgerow/ask/points.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
 #include <hedgerow/structures/bvh/bvh.h>
@@ -54,6 +57,33 @@ void print(const char* question, const Contest& contest) {
                     found[i], times[i].median * 1e3, times[i].median / times[0].median);
 }
 
+/// The pairs of vertices within about three lengths of an edge.
+void measure_radius(const TriangleMesh<float>& mesh, float diagonal) {
+    PointCloud<float, 3> cloud;
+    cloud.points = mesh.vertices;
+    const float radius = 3 * diagonal / std::sqrt(static_cast<float>(mesh.size()));
+    const auto by_pairs = [&cloud, radius]<template <class, int> class S>(const auto& options) -> Contender {
+        return [&cloud, radius, options, found = std::vector<PairWithin<float>>()]() mutable {
+            return pairs_within_radius(build<S>(cloud, options, serial_executor()), radius, found,
+                                       serial_executor());
+        };
+    };
+    Contest contest;
+    contest.add("pairs, wide", by_pairs.operator()<WideBvh>(WideOptions()));
+    contest.add("pairs, bvh", by_pairs.operator()<Bvh>(BvhOptions()));
+    contest.add("within, wide", [&cloud, radius] {
+        const auto index = build<WideBvh>(cloud, {}, serial_executor());
+        std::vector<Near<float, 3>> found;
+        std::size_t pairs = 0;
+        for (PrimitiveId i = 0; i < cloud.size(); ++i) {
+            within(index, cloud.points[i], {.radius = radius}, found);
+            for (const auto& near : found) pairs += near.element > i;
+        }
+        return pairs;
+    });
+    print("within a radius", contest);
+}
+
 void measure_scene(const TriangleMesh<float>& mesh) {
     Contest self;
     self.add("wide, fast", self_intersections_of<WideBvh>(mesh));
@@ -72,6 +102,7 @@ void measure_scene(const TriangleMesh<float>& mesh) {
     crossings.add("bvh, lbvh", crossings_of<Bvh>(mesh, moved));
     add_cgal_crossings(crossings, mesh, moved);
     print("crossings", crossings);
+    measure_radius(mesh, length(box.extent()));
 
     // The distance to a copy that is moved by three times the extent.
     auto far = mesh;

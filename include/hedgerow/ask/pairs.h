@@ -10,6 +10,7 @@
 #include <hedgerow/ask/asking.h>
 #include <hedgerow/queries/crossings.h>
 #include <hedgerow/queries/minimum_distance.h>
+#include <hedgerow/queries/pairs_within.h>
 
 namespace hedgerow {
 
@@ -33,12 +34,13 @@ Apart<typename A::Scalar, A::dimension> minimum_distance(
 namespace detail {
 
 /// Appends the pairs that a walk finds to `found`. The walk is cut into parts over the executor; the order of
-/// the pairs may depend on that. `make(f)` makes the query that calls f(i, j) for each pair.
-template <class A, class B, class Make>
+/// the pairs may depend on that. `make(f)` makes the query that calls f(i, j) for each pair, or f with
+/// whatever a Pair consists of.
+template <class A, class B, class Make, class Pair>
 void collect_pairs(const A& a, const B& b, const NodePair<A, B>& whole, Executor& executor, Make make,
-                   std::vector<ElementPair>& found) {
-    const auto collector = [](std::vector<ElementPair>& list) {
-        return [&list](PrimitiveId i, PrimitiveId j) { return list.push_back({i, j}), Flow::go_on; };
+                   std::vector<Pair>& found) {
+    const auto collector = [](std::vector<Pair>& list) {
+        return [&list](auto... of_pair) { return list.push_back(Pair{of_pair...}), Flow::go_on; };
     };
     auto query = make(collector(found));
     if (&executor == &serial_executor()) {
@@ -46,7 +48,7 @@ void collect_pairs(const A& a, const B& b, const NodePair<A, B>& whole, Executor
         return;
     }
     const auto parts = parts_of_walk(a, b, whole, query, 1024);
-    std::vector<std::vector<ElementPair>> lists(parts.size());
+    std::vector<std::vector<Pair>> lists(parts.size());
     IeeeExecutor threads(executor);
     threads.for_each_piece(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -57,7 +59,8 @@ void collect_pairs(const A& a, const B& b, const NodePair<A, B>& whole, Executor
     for (const auto& list : lists) found.insert(found.end(), list.begin(), list.end());
 }
 /// Sorts pairs, and drops those that a structure offered again.
-inline std::size_t sort_pairs(std::vector<ElementPair>& found) {
+template <class Pair>
+std::size_t sort_pairs(std::vector<Pair>& found) {
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found.size();
@@ -135,6 +138,63 @@ bool any_self_intersection(const Index<S, P>& index) {
         walk_pairs(hierarchy_of(index.structure(), index.primitives()), query, no_visits);
         return any;
     });
+}
+
+namespace detail {
+/// The largest number whose root is no more than `radius`, short of underflow; negative if the radius is, or
+/// is NaN.
+template <std::floating_point T>
+T square_of_radius(T radius) {
+    if (!(radius >= 0)) return -1;
+    const auto square = two_product(radius, radius);
+    return square.low < 0 ? std::nextafter(square.high, T(0)) : square.high;
+}
+}  // namespace detail
+
+/// Writes all pairs (i, j), i < j, of points of one set whose squared distance is at most `radius2` to
+/// `found`, each once and ascending, with that distance: what `within` finds for each point. None if the
+/// radius is negative or NaN. Returns how many there are. Takes memory for all pairs, which may be n²/2 of
+/// them, and time to sort them. Large sets are walked on all cores, unless an executor is given (Threads);
+/// the list is the same.
+template <class S, PointSet P>
+std::size_t pairs_within_radius2(const Index<S, P>& index, typename P::Scalar radius2,
+                                 std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
+    found.clear();
+    return in_ieee_mode([&] {
+        const auto tree = hierarchy_of(index.structure(), index.primitives());
+        if (tree.empty() || !(radius2 >= 0)) return std::size_t(0);
+        detail::collect_pairs(
+            tree, tree, detail::whole_of(tree), threads.over(index.size()),
+            [&](auto f) { return PairsWithin(index.primitives(), index.primitives(), radius2, f, true); },
+            found);
+        return detail::sort_pairs(found);
+    });
+}
+/// Finds the pairs of a point of A and one of B.
+template <class SA, PointSet A, class SB, PointSet B>
+std::size_t pairs_within_radius2(const Index<SA, A>& a, const Index<SB, B>& b, typename A::Scalar radius2,
+                                 std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
+    found.clear();
+    return in_ieee_mode([&] {
+        const auto of_a = hierarchy_of(a.structure(), a.primitives());
+        const auto of_b = hierarchy_of(b.structure(), b.primitives());
+        if (of_a.empty() || of_b.empty() || !(radius2 >= 0)) return std::size_t(0);
+        detail::collect_pairs(
+            of_a, of_b, detail::whole_of(of_a, of_b), threads.over(a.size() + b.size()),
+            [&](auto f) { return PairsWithin(a.primitives(), b.primitives(), radius2, f); }, found);
+        return detail::sort_pairs(found);
+    });
+}
+/// The functions above for a radius that is not squared. Its square is rounded down.
+template <class S, PointSet P>
+std::size_t pairs_within_radius(const Index<S, P>& index, typename P::Scalar radius,
+                                std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
+    return pairs_within_radius2(index, detail::square_of_radius(radius), found, threads);
+}
+template <class SA, PointSet A, class SB, PointSet B>
+std::size_t pairs_within_radius(const Index<SA, A>& a, const Index<SB, B>& b, typename A::Scalar radius,
+                                std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
+    return pairs_within_radius2(a, b, detail::square_of_radius(radius), found, threads);
 }
 
 }  // namespace hedgerow
