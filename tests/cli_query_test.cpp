@@ -288,6 +288,18 @@ TEST_F(Query, MoreNeighboursThanThereAreAreAllOfThem) {
     EXPECT_TRUE(rows_of(file("a.npy"), {"query"}).empty());
 }
 
+TEST_F(Query, MoreAnswersThanWaitInMemoryAreInTheirOrder) {
+    // About 48 MB of records in one chunk, of which 32 MB may wait.
+    write_rows<float>("3.npy", 10000, 3);
+    expect_done("query within gen:teapot:300 --radius 1e9 --quiet --from " + file("3.npy") + " -o " +
+                file("a.npy"));
+    const auto set = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:teapot:300")));
+    const auto queries = rows_of(file("a.npy"), {"query"});
+    ASSERT_EQ(queries.size(), 10000 * set.size());
+    ASSERT_GT(queries.size() * 16, std::size_t(1) << 25);
+    for (std::size_t i = 0; i < queries.size(); ++i) ASSERT_EQ(queries[i], double(i / set.size()));
+}
+
 TEST_F(Query, WrongUsageIsTwo) {
     write("p.csv", "0,0,9\n");
     const std::string from = " --from " + file("p.csv"), to = " -o " + file("x.csv");
@@ -326,9 +338,7 @@ TEST_F(Query, BadInputIsThreeAndNamed) {
     expect_bad("query closest-point " + file("missing.ply") + from, "missing.ply");
     write("none.csv", "x,y,z\n");
     expect_bad("query closest-point " + file("none.csv") + from, "none.csv");
-    expect_bad(
-        "query any-hit gen:spheres:10 --structure hash-grid --from " + file("6.npy") + " -o " + file("x.npy"),
-        "hash-grid");
+    expect_usage("query closest-point gen:cube --structure hash-grid" + from, "holds points alone");
 }
 
 TEST_F(Query, RowsBeforeAFaultAreAnswered) {

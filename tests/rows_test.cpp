@@ -28,7 +28,7 @@ std::vector<T> rows_of(const std::filesystem::path& path, const InputColumns& co
     }
     EXPECT_TRUE(some.empty());
     EXPECT_EQ(reader->read(some, most), 0u) << "the end stays the end";
-    if (reader->size()) EXPECT_EQ(*reader->size() * columns.size(), all.size());
+    EXPECT_EQ(reader->size().value_or(all.size() / columns.size()) * columns.size(), all.size());
     return all;
 }
 

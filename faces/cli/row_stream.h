@@ -2,6 +2,7 @@
 /// written.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <utility>
@@ -46,21 +47,28 @@ public:
     /// leaves. Throws Cancelled once the progress, which counts rows, is cancelled.
     void run(Answer answer, const Progress& progress) {
         Chunk written, now = read();
-        while (now.rows + written.rows > 0) {
-            Chunk next;
-            executor_.both(
-                [&] {
-                    write(written);
-                    next = read();
-                },
-                [&] { this->answer(now, answer, progress); });
-            // Answers that are too many for the memory are written as they come.
-            while (!now.pieces.empty() && !now.pieces.back().done) {
-                write(now);
-                this->answer(now, answer, progress);
+        try {
+            while (now.rows + written.rows > 0) {
+                Chunk next;
+                executor_.both(
+                    [&] {
+                        write(written);
+                        next = read();
+                    },
+                    [&] { this->answer(now, answer, progress); });
+                // Answers that are too many for the memory are written as they come.
+                while (!now.done()) {
+                    write(now);
+                    this->answer(now, answer, progress);
+                }
+                written = std::move(now);
+                now = std::move(next);
             }
-            written = std::move(now);
-            now = std::move(next);
+        } catch (const Cancelled&) {
+            // Keep what is finished.
+            write(written);
+            write(now);
+            throw;
         }
         if (fault_) std::rethrow_exception(fault_);
     }
@@ -82,6 +90,11 @@ private:
         std::uint64_t first = 0;
         std::size_t rows = 0, written = 0;  // written: pieces
         std::vector<Piece> pieces;
+
+        bool done() const {
+            return std::all_of(pieces.begin() + static_cast<std::ptrdiff_t>(written), pieces.end(),
+                               [](const Piece& p) { return p.done; });
+        }
     };
 
     Chunk read() {

@@ -31,7 +31,8 @@ public:
 
     bool null() { return skip_column(); }
     bool boolean(bool) { return refuse("a truth value"); }
-    bool number_integer(std::int64_t x) { return number(static_cast<T>(x)); }
+    /// The parser calls this for integers with a sign, so 0 is −0.
+    bool number_integer(std::int64_t x) { return number(x == 0 ? -T(0) : static_cast<T>(x)); }
     bool number_unsigned(std::uint64_t x) { return number(static_cast<T>(x)); }
     bool number_float(double x, const std::string& digits) {
         return number(parse_real<T>(digits).value_or(static_cast<T>(x)));

@@ -68,7 +68,7 @@ NumberAt<T> reader_of(const std::string& dtype) {
     if (dtype == "i2") return number_at<T, std::int16_t>;
     if (dtype == "i4") return number_at<T, std::int32_t>;
     if (dtype == "i8") return number_at<T, std::int64_t>;
-    if (dtype == "u1") return number_at<T, std::uint8_t>;
+    if (dtype == "u1" || dtype == "b1") return number_at<T, std::uint8_t>;
     if (dtype == "u2") return number_at<T, std::uint16_t>;
     if (dtype == "u4") return number_at<T, std::uint32_t>;
     if (dtype == "u8") return number_at<T, std::uint64_t>;
@@ -124,7 +124,6 @@ private:
         return text + (shape.size() == 1 ? "," : "");
     }
     void add_place(std::size_t offset, const detail::NpyType& type) {
-        if (type.dtype == "b1") file_.fail("the array has truth values where numbers should stand");
         places_.push_back({offset, reader_of<T>(type.dtype), type.order != std::endian::native});
     }
     void find_columns(const detail::NpyHeader& header) {
@@ -135,6 +134,7 @@ private:
             file_.fail("the array has shape (" + text_of(header.shape) + "), but these rows are " + all +
                        ": " + names() + ". Reshape it");
         }
+        if (header.type.dtype == "b1") file_.fail("the array has truth values where numbers should stand");
         for (std::size_t i = 0; i < width; ++i) add_place(i * header.type.item, header.type);
         row_bytes_ = width * header.type.item;
     }
