@@ -159,9 +159,10 @@ TEST(Fuzz, Rows) {
         while (const std::size_t rows = reader->read(numbers, 3)) EXPECT_EQ(numbers.size(), 4 * rows);
     };
     std::string records;
-    RecordBytes record{records};
     for (int i = 0; i < 5; ++i)
-        record("z", float(i)), record("id", std::uint32_t(i)), record("y", 2.5), record("x", 1.0f);
+        append_record(records, [i](Record& record) {
+            record("z", float(i)), record("id", std::uint32_t(i)), record("y", 2.5), record("x", 1.0f);
+        });
     {
         RowWriter out(
             folder / "a.npy", RowFormat::npy,

@@ -222,18 +222,19 @@ std::vector<Column> columns_of_hits() {
 }
 std::string two_records() {
     std::string records;
-    RecordBytes record{records};
     const Hit<float> hit{0.1f, 0.25f, 1e-20f, 7, 0, 0, 8};
-    record("query", std::uint64_t(1) << 40), list_columns(hit, record), list_columns(true, record);
-    record("query", std::uint64_t(3)), list_columns(Hit<float>(), record), list_columns(false, record);
+    append_record(records, [&](Record& record) {
+        record("query", std::uint64_t(1) << 40), list_columns(hit, record), list_columns(true, record);
+    });
+    append_record(records, [&](Record& record) {
+        record("query", std::uint64_t(3)), list_columns(Hit<float>(), record), list_columns(false, record);
+    });
     return records;
 }
 void write(const std::filesystem::path& path, int chunks) {
     RowWriter out(path, row_format(path), columns_of_hits());
     for (int i = 0; i < chunks; ++i) {
-        std::string text;
-        out.encode(two_records(), text);
-        out.write(text, 2);
+        out.write(out.encode(two_records()), 2);
     }
     EXPECT_EQ(out.rows(), 2u * static_cast<unsigned>(chunks));
     out.finish();
@@ -278,9 +279,7 @@ TEST(RowWriter, AFileThatEndsEarlyIsValidUnderAnotherName) {
         folder.file(name, "precious");
         {
             RowWriter out(folder / name, row_format(name), columns_of_hits(), 100);
-            std::string text;
-            out.encode(two_records(), text);
-            out.write(text, 2);
+            out.write(out.encode(two_records()), 2);
             out.finish_as(folder / ("b" + name));
         }
         EXPECT_EQ(contents(folder / name), "precious");
@@ -297,9 +296,9 @@ TEST(RowWriter, FullDisksAndPipesAreRefused) {
         expect_output_error(
             [&] {
                 RowWriter out("/dev/full", format, columns_of_hits(), 100000);
-                std::string text;
-                for (int i = 0; i < 50000; ++i) out.encode(two_records(), text);
-                out.write(text, 100000);
+                std::string records;
+                for (int i = 0; i < 50000; ++i) records += two_records();
+                out.write(out.encode(records), 100000);
                 out.finish();
             },
             {"/dev/full", "No space left"});

@@ -45,7 +45,6 @@ void answer_rows(const AnyIndex<T, D>& index, const RowOptions& options, std::si
                  const T* numbers, std::uint64_t first, std::size_t count, AnsweredRows& answers) {
     using Given = typename Question::Given;
     using Answer = typename Question::Answer;
-    RecordBytes record{answers.records};
     const auto row = [&](std::size_t i) { return numbers + i * columns; };
     if constexpr (is_list<Answer>) {
         Answer found;
@@ -55,27 +54,32 @@ void answer_rows(const AnyIndex<T, D>& index, const RowOptions& options, std::si
                 continue;
             }
             Question::ask(index, RowsOf<Given>::of(row(i), options), found);
-            for (const auto& item : found) {
-                record("query", first + i);
-                list_item_columns(index, item, record);
-            }
+            for (const auto& item : found)
+                append_record(answers.records, [&](Record& record) {
+                    record("query", first + i);
+                    list_item_columns(index, item, record);
+                });
             answers.rows += found.size();
         }
     } else {
-        std::vector<Given> given;
-        given.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) given.push_back(RowsOf<Given>::of(row(i), options));
-        const std::unique_ptr<Answer[]> found(new Answer[count]());
+        // The thread keeps this memory for its next rows.
+        static thread_local std::vector<Given> given;
+        static thread_local std::unique_ptr<Answer[]> found;
+        if (given.size() < count) found.reset(new Answer[count]);
+        given.resize(std::max(given.size(), count));
+        for (std::size_t i = 0; i < count; ++i) given[i] = RowsOf<Given>::of(row(i), options);
+        const std::span<const Given> asked(given.data(), count);
         if constexpr (AsksMany<Question>) {
-            Question::ask_all(index, std::span<const Given>(given), std::span<Answer>(found.get(), count));
+            Question::ask_all(index, asked, std::span<Answer>(found.get(), count));
         } else {
             Visits nobodys;
-            for (std::size_t i = 0; i < count; ++i) Question::ask(index, given[i], found[i], nobodys);
+            for (std::size_t i = 0; i < count; ++i) Question::ask(index, asked[i], found[i], nobodys);
         }
         for (std::size_t i = 0; i < count; ++i) {
             const bool usable = RowsOf<Given>::usable(row(i));
             if (!usable) answers.refuse(first + i);
-            list_columns(usable ? found[i] : Answer(), record);
+            append_record(answers.records,
+                          [&](Record& record) { list_columns(usable ? found[i] : Answer(), record); });
         }
         answers.rows = count;
     }

@@ -40,12 +40,11 @@ void write_all(const QueryArguments& a, std::uint64_t count, QueryReport& report
     constexpr std::uint64_t some = 1 << 16;
     for (std::uint64_t first = 0; first < count; first += some) {
         progress.look();
-        std::string records, encoded;
-        RecordBytes record{records};
+        std::string records;
         const std::uint64_t end = std::min(count, first + some);
-        for (std::uint64_t i = first; i < end; ++i) list(record, i);
-        out.encode(records, encoded);
-        out.write(encoded, end - first);
+        for (std::uint64_t i = first; i < end; ++i)
+            append_record(records, [&](Record& record) { list(record, i); });
+        out.write(out.encode(std::move(records)), end - first);
         progress(end, count);
     }
     out.finish();

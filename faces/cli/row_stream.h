@@ -17,7 +17,7 @@ namespace hedgerow::cli {
 
 /// The answers to some rows.
 struct AnsweredRows {
-    std::string records;         // RecordBytes
+    std::string records;         // append_record
     std::uint64_t rows = 0;      // how many records
     std::uint64_t unusable = 0;  // rows read that can have no answer
     std::uint64_t first_unusable = 0;
@@ -46,14 +46,14 @@ public:
     /// Answers all rows. Rows before a fault of the input are answered and written before its InputError
     /// leaves. Throws Cancelled once the progress, which counts rows, is cancelled.
     void run(Answer answer, const Progress& progress) {
-        Chunk written, now = read();
+        Chunk written, now, next;
+        read(now);
         try {
             while (now.rows + written.rows > 0) {
-                Chunk next;
                 executor_.both(
                     [&] {
                         write(written);
-                        next = read();
+                        read(next);
                     },
                     [&] { this->answer(now, answer, progress); });
                 // Answers that are too many for the memory are written as they come.
@@ -61,8 +61,8 @@ public:
                     write(now);
                     this->answer(now, answer, progress);
                 }
-                written = std::move(now);
-                now = std::move(next);
+                std::swap(written, now);
+                std::swap(now, next);
             }
         } catch (const Cancelled&) {
             // Keep what is finished.
@@ -97,19 +97,22 @@ private:
         }
     };
 
-    Chunk read() {
-        Chunk c;
-        if (fault_) return c;
+    /// Reads the next rows into a chunk of before, whose memory is used again.
+    void read(Chunk& c) {
         c.first = asked_;
+        c.written = 0;
+        c.pieces.clear();
         try {
-            in_.read(c.numbers, cut_.chunk);
+            if (fault_)
+                c.numbers.clear();
+            else
+                in_.read(c.numbers, cut_.chunk);
         } catch (...) {
             fault_ = std::current_exception();
         }
         c.rows = c.numbers.size() / columns_;
         asked_ += c.rows;
         c.pieces.resize((c.rows + cut_.piece - 1) / cut_.piece);
-        return c;
     }
     /// Answers the pieces that are not done, in order, until there are too many answers; but at least one.
     void answer(Chunk& c, Answer answer, const Progress& progress) {
@@ -122,8 +125,7 @@ private:
                 progress.look();
                 const std::size_t row = i * cut_.piece, count = std::min(cut_.piece, c.rows - row);
                 answer(c.numbers.data() + row * columns_, c.first + row, count, p.answers);
-                out_.encode(p.answers.records, p.encoded);
-                p.answers.records = {};
+                p.encoded = out_.encode(std::move(p.answers.records));
                 p.done = true;
                 bytes += p.encoded.size();
                 progress(answered_ += count, in_.size().value_or(0));

@@ -120,14 +120,12 @@ RowWriter::RowWriter(const std::filesystem::path& path, RowFormat format, std::v
 }
 RowWriter::~RowWriter() = default;
 
-void RowWriter::encode(std::string_view records, std::string& text) const {
+std::string RowWriter::encode(std::string records) const {
     const State& s = *state_;
-    if (s.format == RowFormat::npy) {
-        text += records;
-        return;
-    }
-    for (; !records.empty(); records.remove_prefix(s.record_bytes)) {
-        const char* at = records.data();
+    if (s.format == RowFormat::npy) return records;
+    std::string text;
+    for (std::string_view left = records; !left.empty(); left.remove_prefix(s.record_bytes)) {
+        const char* at = left.data();
         text += s.format == RowFormat::json ? ",\n{" : "";
         for (std::size_t i = 0; i < s.columns.size(); ++i) {
             const Column& c = s.columns[i];
@@ -144,6 +142,7 @@ void RowWriter::encode(std::string_view records, std::string& text) const {
         }
         text += s.format == RowFormat::json ? "}" : "\n";
     }
+    return text;
 }
 
 void RowWriter::write(std::string_view encoded, std::uint64_t rows) {

@@ -1,8 +1,6 @@
 /// The columns of rows of numbers: names, types, and records of packed numbers.
 #pragma once
 
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -54,15 +52,28 @@ struct ColumnList {
     }
 };
 
-/// Appends numbers to a record: each in this processor's byte order, without gaps.
-struct RecordBytes {
-    std::string& bytes;
+/// A record: numbers in this processor's byte order, one after the other without gaps.
+class Record {
+public:
     template <class N>
     void operator()(std::string_view, N value) {
-        char raw[sizeof(N)];
-        std::memcpy(raw, &value, sizeof(N));
-        bytes.append(raw, sizeof(N));
+        static_assert(sizeof(N) == size_of(number_type<N>()));
+        std::memcpy(raw_ + size_, &value, sizeof(N));
+        size_ += sizeof(N);
     }
+    std::string_view bytes() const { return {raw_, size_}; }
+
+private:
+    char raw_[128];  // 16 columns of any type
+    std::size_t size_ = 0;
 };
+
+/// Appends a record to `records`. `list(record)` gives its numbers: `record(name, number)` for each column.
+template <class List>
+void append_record(std::string& records, List list) {
+    Record record;
+    list(record);
+    records += record.bytes();
+}
 
 }  // namespace hedgerow

@@ -71,8 +71,8 @@ public:
     RowWriter(const RowWriter&) = delete;
     RowWriter& operator=(const RowWriter&) = delete;
 
-    /// Appends `records` (RecordBytes) to `text` as the format has them. Several threads may call it at once.
-    void encode(std::string_view records, std::string& text) const;
+    /// `records` (append_record) as the format has them. Several threads may call it at once.
+    std::string encode(std::string records) const;
     /// Writes what `encode` made of so many rows.
     void write(std::string_view encoded, std::uint64_t rows);
     /// The number of rows written so far.
