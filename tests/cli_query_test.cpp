@@ -300,6 +300,18 @@ TEST_F(Query, MoreAnswersThanWaitInMemoryAreInTheirOrder) {
     for (std::size_t i = 0; i < queries.size(); ++i) ASSERT_EQ(queries[i], double(i / set.size()));
 }
 
+TEST_F(Query, MemoryDoesNotGrowWithTheRows) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers keep memory that was freed";
+#endif
+    // Rows and answers of the larger file take 72 MB and 120 MB.
+    write_rows<float>("few.npy", 600000, 3), write_rows<float>("many.npy", 6000000, 3);
+    const std::string asked = "query closest-point gen:cube --quiet -o " + file("a.npy") + " --from ";
+    const long few = peak_memory(asked + file("few.npy")), many = peak_memory(asked + file("many.npy"));
+    EXPECT_LT(many, few + 20000) << few << " and " << many << " KiB";
+    EXPECT_LT(many, 200000);
+}
+
 TEST_F(Query, WrongUsageIsTwo) {
     write("p.csv", "0,0,9\n");
     const std::string from = " --from " + file("p.csv"), to = " -o " + file("x.csv");

@@ -1,6 +1,8 @@
 /// hedgerow query: answers rows of queries from a file, in chunks.
 #include "query.h"
 
+#include <filesystem>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -274,6 +276,8 @@ Run add_query(CLI::App& verb) {
         if (!a->with.empty()) throw UsageError(a->kind + " is asked of one scene: leave out --with");
         if (a->from.empty()) throw UsageError(a->kind + " needs --from: the file of rows, or - for a pipe");
         row_format(a->from, a->format);
+        if (a->from != "-" && !std::filesystem::exists(a->from))
+            throw InputError(a->from + ": there is no such file. Check the path");
         return in_precision(*a, [&]<class T>(T) {
             if (names_index_file(a->scene) && a->structure == "wide") return query_saved<T>(*a);
             return std::visit([&](const auto& set) { return query_set(*a, set); }, load<T>(*a));
