@@ -85,12 +85,12 @@ std::vector<double> answers_of(const AnyIndex<T, D>& index, const std::vector<T>
             for (const auto& item : found) numbers("query", i), list_item_columns(index, item, numbers);
         }
     } else {
-        list_columns(Answer(), all);
+        list_answer<Question>(Answer(), all);
         for (std::size_t i = 0; i < rows.size() / columns; ++i) {
             const Given given = RowsOf<Given>::of(&rows[i * columns], options);
             Answer answer[1];
             Question::ask_all(index, std::span(&given, 1), std::span(answer));
-            list_columns(answer[0], numbers);
+            list_answer<Question>(answer[0], numbers);
         }
     }
     names = all.all;

@@ -217,17 +217,17 @@ std::vector<Column> columns_of_hits() {
     ColumnList list;
     list("query", std::uint64_t());
     list_columns(Hit<float>(), list);
-    list_columns(false, list);
+    list("hit", false);
     return list.all;
 }
 std::string two_records() {
     std::string records;
     const Hit<float> hit{0.1f, 0.25f, 1e-20f, 7, 0, 0, 8};
     append_record(records, [&](Record& record) {
-        record("query", std::uint64_t(1) << 40), list_columns(hit, record), list_columns(true, record);
+        record("query", std::uint64_t(1) << 40), list_columns(hit, record), record("hit", true);
     });
     append_record(records, [&](Record& record) {
-        record("query", std::uint64_t(3)), list_columns(Hit<float>(), record), list_columns(false, record);
+        record("query", std::uint64_t(3)), list_columns(Hit<float>(), record), record("hit", false);
     });
     return records;
 }

@@ -1,7 +1,10 @@
 /// hedgerow query: answers rows of queries from a file, in chunks.
 #include "query.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -36,7 +39,7 @@ std::vector<Column> answer_columns() {
         list("query", std::uint64_t());
         list_item_columns(NoIndex(), typename Answer::value_type(), list);
     } else {
-        list_columns(Answer(), list);
+        list_answer<Question>(Answer(), list);
     }
     return list.all;
 }
@@ -80,8 +83,9 @@ void answer_rows(const AnyIndex<T, D>& index, const RowOptions& options, std::si
         for (std::size_t i = 0; i < count; ++i) {
             const bool usable = RowsOf<Given>::usable(row(i));
             if (!usable) answers.refuse(first + i);
-            append_record(answers.records,
-                          [&](Record& record) { list_columns(usable ? found[i] : Answer(), record); });
+            append_record(answers.records, [&](Record& record) {
+                list_answer<Question>(usable ? found[i] : Answer(), record);
+            });
         }
         answers.rows = count;
     }
@@ -227,7 +231,7 @@ int print_report(const QueryArguments& a, const QueryReport& r) {
                     {"seconds", r.seconds},
                     {"queries_per_second", rate},
                     {"finished", r.finished}});
-    } else if (!a.quiet) {
+    } else if (!a.quiet && !r.output.empty()) {
         fmt::print(to, "{}: {} rows, {} of {} primitives, {} in {:.1f} ms", r.output, r.answered, a.kind,
                    r.primitives, r.loaded ? "loaded" : "built", r.build_seconds * 1e3);
         if (r.asked > 0) fmt::print(to, "; {} queries, {:.3f} million a second", r.asked, rate * 1e-6);

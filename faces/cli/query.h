@@ -1,6 +1,10 @@
 /// What the files of `hedgerow query` share.
 #pragma once
 
+#include <span>
+#include <string>
+#include <string_view>
+
 #include <hedgerow/columns.h>
 #include <hedgerow/io/rows.h>
 

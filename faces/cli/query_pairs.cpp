@@ -1,4 +1,9 @@
 /// Queries of pairs: what of two scenes meets, and how far apart they are.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include <hedgerow/base/error.h>

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -72,7 +73,8 @@ public:
         }
         if (fault_) std::rethrow_exception(fault_);
     }
-    std::uint64_t asked() const { return asked_; }
+    /// The number of rows whose answers were written, and of those among them that can have none.
+    std::uint64_t asked() const { return done_; }
     std::uint64_t unusable() const { return unusable_; }
     std::uint64_t first_unusable() const { return first_unusable_; }
 
@@ -99,7 +101,7 @@ private:
 
     /// Reads the next rows into a chunk of before, whose memory is used again.
     void read(Chunk& c) {
-        c.first = asked_;
+        c.first = read_;
         c.written = 0;
         c.pieces.clear();
         try {
@@ -111,7 +113,7 @@ private:
             fault_ = std::current_exception();
         }
         c.rows = c.numbers.size() / columns_;
-        asked_ += c.rows;
+        read_ += c.rows;
         c.pieces.resize((c.rows + cut_.piece - 1) / cut_.piece);
     }
     /// Answers the pieces that are not done, in order, until there are too many answers; but at least one.
@@ -137,6 +139,7 @@ private:
         for (; c.written < c.pieces.size() && c.pieces[c.written].done; ++c.written) {
             Piece& p = c.pieces[c.written];
             out_.write(p.encoded, p.answers.rows);
+            done_ += std::min(cut_.piece, c.rows - c.written * cut_.piece);
             if (unusable_ == 0) first_unusable_ = p.answers.first_unusable;
             unusable_ += p.answers.unusable;
             p.encoded = {};
@@ -149,7 +152,7 @@ private:
     Executor& executor_;
     RowCut cut_;
     std::exception_ptr fault_;
-    std::uint64_t asked_ = 0, unusable_ = 0, first_unusable_ = 0;
+    std::uint64_t read_ = 0, done_ = 0, unusable_ = 0, first_unusable_ = 0;
     std::atomic<std::uint64_t> answered_{0};
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <hedgerow/base/column.h>
@@ -122,10 +123,6 @@ struct RowsOf<Box<T, D>> {
 };
 
 /// Calls f(name, number) for each column of an answer.
-template <class F>
-void list_columns(bool hit, F& f) {
-    f("hit", hit);
-}
 template <std::floating_point T, class F>
 void list_columns(const Hit<T>& hit, F& f) {
     f("primitive", hit.primitive), f("t", hit.t), f("u", hit.u), f("v", hit.v);
@@ -140,6 +137,16 @@ void list_columns(const Near<T, D>& near, F& f) {
     constexpr std::string_view axes[] = {"x", "y", "z"};
     f("primitive", near.primitive), f("distance", distance_of(near));
     for (int k = 0; k < D; ++k) f(axes[k], near.point[k]);
+}
+
+/// Calls f(name, number) for each column of an answer to a question. An answer that is a number or a truth
+/// value has the question's `column`.
+template <class Question, class F>
+void list_answer(const typename Question::Answer& answer, F& f) {
+    if constexpr (std::is_arithmetic_v<typename Question::Answer>)
+        f(Question::column, answer);
+    else
+        list_columns(answer, f);
 }
 
 /// Calls f(name, number) for each column of an element of a list, which follow the number of its query. A

@@ -25,7 +25,7 @@ struct Neighbours {
 /// A question: its name; the words for it in a sentence; what is given to it, and what it answers, in memory
 /// that the next answer may use again. A question has either `ask`, which asks an index once, or `ask_all`,
 /// which asks many times in one call. Visits are added to those given; an `ask` without them is faster on the
-/// engine.
+/// engine. `column` names an answer that is a number or a truth value; columns.h has the columns of others.
 template <std::floating_point T, int D>
 struct AskClosestHit {
     static constexpr std::string_view name = "closest-hit", words = "closest hit";
@@ -38,7 +38,7 @@ struct AskClosestHit {
 };
 template <std::floating_point T, int D>
 struct AskAnyHit {
-    static constexpr std::string_view name = "any-hit", words = "any hit";
+    static constexpr std::string_view name = "any-hit", words = "any hit", column = "hit";
     using Given = Ray<T, D>;
     using Answer = bool;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,

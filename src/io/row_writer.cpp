@@ -1,6 +1,7 @@
 /// Writers of rows, by format.
-#include <array>
 #include <bit>
+#include <cmath>
+#include <cstring>
 #include <limits>
 
 #include <hedgerow/base/error.h>

@@ -2,9 +2,10 @@
 #include <hedgerow/io/rows.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
 #include <hedgerow/base/error.h>
-#include <hedgerow/base/spelling.h>
 
 #include "csv_rows.h"
 #include "json_rows.h"
