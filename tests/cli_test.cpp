@@ -10,7 +10,7 @@ using Cli = ToolTest;
 
 TEST_F(Cli, HelpOpensWithExamples) {
     for (const char* verb :
-         {"", "render ", "build ", "draw ", "compare ", "info ", "generate ", "structures "}) {
+         {"", "render ", "query ", "build ", "draw ", "compare ", "info ", "generate ", "structures "}) {
         const auto r = run(std::string(verb) + "--help");
         EXPECT_EQ(r.code, 0);
         EXPECT_EQ(r.output.rfind("Examples:", 0), 0u) << r.output;

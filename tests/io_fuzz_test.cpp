@@ -2,6 +2,7 @@
 #include <hedgerow/io/image.h>
 #include <hedgerow/io/npy.h>
 #include <hedgerow/io/point_file.h>
+#include <hedgerow/io/rows.h>
 #include <hedgerow/io/validate.h>
 
 #include "gltf_text.h"
@@ -147,6 +148,39 @@ TEST(Fuzz, PointsArraysAndImages) {
         EXPECT_EQ(image.pixels.size(),
                   static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     });
+}
+
+TEST(Fuzz, Rows) {
+    TempFolder folder;
+    const InputColumns columns{{"x", "y", "z", "t"}, {1}};
+    const auto read = [&](const std::filesystem::path& path) {
+        const auto reader = open_rows<float>(path, row_format(path), columns);
+        std::vector<float> numbers;
+        while (const std::size_t rows = reader->read(numbers, 3)) EXPECT_EQ(numbers.size(), 4 * rows);
+    };
+    std::string records;
+    for (int i = 0; i < 5; ++i)
+        append_record(records, [i](Record& record) {
+            record("z", float(i)), record("id", std::uint32_t(i)), record("y", 2.5), record("x", 1.0f);
+        });
+    {
+        RowWriter out(
+            folder / "a.npy", RowFormat::npy,
+            {{"z", NumberType::f32}, {"id", NumberType::id}, {"y", NumberType::f64}, {"x", NumberType::f32}},
+            5);
+        out.write(records, 5);
+        out.finish();
+    }
+    EXPECT_GT(survivors(folder, "a.npy", contents(folder / "a.npy"), 3000, read), 50);
+    const std::vector<double> plain(20, 1.5);
+    save_npy<double>(folder / "b.npy", plain, {5, 4});
+    EXPECT_GT(survivors(folder, "b.npy", contents(folder / "b.npy"), 3000, read), 50);
+    EXPECT_GT(survivors(folder, "a.csv", "z,x,y\n1,2,3\n4.5,-1e9,inf\n7,8,9\n", 3000, read), 50);
+    EXPECT_GT(survivors(folder, "b.csv", "1 2 3 4\n4.5 -1e9 inf 0\n7 8 9 1\n", 3000, read), 50);
+    EXPECT_GT(survivors(folder, "a.json", "[[1,2,3],[4.5,-1e9,null],[7,8,9]]", 3000, read), 50);
+    EXPECT_GT(survivors(folder, "b.json",
+                        "{\"x\":1,\"y\":2,\"z\":3}\n{\"z\":4,\"name\":\"}]\",\"x\":5,\"y\":6}", 3000, read),
+              50);
 }
 
 }  // namespace

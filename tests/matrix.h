@@ -138,8 +138,14 @@ std::unique_ptr<typename Question::Answer[]> answers_of(const Index& index,
         if constexpr (AsksMany<Question>) {
             Question::ask_all(index, given.subspan(begin, count), std::span(answers.get() + begin, count));
         } else {
+            // An index may answer by another way where visits are not counted.
             Visits visits;
-            for (std::size_t i = begin; i < end; ++i) Question::ask(index, given[i], answers[i], visits);
+            for (std::size_t i = begin; i < end; ++i)
+                if constexpr (requires { Question::ask(index, given[i], answers[i]); })
+                    i % 2 == 0 ? Question::ask(index, given[i], answers[i])
+                               : Question::ask(index, given[i], answers[i], visits);
+                else
+                    Question::ask(index, given[i], answers[i], visits);
         }
     });
     return answers;

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,6 +56,20 @@ inline int run_interrupted(std::vector<std::string> arguments, int milliseconds 
     int status = 0;
     waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// Runs the tool, whose exit code must be 0. Returns the most memory that it took, in KiB.
+inline long peak_memory(const std::string& arguments) {
+    const pid_t child = fork();
+    if (child == 0) {
+        execl("/bin/sh", "sh", "-c", ("exec " HEDGEROW_TOOL_PATH " " + arguments).c_str(), nullptr);
+        _exit(127);
+    }
+    int status = 0;
+    rusage usage{};
+    wait4(child, &status, 0, &usage);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << arguments;
+    return usage.ru_maxrss;
 }
 
 /// Renders a picture of 1600 x 1200 and interrupts it once some of its rows are done. Returns the exit code.

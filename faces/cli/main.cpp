@@ -48,6 +48,13 @@ constexpr Verb verbs[] = {
      "  hedgerow render gen:teapot-in-stadium --shading steps -o steps.png\n"
      "  hedgerow render gen:teapot -o layers.exr\n\na picture, by rays",
      add_render},
+    {"query",
+     "Examples:\n  hedgerow query closest-point dragon.ply --from points.npy -o closest.npy\n"
+     "  hedgerow query nearest scan.ply --count 8 --from places.csv -o near.csv\n"
+     "  hedgerow query crossings part.stl --with case.stl -o pairs.json\n"
+     "  make-rays | hedgerow query closest-hit dragon.ply --from - --format csv -o hits.npy\n\n"
+     "answer queries from a file, as many as it holds: rays, points, boxes, pairs",
+     add_query},
     {"build",
      "Examples:\n  hedgerow build dragon.ply -o dragon.hedgerow\n"
      "  hedgerow build gen:terrain:200000 --builder high --width 8 -o terrain.hedgerow\n\n"

@@ -13,6 +13,7 @@ namespace hedgerow::cli {
 using Run = std::function<int()>;
 
 Run add_render(CLI::App& verb);
+Run add_query(CLI::App& verb);
 Run add_build(CLI::App& verb);
 Run add_draw(CLI::App& verb);
 Run add_compare(CLI::App& verb);

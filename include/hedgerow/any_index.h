@@ -18,8 +18,9 @@
 namespace hedgerow {
 
 /// An index of any structure. A batch of closest or any hits or closest points costs one virtual call, inside
-/// which the structure is known at compile time. All other queries share one walk a probe, in which each
-/// candidate costs a virtual call. Const use is thread-safe.
+/// which the structure is known at compile time. So does each list of the engine (`all_hits`, `nearest`,
+/// `within`, `overlapping`) whose visits are not counted. All other queries share one walk a probe, in which
+/// each candidate costs a virtual call. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
@@ -76,7 +77,8 @@ public:
         return one_by_one<AnyHit<AnyIndex>>(rays, hits, visits);
     }
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits = nullptr) const {
-        return counted<AllHits<AnyIndex>>(visits, ray, hits);
+        if (visits == nullptr) return all_hits_uncounted(ray, hits);
+        return answer<AllHits<AnyIndex>>(*visits, ray, hits);
     }
     /// Writes the closest point for each of `points`, false where there is no primitive. With `visits`, adds
     /// to one count a point, and no kernel answers.
@@ -88,11 +90,18 @@ public:
     }
     std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
                         Visits* visits = nullptr) const {
-        return counted<Nearest<AnyIndex>>(visits, point, k, NearOptions<T>(), found);
+        if (visits == nullptr) return nearest_uncounted(point, k, found);
+        return answer<Nearest<AnyIndex>>(*visits, point, k, NearOptions<T>(), found);
+    }
+    std::size_t within(const Vec<T, D>& point, const NearOptions<T>& options, std::vector<Near<T, D>>& found,
+                       Visits* visits = nullptr) const {
+        if (visits == nullptr) return within_uncounted(point, options, found);
+        return answer<Within<AnyIndex>>(*visits, point, options, found);
     }
     std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
                             Visits* visits = nullptr) const {
-        return counted<Overlapping<AnyIndex>>(visits, box, found);
+        if (visits == nullptr) return overlapping_uncounted(box, found);
+        return answer<Overlapping<AnyIndex>>(*visits, box, found);
     }
 
     /// Calls a function for the structure's cells, parents before their children (walks/outline.h).
@@ -124,6 +133,20 @@ protected:
     virtual KernelUse any_hits_uncounted(const RayArray<T, D>& rays, std::span<bool> hits) const = 0;
     virtual void closest_points_uncounted(std::span<const Vec<T, D>> points,
                                           std::span<Near<T, D>> found) const = 0;
+    virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const {
+        return answer<AllHits<AnyIndex>>(no_visits, ray, hits);
+    }
+    virtual std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k,
+                                          std::vector<Near<T, D>>& found) const {
+        return answer<Nearest<AnyIndex>>(no_visits, point, k, NearOptions<T>(), found);
+    }
+    virtual std::size_t within_uncounted(const Vec<T, D>& point, const NearOptions<T>& options,
+                                         std::vector<Near<T, D>>& found) const {
+        return answer<Within<AnyIndex>>(no_visits, point, options, found);
+    }
+    virtual std::size_t overlapping_uncounted(const Box<T, D>& box, std::vector<PrimitiveId>& found) const {
+        return answer<Overlapping<AnyIndex>>(no_visits, box, found);
+    }
     virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
     virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
@@ -142,12 +165,6 @@ private:
         } else {
             walk(query, count);
         }
-    }
-    /// `answer`, whose visits are added to `visits` if that is not null.
-    template <class Q, class... Arguments>
-    auto counted(Visits* visits, Arguments&&... arguments) const {
-        Visits nobodys;
-        return answer<Q>(visits != nullptr ? *visits : nobodys, arguments...);
     }
     template <class Q, class Answer>
     KernelUse one_by_one(const RayArray<T, D>& rays, std::span<Answer> answers,

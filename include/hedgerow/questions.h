@@ -24,7 +24,8 @@ struct Neighbours {
 
 /// A question: its name; the words for it in a sentence; what is given to it, and what it answers, in memory
 /// that the next answer may use again. A question has either `ask`, which asks an index once, or `ask_all`,
-/// which asks many times in one call. Visits are added to those given, if any.
+/// which asks many times in one call. Visits are added to those given; an `ask` without them is faster on the
+/// engine. `column` names an answer that is a number or a truth value; columns.h has the columns of others.
 template <std::floating_point T, int D>
 struct AskClosestHit {
     static constexpr std::string_view name = "closest-hit", words = "closest hit";
@@ -37,7 +38,7 @@ struct AskClosestHit {
 };
 template <std::floating_point T, int D>
 struct AskAnyHit {
-    static constexpr std::string_view name = "any-hit", words = "any hit";
+    static constexpr std::string_view name = "any-hit", words = "any hit", column = "hit";
     using Given = Ray<T, D>;
     using Answer = bool;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,
@@ -51,7 +52,10 @@ struct AskAllHits {
     using Given = Ray<T, D>;
     using Answer = std::vector<Hit<T>>;
     static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits, Visits& visits) {
-        index.template answer<AllHits<AnyIndex<T, D>>>(visits, ray, hits);
+        index.all_hits(ray, hits, &visits);
+    }
+    static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits) {
+        index.all_hits(ray, hits);
     }
 };
 template <std::floating_point T, int D>
@@ -70,7 +74,10 @@ struct AskNearest {
     using Given = Neighbours<T, D>;
     using Answer = std::vector<Near<T, D>>;
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found, Visits& visits) {
-        index.template answer<Nearest<AnyIndex<T, D>>>(visits, given.point, given.k, NearOptions<T>(), found);
+        index.nearest(given.point, given.k, found, &visits);
+    }
+    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found) {
+        index.nearest(given.point, given.k, found);
     }
 };
 template <std::floating_point T, int D>
@@ -79,7 +86,10 @@ struct AskWithin {
     using Given = Ball<T, D>;
     using Answer = std::vector<Near<T, D>>;
     static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found, Visits& visits) {
-        hedgerow::within(index, ball.center, {.radius2 = ball.radius2}, found, visits);
+        index.within(ball.center, {.radius2 = ball.radius2}, found, &visits);
+    }
+    static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found) {
+        index.within(ball.center, {.radius2 = ball.radius2}, found);
     }
 };
 template <std::floating_point T, int D>
@@ -88,7 +98,10 @@ struct AskOverlap {
     using Given = Box<T, D>;
     using Answer = std::vector<PrimitiveId>;
     static void ask(const AnyIndex<T, D>& index, const Given& box, Answer& found, Visits& visits) {
-        index.template answer<Overlapping<AnyIndex<T, D>>>(visits, box, found);
+        index.overlapping(box, found, &visits);
+    }
+    static void ask(const AnyIndex<T, D>& index, const Given& box, Answer& found) {
+        index.overlapping(box, found);
     }
 };
 

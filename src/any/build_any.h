@@ -19,6 +19,7 @@ class Holder final : public AnyIndex<typename P::Scalar, P::dimension> {
 public:
     using T = typename P::Scalar;
     static constexpr int D = P::dimension;
+    using Any = AnyIndex<T, D>;
 
     Holder(std::string name, Index<S, P> index) : name_(std::move(name)), index_(std::move(index)) {}
 
@@ -62,6 +63,32 @@ public:
                                   std::span<Near<T, D>> found) const override {
         hedgerow::closest_points(index_, points, found, serial_executor());
     }
+    std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const override {
+        if constexpr (is_engine)
+            return hedgerow::all_hits(index_, ray, hits);
+        else
+            return Any::all_hits_uncounted(ray, hits);
+    }
+    std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k,
+                                  std::vector<Near<T, D>>& found) const override {
+        if constexpr (is_engine)
+            return hedgerow::nearest(index_, point, k, found);
+        else
+            return Any::nearest_uncounted(point, k, found);
+    }
+    std::size_t within_uncounted(const Vec<T, D>& point, const NearOptions<T>& options,
+                                 std::vector<Near<T, D>>& found) const override {
+        if constexpr (is_engine)
+            return hedgerow::within(index_, point, options, found);
+        else
+            return Any::within_uncounted(point, options, found);
+    }
+    std::size_t overlapping_uncounted(const Box<T, D>& box, std::vector<PrimitiveId>& found) const override {
+        if constexpr (is_engine)
+            return hedgerow::overlapping(index_, box, found);
+        else
+            return Any::overlapping_uncounted(box, found);
+    }
     void walk(VirtualQuery<RayProbe<T, D>>& query, TraceLog<T, D>& log) const override {
         if constexpr (rays)
             index_.ask(query, log);
@@ -101,6 +128,8 @@ public:
 
 private:
     static constexpr bool rays = AnswersProbe<S, RayProbe<T, D>>;
+    /// Lists of the other structures share a walk: one for each would take the compiler minutes.
+    static constexpr bool is_engine = std::same_as<S, WideBvh<T, D>>;
     static constexpr bool one_by_one = ChangesOneByOne<S, P>;
     static constexpr bool fits_again = Refittable<S, P>;
     [[noreturn]] void refuse_rays() const {

@@ -1,6 +1,9 @@
-/// Reads files through zlib, which reads plain files too.
+/// Reads files through zlib, which reads plain files too, and pipes directly.
 #include "byte_source.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -36,13 +39,30 @@ void check_readable(const std::filesystem::path& path) {
         throw InputError(name + ": the file is empty. Write it again");
 }
 
-ByteSource::ByteSource(const std::filesystem::path& path, const Progress& progress)
+namespace {
+/// A descriptor to read a pipe by: of the standard input, a named pipe or a device. −1 for other paths.
+int opened_pipe(const std::filesystem::path& path) {
+    if (path == "-") return ::dup(STDIN_FILENO);
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    const bool is_pipe = std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
+    return is_pipe ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC) : -1;
+}
+}  // namespace
+
+ByteSource::ByteSource(const std::filesystem::path& path, const Progress& progress, Pipes pipes)
     : name_(path.string()), progress_(progress) {
+    buffer_.resize(buffer_size);
+    if (pipes == Pipes::yes) {
+        pipe_ = opened_pipe(path);
+        if (path == "-") name_ = "the standard input";
+        if (pipe_ >= 0) return;
+        if (path == "-") fail("is closed. Pipe rows to it, or name a file");
+    }
     check_readable(path);
     std::error_code error;
     total_ = std::filesystem::file_size(path, error);
     if (error) total_ = 0;
-    buffer_.resize(buffer_size);
     errno = 0;
     file_ = gzopen(path.c_str(), "rb");
     if (file_ == nullptr) fail("cannot be opened: " + std::generic_category().message(errno));
@@ -50,11 +70,13 @@ ByteSource::ByteSource(const std::filesystem::path& path, const Progress& progre
 }
 
 ByteSource::~ByteSource() {
-    gzclose(file_);
+    if (file_ != nullptr) gzclose(file_);
+    if (pipe_ >= 0) ::close(pipe_);
 }
 
 std::uint64_t ByteSource::most_left() const {
     constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max(), ratio = 1032;
+    if (pipe_ >= 0) return most;
     if (gzdirect(file_) != 0) return total_ - std::min(total_, offset());
     return total_ > most / ratio ? most : total_ * ratio - std::min(total_ * ratio, offset());
 }
@@ -66,9 +88,17 @@ void ByteSource::expect_not_cancelled() const {
 bool ByteSource::refill() {
     if (ended_) return false;
     expect_not_cancelled();
-    // Fill the buffer again, and report damaged data.
     before_ += filled_;
     at_ = filled_ = 0;
+    if (pipe_ >= 0)
+        read_pipe();
+    else
+        read_file();
+    return !ended_;
+}
+
+void ByteSource::read_file() {
+    // Fill the buffer again, and report damaged data.
     const int got = gzread(file_, buffer_.data(), static_cast<unsigned>(buffer_.size()));
     int code = Z_OK;
     const std::string message = gzerror(file_, &code);
@@ -89,7 +119,18 @@ bool ByteSource::refill() {
         progress_(total_, total_);
     else
         progress_(std::min(static_cast<std::uint64_t>(done < 0 ? 0 : done), total_), total_);
-    return !ended_;
+}
+
+void ByteSource::read_pipe() {
+    // Wait for data, and look at times whether reading was cancelled meanwhile.
+    pollfd waiting{pipe_, POLLIN, 0};
+    while (::poll(&waiting, 1, 100) == 0) expect_not_cancelled();
+    ssize_t got;
+    do got = ::read(pipe_, buffer_.data(), buffer_.size());
+    while (got < 0 && errno == EINTR);
+    if (got < 0) fail_here("cannot be read: " + std::generic_category().message(errno));
+    filled_ = static_cast<std::size_t>(got);
+    ended_ = got == 0;
 }
 
 std::size_t ByteSource::read(void* to, std::size_t size) {

@@ -19,11 +19,15 @@ namespace hedgerow::detail {
 /// Throws InputError if there is no regular, non-empty file.
 void check_readable(const std::filesystem::path& path);
 
-/// A file that is read in pieces. Reports progress and checks for cancellation whenever its buffer is filled.
-/// All errors are InputError.
+/// Whether a ByteSource may read pipes: "-" is then the standard input.
+enum class Pipes : bool { no, yes };
+
+/// A file or pipe that is read in pieces. Reports progress and checks for cancellation whenever its buffer is
+/// filled; of a pipe no progress is known. All errors are InputError.
 class ByteSource {
 public:
-    explicit ByteSource(const std::filesystem::path& path, const Progress& progress = {});
+    explicit ByteSource(const std::filesystem::path& path, const Progress& progress = {},
+                        Pipes pipes = Pipes::no);
     ~ByteSource();
     ByteSource(const ByteSource&) = delete;
     ByteSource& operator=(const ByteSource&) = delete;
@@ -32,7 +36,7 @@ public:
     /// Bytes read so far, after decompression.
     std::uint64_t offset() const { return before_ + at_; }
     /// The most bytes that can follow: exact for a plain file, a bound for a compressed one (deflate packs at
-    /// most 1032 to 1).
+    /// most 1032 to 1), the largest number for a pipe.
     std::uint64_t most_left() const;
     /// Throws Cancelled if reading was cancelled. For long work on data that are already read.
     void expect_not_cancelled() const;
@@ -72,11 +76,15 @@ public:
 
 private:
     bool refill();
+    /// Fills the buffer with what zlib unpacks, or with what a pipe has.
+    void read_file();
+    void read_pipe();
 
     std::string name_;
     Progress progress_;
     std::uint64_t total_ = 0, before_ = 0;
     gzFile_s* file_ = nullptr;
+    int pipe_ = -1;
     std::vector<unsigned char> buffer_;
     std::size_t at_ = 0, filled_ = 0;
     bool ended_ = false;

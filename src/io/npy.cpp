@@ -78,12 +78,16 @@ std::vector<T> NpyArray::as() const {
 }
 
 std::string detail::npy_header(const std::string& dtype, const std::vector<std::size_t>& shape) {
-    std::string text = "{'descr': '" + std::string(dtype[1] == '1' ? "|" : "<") + dtype +
-                       "', 'fortran_order': False, 'shape': (";
+    return npy_header_of(std::string(dtype[1] == '1' ? "'|" : "'<") + dtype + "'", shape);
+}
+std::string detail::npy_header_of(const std::string& descr, const std::vector<std::size_t>& shape,
+                                  std::size_t length) {
+    std::string text = "{'descr': " + descr + ", 'fortran_order': False, 'shape': (";
     for (const std::size_t n : shape) text += std::to_string(n) + ", ";
     text += "), }";
     if (shape.size() > 1) text.erase(text.size() - 6, 2);  // numpy writes (3, 4) but (3, )
     constexpr std::size_t start = 10;  // bytes before the text: magic word, version, length
+    if (start + text.size() + 1 < length) text.append(length - start - text.size() - 1, ' ');
     // Elements begin at a multiple of 64 bytes.
     text.append(63 - (start + text.size()) % 64, ' ');
     text += '\n';

@@ -9,20 +9,13 @@ namespace hedgerow::detail {
 
 namespace {
 
-struct Header {
-    std::string dtype;     // "f8", as in NpyArray
-    std::size_t item = 0;  // bytes per element
-    std::endian order = std::endian::little;
-    bool fortran = false;
-    std::vector<std::size_t> shape;
-};
-
-/// Parses {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }.
+/// Parses {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }. Records have a list of fields for
+/// their type: [('x', '<f4'), ('id', '<u4')].
 class HeaderParser {
 public:
     HeaderParser(const ByteSource& file, std::string_view text) : file_(file), rest_(text) {}
 
-    Header parse() {
+    NpyHeader parse() {
         bool has_type = false, has_order = false, has_shape = false;
         expect('{');
         while (!accept('}')) {
@@ -78,7 +71,25 @@ private:
         fail("says neither True nor False for 'fortran_order'");
     }
     void read_type() {
-        if (looking_at('[')) fail("describes records; only plain numbers are read");
+        if (!looking_at('[')) {
+            header_.type = number_type();
+            return;
+        }
+        expect('[');
+        while (!accept(']')) {
+            expect('(');
+            const std::string name(string());
+            expect(',');
+            const NpyType type = number_type();
+            accept(',');
+            if (!accept(')')) fail("has records whose fields are more than numbers");
+            header_.fields.push_back({name, type, header_.type.item});
+            header_.type.item += type.item;
+            if (!accept(',') && !looking_at(']')) fail("has records without commas");
+        }
+        if (header_.fields.empty()) fail("has records without fields");
+    }
+    NpyType number_type() {
         const std::string_view name = string();
         constexpr std::string_view known[] = {"b1", "i1", "i2", "i4", "i8", "u1",
                                               "u2", "u4", "u8", "f4", "f8"};
@@ -86,9 +97,8 @@ private:
         if (!kind.empty() && std::string_view("<>|=").find(kind[0]) != kind.npos) kind.remove_prefix(1);
         if (std::find(std::begin(known), std::end(known), kind) == std::end(known))
             fail("says type " + shown(name) + "; known are b1 i1 i2 i4 i8 u1 u2 u4 u8 f4 f8");
-        header_.dtype.assign(kind);
-        header_.item = static_cast<std::size_t>(kind[1] - '0');
-        header_.order = name[0] == '>' ? std::endian::big : std::endian::little;
+        return {std::string(kind), static_cast<std::size_t>(kind[1] - '0'),
+                name[0] == '>' ? std::endian::big : std::endian::little};
     }
     void read_shape() {
         expect('(');
@@ -107,10 +117,47 @@ private:
 
     const ByteSource& file_;
     std::string_view rest_;
-    Header header_;
+    NpyHeader header_;
 };
 
-Header read_header(ByteSource& file) {
+std::vector<std::byte> read_elements(ByteSource& file, std::size_t size) {
+    std::vector<std::byte> bytes;
+    bytes.reserve(size);
+    while (bytes.size() < size) {
+        const std::size_t begin = bytes.size(), n = std::min(size - begin, std::size_t(1) << 20);
+        bytes.resize(begin + n);
+        if (file.read(bytes.data() + begin, n) != n)
+            file.fail_here("the file ends, but the array should have " + std::to_string(size) +
+                           " bytes of elements. It was cut off: fetch it again");
+    }
+    return bytes;
+}
+
+/// Copies elements from Fortran order (first index fastest) to C order (last index fastest).
+std::vector<std::byte> transposed(const ByteSource& file, const std::vector<std::byte>& from,
+                                  const NpyHeader& header) {
+    const std::size_t axes = header.shape.size(), item = header.type.item;
+    std::vector<std::byte> to(from.size());
+    std::vector<std::size_t> index(axes), stride(axes);
+    for (std::size_t a = 0, s = item; a < axes; s *= header.shape[a++]) stride[a] = s;
+    // Count indices in C order, and follow the element's place in Fortran order.
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < to.size(); i += item) {
+        if (i % (item << 16) == 0) file.expect_not_cancelled();
+        std::memcpy(&to[i], &from[at], item);
+        for (std::size_t a = axes; a-- > 0;) {
+            at += stride[a];
+            if (++index[a] < header.shape[a]) break;
+            at -= stride[a] * header.shape[a];
+            index[a] = 0;
+        }
+    }
+    return to;
+}
+
+}  // namespace
+
+NpyHeader read_npy_header(ByteSource& file) {
     char magic[8] = {};
     if (file.read(magic, 8) != 8 || std::string_view(magic, 6) != "\x93NUMPY")
         file.fail("is not a NumPy array. Write it with numpy.save");
@@ -135,74 +182,40 @@ Header read_header(ByteSource& file) {
     return HeaderParser(file, text).parse();
 }
 
-/// Bytes that all elements take.
-std::size_t size_in_bytes(const ByteSource& file, const Header& header) {
-    if (std::find(header.shape.begin(), header.shape.end(), 0u) != header.shape.end()) return 0;
-    std::size_t size = header.item;
+std::size_t expect_npy_elements(const ByteSource& file, const NpyHeader& header) {
+    std::size_t size = header.type.item;
+    if (std::find(header.shape.begin(), header.shape.end(), 0u) != header.shape.end()) size = 0;
     for (const std::size_t n : header.shape) {
-        if (size > (std::numeric_limits<std::size_t>::max() >> 1) / n)
+        if (size > 0 && size > (std::numeric_limits<std::size_t>::max() >> 1) / n)
             file.fail("the array's shape is larger than any memory. Was the header altered?");
         size *= n;
     }
-    return size;
-}
-
-std::vector<std::byte> read_elements(ByteSource& file, std::size_t size) {
-    std::vector<std::byte> bytes;
-    bytes.reserve(size);
-    while (bytes.size() < size) {
-        const std::size_t begin = bytes.size(), n = std::min(size - begin, std::size_t(1) << 20);
-        bytes.resize(begin + n);
-        if (file.read(bytes.data() + begin, n) != n)
-            file.fail_here("the file ends, but the array should have " + std::to_string(size) +
-                           " bytes of elements. It was cut off: fetch it again");
-    }
-    return bytes;
-}
-
-/// Copies elements from Fortran order (first index fastest) to C order (last index fastest).
-std::vector<std::byte> transposed(const ByteSource& file, const std::vector<std::byte>& from,
-                                  const Header& header) {
-    const std::size_t axes = header.shape.size(), item = header.item;
-    std::vector<std::byte> to(from.size());
-    std::vector<std::size_t> index(axes), stride(axes);
-    for (std::size_t a = 0, s = item; a < axes; s *= header.shape[a++]) stride[a] = s;
-    // Count indices in C order, and follow the element's place in Fortran order.
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < to.size(); i += item) {
-        if (i % (item << 16) == 0) file.expect_not_cancelled();
-        std::memcpy(&to[i], &from[at], item);
-        for (std::size_t a = axes; a-- > 0;) {
-            at += stride[a];
-            if (++index[a] < header.shape[a]) break;
-            at -= stride[a] * header.shape[a];
-            index[a] = 0;
-        }
-    }
-    return to;
-}
-
-}  // namespace
-
-std::vector<std::size_t> read_npy_shape(ByteSource& file) {
-    return read_header(file).shape;
-}
-
-NpyArray read_npy(ByteSource& file) {
-    const Header header = read_header(file);
-    NpyArray array;
-    array.dtype = header.dtype;
-    array.shape = header.shape;
-    const std::size_t size = size_in_bytes(file, header);
     if (size > file.most_left())
         file.fail_here("the array should have " + std::to_string(size) +
                        " bytes of elements, but the file ends after at most " +
                        std::to_string(file.most_left()) + ". It was cut off: fetch it again");
+    return size;
+}
+
+std::vector<std::size_t> read_npy_shape(ByteSource& file) {
+    return read_npy_header(file).shape;
+}
+
+NpyArray read_npy(ByteSource& file) {
+    const NpyHeader header = read_npy_header(file);
+    if (!header.fields.empty())
+        file.fail(
+            "the array's header describes records; only plain numbers are read. Save one field of them, or a "
+            "plain array, with numpy.save");
+    NpyArray array;
+    array.dtype = header.type.dtype;
+    array.shape = header.shape;
+    const std::size_t size = expect_npy_elements(file, header), item = header.type.item;
     expect_memory(file.name(), "its elements", header.fortran && header.shape.size() > 1 ? 2 * size : size);
     array.bytes = read_elements(file, size);
-    if (header.order != std::endian::native && header.item > 1)
-        for (std::size_t i = 0; i < array.bytes.size(); i += header.item)
-            std::reverse(&array.bytes[i], &array.bytes[i] + header.item);
+    if (header.type.order != std::endian::native && item > 1)
+        for (std::size_t i = 0; i < array.bytes.size(); i += item)
+            std::reverse(&array.bytes[i], &array.bytes[i] + item);
     if (header.fortran && header.shape.size() > 1) array.bytes = transposed(file, array.bytes, header);
     return array;
 }

@@ -6,6 +6,7 @@
 #include <random>
 #include <system_error>
 
+#include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -87,6 +88,15 @@ OutputFile::OutputFile(const std::filesystem::path& path, Progress progress)
     if (file_ == nullptr) fail(errno);
 }
 
+std::unique_ptr<OutputFile> OutputFile::standard_output() {
+    std::unique_ptr<OutputFile> output(new OutputFile());
+    output->path_ = output->written_ = "the standard output";
+    errno = 0;
+    output->file_ = ::fdopen(::dup(STDOUT_FILENO), "wb");
+    if (output->file_ == nullptr) output->fail(errno);
+    return output;
+}
+
 OutputFile::~OutputFile() {
     if (file_ == nullptr) return;
     std::fclose(file_);
@@ -109,6 +119,17 @@ std::uint64_t OutputFile::tell() const {
 void OutputFile::seek(std::uint64_t place) {
     errno = 0;
     if (::fseeko(file_, static_cast<off_t>(place), SEEK_SET) != 0) fail(errno);
+}
+
+bool OutputFile::seekable() const {
+    struct stat status {};
+    return ::fstat(::fileno(file_), &status) == 0 && S_ISREG(status.st_mode);
+}
+
+void OutputFile::commit_as(const std::filesystem::path& path) {
+    if (written_ != path_) path_ = path;
+    progress_ = {};
+    commit();
 }
 
 void OutputFile::commit() {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,11 +17,12 @@
 namespace hedgerow::detail {
 
 /// Writes a file beside `path`, with a name that no other writer has, and renames it in `commit`. A file that
-/// is not committed is removed. A device or pipe is written directly. Throws OutputError, and Cancelled once
-/// the progress is cancelled.
+/// is not committed is removed. A device or pipe is written directly, and so is the standard output. Throws
+/// OutputError, and Cancelled once the progress is cancelled.
 class OutputFile {
 public:
     explicit OutputFile(const std::filesystem::path& path, Progress progress = {});
+    static std::unique_ptr<OutputFile> standard_output();
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
@@ -50,9 +52,14 @@ public:
     /// which has no places.
     std::uint64_t tell() const;
     void seek(std::uint64_t place);
+    /// Whether places can be gone back to, as in all but pipes and devices.
+    bool seekable() const;
     void commit();
+    /// Commits the file under another name. What was written directly stays where it is.
+    void commit_as(const std::filesystem::path& path);
 
 private:
+    OutputFile() = default;
     [[noreturn]] void fail(int error) const;
 
     std::filesystem::path path_, written_;

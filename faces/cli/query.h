@@ -1,0 +1,45 @@
+/// What the files of `hedgerow query` share.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <hedgerow/columns.h>
+#include <hedgerow/io/rows.h>
+
+#include "common.h"
+
+namespace hedgerow::cli {
+
+struct QueryArguments : Common {
+    std::string kind, from, with, format, output_format, structure = "wide";
+    std::uint64_t count = 0;
+    double radius = -1;
+    unsigned threads = 0;
+};
+
+/// What a query is done with.
+struct QueryReport {
+    std::string output;  // the file that was written; empty for none
+    std::size_t primitives = 0;
+    bool loaded = false;  // the index was loaded, not built
+    double build_seconds = 0, seconds = 0;
+    std::uint64_t asked = 0;                         // rows that were read; 0 for pairs
+    std::uint64_t answered = 0;                      // rows that were written
+    std::uint64_t unusable = 0, first_unusable = 0;  // rows read that can have no answer
+    bool finished = true;
+};
+/// Prints the report, and returns the exit code.
+int print_report(const QueryArguments& a, const QueryReport& report);
+
+/// The kinds of queries between two scenes, or a scene and itself, and what each answers.
+struct PairKind {
+    std::string_view name, meaning;
+    bool between_two;
+};
+std::span<const PairKind> pair_kinds();
+/// Runs a query of pairs. Returns the exit code.
+int query_pairs(const QueryArguments& a);
+
+}  // namespace hedgerow::cli

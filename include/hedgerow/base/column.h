@@ -1,0 +1,79 @@
+/// The columns of rows of numbers: names, types, and records of packed numbers.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace hedgerow {
+
+/// The columns that rows to be read must have, by name.
+struct InputColumns {
+    std::vector<std::string> names;
+    /// Values of the last columns, which a file may leave out, all together.
+    std::vector<double> defaults = {};
+
+    std::size_t size() const { return names.size(); }
+    std::size_t required() const { return names.size() - defaults.size(); }
+};
+
+/// The type of the numbers in a column. An id is a `std::uint32_t`, of which 2^32 − 1 stands for none.
+enum class NumberType : unsigned char { flag, id, count, f32, f64 };
+
+template <class N>
+constexpr NumberType number_type() {
+    if constexpr (std::is_same_v<N, bool>) return NumberType::flag;
+    if constexpr (std::is_same_v<N, std::uint32_t>) return NumberType::id;
+    if constexpr (std::is_same_v<N, std::uint64_t>) return NumberType::count;
+    if constexpr (std::is_same_v<N, float>) return NumberType::f32;
+    return NumberType::f64;
+}
+/// Bytes of a number in a record.
+constexpr std::size_t size_of(NumberType type) {
+    constexpr std::size_t sizes[] = {1, 4, 8, 4, 8};
+    return sizes[static_cast<std::size_t>(type)];
+}
+
+/// A column of rows that are written.
+struct Column {
+    std::string name;
+    NumberType type;
+};
+
+/// Collects the columns of an answer: `list_columns(Hit<float>(), list)` (columns.h).
+struct ColumnList {
+    std::vector<Column> all;
+    template <class N>
+    void operator()(std::string_view name, N) {
+        all.push_back({std::string(name), number_type<N>()});
+    }
+};
+
+/// A record: numbers in this processor's byte order, one after the other without gaps.
+class Record {
+public:
+    template <class N>
+    void operator()(std::string_view, N value) {
+        static_assert(sizeof(N) == size_of(number_type<N>()));
+        std::memcpy(raw_ + size_, &value, sizeof(N));
+        size_ += sizeof(N);
+    }
+    std::string_view bytes() const { return {raw_, size_}; }
+
+private:
+    char raw_[128];  // 16 columns of any type
+    std::size_t size_ = 0;
+};
+
+/// Appends a record to `records`. `list(record)` gives its numbers: `record(name, number)` for each column.
+template <class List>
+void append_record(std::string& records, List list) {
+    Record record;
+    list(record);
+    records += record.bytes();
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,167 @@
+/// The columns of each question: the numbers of a row that is asked, and those of a row that answers. With
+/// them every question of the table (questions.h) reads its queries from files and writes its answers to
+/// files, as `hedgerow query` does.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <hedgerow/base/column.h>
+#include <hedgerow/questions.h>
+
+namespace hedgerow {
+
+/// What is given to a question beside its rows, the same for all of them.
+struct RowOptions {
+    /// How many neighbours to find, at least 1.
+    std::size_t count = 0;
+    /// Not squared, at least 0.
+    double radius = 0;
+};
+
+namespace detail {
+
+/// "x", "y", "z" with something before: {"ox", "oy", "oz"}.
+template <int D>
+void add_axes(std::vector<std::string>& names, const std::string& before) {
+    for (int k = 0; k < D; ++k) names.push_back(before + "xyz"[k]);
+}
+template <int D, class T>
+Vec<T, D> vec_at(const T* numbers) {
+    Vec<T, D> v;
+    for (int k = 0; k < D; ++k) v[k] = numbers[k];
+    return v;
+}
+template <class T>
+bool all_finite(const T* numbers, int count) {
+    for (int k = 0; k < count; ++k)
+        if (!std::isfinite(numbers[k])) return false;
+    return true;
+}
+
+/// The rows of questions about a point.
+template <std::floating_point T, int D>
+struct PointRows {
+    static InputColumns columns() {
+        InputColumns all;
+        add_axes<D>(all.names, "");
+        return all;
+    }
+    static bool usable(const T* row) { return all_finite(row, D); }
+};
+
+}  // namespace detail
+
+/// How a row of numbers becomes what is given to a question. `columns` says which numbers a row has; `usable`
+/// whether they are such that there can be an answer (none is NaN, and places are finite); `of` makes the
+/// query. `takes_count` and `takes_radius` say which options it reads.
+template <class Given>
+struct RowsOf;
+
+template <std::floating_point T, int D>
+struct RowsOf<Ray<T, D>> {
+    static constexpr bool takes_count = false, takes_radius = false;
+    /// An origin, a direction, and an interval that may be left out.
+    static InputColumns columns() {
+        InputColumns all;
+        detail::add_axes<D>(all.names, "o");
+        detail::add_axes<D>(all.names, "d");
+        all.names.insert(all.names.end(), {"t_min", "t_max"});
+        all.defaults = {0, std::numeric_limits<double>::infinity()};
+        return all;
+    }
+    static bool usable(const T* row) {
+        return detail::all_finite(row, 2 * D + 1) && !std::isnan(row[2 * D + 1]);
+    }
+    static Ray<T, D> of(const T* row, const RowOptions&) {
+        return {detail::vec_at<D>(row), detail::vec_at<D>(row + D), row[2 * D], row[2 * D + 1]};
+    }
+};
+template <std::floating_point T, int D>
+struct RowsOf<Vec<T, D>> : detail::PointRows<T, D> {
+    static constexpr bool takes_count = false, takes_radius = false;
+    static Vec<T, D> of(const T* row, const RowOptions&) { return detail::vec_at<D>(row); }
+};
+template <std::floating_point T, int D>
+struct RowsOf<Neighbours<T, D>> : detail::PointRows<T, D> {
+    static constexpr bool takes_count = true, takes_radius = false;
+    static Neighbours<T, D> of(const T* row, const RowOptions& o) {
+        return {detail::vec_at<D>(row), o.count};
+    }
+};
+template <std::floating_point T, int D>
+struct RowsOf<Ball<T, D>> : detail::PointRows<T, D> {
+    static constexpr bool takes_count = false, takes_radius = true;
+    static Ball<T, D> of(const T* row, const RowOptions& o) {
+        const double squared = product(o.radius, o.radius);
+        const bool fits = squared <= static_cast<double>(std::numeric_limits<T>::max());
+        return {detail::vec_at<D>(row), fits ? rounded_to<T>(squared) : std::numeric_limits<T>::max()};
+    }
+};
+template <std::floating_point T, int D>
+struct RowsOf<Box<T, D>> {
+    static constexpr bool takes_count = false, takes_radius = false;
+    /// Both corners. They may be infinite; a box whose low corner is not below its high one is empty.
+    static InputColumns columns() {
+        InputColumns all;
+        detail::add_axes<D>(all.names, "low_");
+        detail::add_axes<D>(all.names, "high_");
+        return all;
+    }
+    static bool usable(const T* row) {
+        for (int k = 0; k < 2 * D; ++k)
+            if (std::isnan(row[k])) return false;
+        return true;
+    }
+    static Box<T, D> of(const T* row, const RowOptions&) {
+        return {detail::vec_at<D>(row), detail::vec_at<D>(row + D)};
+    }
+};
+
+/// Calls f(name, number) for each column of an answer.
+template <std::floating_point T, class F>
+void list_columns(const Hit<T>& hit, F& f) {
+    f("primitive", hit.primitive), f("t", hit.t), f("u", hit.u), f("v", hit.v);
+}
+/// The distance, which is not squared here.
+template <std::floating_point T, int D>
+T distance_of(const Near<T, D>& near) {
+    return rounded_to<T>(std::sqrt(static_cast<double>(near.distance2)));
+}
+template <std::floating_point T, int D, class F>
+void list_columns(const Near<T, D>& near, F& f) {
+    constexpr std::string_view axes[] = {"x", "y", "z"};
+    f("primitive", near.primitive), f("distance", distance_of(near));
+    for (int k = 0; k < D; ++k) f(axes[k], near.point[k]);
+}
+
+/// Calls f(name, number) for each column of an answer to a question. An answer that is a number or a truth
+/// value has the question's `column`.
+template <class Question, class F>
+void list_answer(const typename Question::Answer& answer, F& f) {
+    if constexpr (std::is_arithmetic_v<typename Question::Answer>)
+        f(Question::column, answer);
+    else
+        list_columns(answer, f);
+}
+
+/// Calls f(name, number) for each column of an element of a list, which follow the number of its query. A
+/// position in the set becomes the id that the index reports for it.
+template <class I, std::floating_point T, class F>
+void list_item_columns(const I&, const Hit<T>& hit, F& f) {
+    list_columns(hit, f);
+}
+template <class I, std::floating_point T, int D, class F>
+void list_item_columns(const I&, const Near<T, D>& near, F& f) {
+    f("primitive", near.primitive), f("distance", distance_of(near));
+}
+template <class I, class F>
+void list_item_columns(const I& index, PrimitiveId element, F& f) {
+    f("primitive", index.id(element));
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,45 @@
+/// Reads rows of numbers from text, one a line.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <hedgerow/base/column.h>
+
+#include "byte_source.h"
+
+namespace hedgerow::detail {
+
+/// Lines of numbers, as `open_rows` (io/rows.h) and `load_points` (io/point_file.h) describe them.
+class CsvRows {
+public:
+    /// `more`: lines may have further fields after the columns.
+    CsvRows(ByteSource& file, InputColumns columns, bool more = false)
+        : file_(file), columns_(std::move(columns)), more_(more) {}
+
+    /// Reads a number for each column; false at the end of the file. Throws InputError with the line. T is
+    /// float or double.
+    template <class T>
+    bool next(T* numbers);
+
+private:
+    void split(std::string_view line);
+    /// Decides by the first line's fields where the columns are.
+    void begin(bool has_names);
+    template <class T>
+    void read_row(T* numbers);
+    [[noreturn]] void fail(const std::string& what) const;
+
+    ByteSource& file_;
+    InputColumns columns_;
+    std::uint64_t line_ = 0;
+    bool more_, begun_ = false, named_ = false;
+    std::size_t width_ = 0;           // fields of a line
+    std::vector<std::size_t> place_;  // of each column among the fields
+    std::vector<std::string_view> fields_;
+    std::string text_;
+};
+
+}  // namespace hedgerow::detail

@@ -1,0 +1,416 @@
+/// `hedgerow query`: every kind against the library, in every format, by pipe, interrupted, and asked badly.
+#include <hedgerow/columns.h>
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/io/npy.h>
+#include <hedgerow/io/rows.h>
+#include <hedgerow/scenes/generate.h>
+#include <hedgerow/scenes/random.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tool.h"
+
+namespace {
+
+using namespace hedgerow;
+namespace fs = std::filesystem;
+
+template <class Answer>
+inline constexpr bool is_list = false;
+template <class Item>
+inline constexpr bool is_list<std::vector<Item>> = true;
+
+/// Collects numbers in double.
+struct Numbers {
+    std::vector<double> all;
+    template <class N>
+    void operator()(std::string_view, N number) {
+        all.push_back(static_cast<double>(number));
+    }
+};
+struct Names {
+    std::vector<std::string> all;
+    template <class N>
+    void operator()(std::string_view name, N) {
+        all.emplace_back(name);
+    }
+};
+
+class Query : public ToolTest {
+protected:
+    /// All numbers of the columns in a file.
+    static std::vector<double> rows_of(const fs::path& path, const std::vector<std::string>& names) {
+        std::vector<double> all, some;
+        const auto reader = open_rows<double>(path, row_format(path), InputColumns{names});
+        while (reader->read(some, 1000) > 0) all.insert(all.end(), some.begin(), some.end());
+        return all;
+    }
+    /// Random numbers around the unit cube, as rows.
+    template <class T>
+    void write_rows(const std::string& name, std::size_t rows, std::size_t columns, double last = 0) const {
+        std::vector<T> numbers(rows * columns);
+        Random random(7, 0);
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            numbers[i] = static_cast<T>(random.uniform() * 4 - 2);
+            // Boxes have a high corner above the low one.
+            if (last > 0 && i % columns >= columns / 2)
+                numbers[i] = numbers[i - columns / 2] + static_cast<T>(last * random.uniform());
+        }
+        save_npy<T>(file(name), numbers, {rows, columns});
+    }
+    static void expect_done(const std::string& arguments) {
+        const auto r = run(arguments);
+        EXPECT_EQ(r.code, 0) << arguments << "\n" << r.output;
+    }
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(file(name), std::ios::binary) << text;
+    }
+};
+
+/// The numbers that a question's answers have in a file, by the library.
+template <class Question, class T, int D>
+std::vector<double> answers_of(const AnyIndex<T, D>& index, const std::vector<T>& rows,
+                               const RowOptions& options, std::vector<std::string>& names) {
+    using Given = typename Question::Given;
+    using Answer = typename Question::Answer;
+    const std::size_t columns = RowsOf<Given>::columns().size();
+    Numbers numbers;
+    Names all;
+    if constexpr (is_list<Answer>) {
+        all("query", 0), list_item_columns(index, typename Answer::value_type(), all);
+        for (std::size_t i = 0; i < rows.size() / columns; ++i) {
+            Answer found;
+            Visits visits;
+            Question::ask(index, RowsOf<Given>::of(&rows[i * columns], options), found, visits);
+            for (const auto& item : found) numbers("query", i), list_item_columns(index, item, numbers);
+        }
+    } else {
+        list_answer<Question>(Answer(), all);
+        for (std::size_t i = 0; i < rows.size() / columns; ++i) {
+            const Given given = RowsOf<Given>::of(&rows[i * columns], options);
+            Answer answer[1];
+            Question::ask_all(index, std::span(&given, 1), std::span(answer));
+            list_answer<Question>(answer[0], numbers);
+        }
+    }
+    names = all.all;
+    return numbers.all;
+}
+
+/// Compares the tool's answers to every question with the library's, over a scene of one kind.
+template <class T, class P>
+void expect_library_answers(const std::string& scene, const std::string& folder, std::size_t rows) {
+    constexpr int D = P::dimension;
+    const auto set = std::get<P>(generate<T>(parse_scene_spec(scene)));
+    const auto index = build_any("brute-force", set);
+    const RowOptions options{3, 0.3};
+    const std::string precision = std::is_same_v<T, double> ? " --precision double" : "";
+    int kinds = 0;
+    for_each_question<T, D>([&]<class Question>(Question) {
+        if constexpr (answered_by<Question, P>) {
+            using Given = typename Question::Given;
+            const std::string in = folder + "/in.npy";
+            const InputColumns columns = RowsOf<Given>::columns();
+            // Rays leave out their interval.
+            std::vector<std::string> names;
+            std::vector<double> every;
+            std::vector<T> given;
+            const auto reader = open_rows<T>(
+                folder + (columns.defaults.empty() ? "/" + std::to_string(columns.size()) + ".npy"
+                                                   : "/rays" + std::to_string(D) + ".npy"),
+                RowFormat::npy, columns);
+            ASSERT_EQ(reader->read(given, rows), rows);
+            const auto want = answers_of<Question>(*index, given, options, names);
+            save_npy<T>(in, given, {rows, columns.size()});
+            const std::string asked = std::string("query ") + std::string(Question::name) + " " + scene +
+                                      " --quiet --from " + in + precision +
+                                      (RowsOf<Given>::takes_count ? " --count 3" : "") +
+                                      (RowsOf<Given>::takes_radius ? " --radius 0.3" : "") + " -o " + folder;
+            for (const std::string output :
+                 {"/out.npy", "/out.csv", "/again.npy --structure bvh", "/one.csv --threads 1"}) {
+                const auto r = run(asked + output);
+                ASSERT_EQ(r.code, 0) << r.output;
+                const std::string path = folder + output.substr(0, output.find(' '));
+                const auto out = open_rows<double>(path, row_format(path), InputColumns{names});
+                std::vector<double> got, some;
+                while (out->read(some, 100) > 0) got.insert(got.end(), some.begin(), some.end());
+                EXPECT_GT(want.size(), names.size()) << Question::name;
+                // A file of text has the shortest digits of a float, which are another double.
+                ASSERT_EQ(got.size(), want.size()) << asked << output;
+                for (std::size_t i = 0; i < got.size(); ++i)
+                    ASSERT_EQ(static_cast<T>(got[i]), static_cast<T>(want[i]))
+                        << asked << output << ", number " << i;
+            }
+            ++kinds;
+        }
+    });
+    EXPECT_GE(kinds, 4);
+}
+
+TEST_F(Query, EveryKindAnswersAsTheLibraryDoes) {
+    // More rows than one chunk of lists.
+    constexpr std::size_t rows = 33000;
+    write_rows<float>("3.npy", rows, 3), write_rows<float>("6.npy", rows, 6, 0.2);
+    write_rows<float>("rays3.npy", rows, 6);
+    expect_library_answers<float, TriangleMesh<float>>("gen:teapot:300", folder.string(), rows);
+    expect_library_answers<float, PointCloud<float, 3>>("gen:points:500", folder.string(), 5000);
+}
+
+TEST_F(Query, EveryKindAnswersInDoubleAndInThePlane) {
+    write_rows<double>("3.npy", 2000, 3), write_rows<double>("6.npy", 2000, 6, 0.2);
+    write_rows<double>("rays3.npy", 2000, 6);
+    expect_library_answers<double, SphereSet<double, 3>>("gen:spheres:100", folder.string(), 2000);
+    write_rows<double>("2.npy", 2000, 2), write_rows<double>("4.npy", 2000, 4, 0.2);
+    write_rows<double>("rays2.npy", 2000, 4);
+    expect_library_answers<double, SegmentSet<double>>("gen:segments2d:100", folder.string(), 2000);
+    expect_library_answers<double, PointCloud<double, 2>>("gen:points2d:100", folder.string(), 2000);
+}
+
+TEST_F(Query, PairsAnswerAsTheLibraryDoes) {
+    expect_done("generate gen:teapot:400 --quiet -o " + file("a.ply"));
+    const auto a = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:teapot:400")));
+    const auto b = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:soup:200")));
+    const auto c = std::get<PointCloud<float, 3>>(generate<float>(parse_scene_spec("gen:points:50")));
+    const auto of_a = build(a), of_b = build(b);
+    std::vector<ElementPair> pairs;
+    const auto expect_pairs = [&](const std::string& name) {
+        std::vector<double> want;
+        for (const ElementPair& p : pairs) want.push_back(p.a), want.push_back(p.b);
+        EXPECT_GT(pairs.size(), 0u);
+        EXPECT_EQ(rows_of(file(name), {"a", "b"}), want);
+    };
+    crossing_pairs(of_a, of_b, pairs);
+    for (const std::string name : {"p.npy", "p.csv", "p.json"}) {
+        expect_done("query crossings gen:teapot:400 --with gen:soup:200 --quiet -o " + file(name));
+        expect_pairs(name);
+    }
+    self_intersections(of_b, pairs);
+    expect_done("query self-intersections gen:soup:200 --quiet -o " + file("s.npy"));
+    expect_pairs("s.npy");
+    const auto apart = minimum_distance(of_a, build(c));
+    expect_done("query minimum-distance gen:teapot:400 --with gen:points:50 --quiet -o " + file("m.npy"));
+    const auto row = rows_of(file("m.npy"), {"a", "b", "distance", "ax", "by"});
+    EXPECT_EQ(row, (std::vector<double>{double(apart.element_a), double(apart.element_b),
+                                        double(std::sqrt(apart.distance2)), double(apart.point_a[0]),
+                                        double(apart.point_b[1])}));
+    expect_bad("query crossings gen:teapot --with gen:points -o " + file("x.csv"), "triangles");
+    expect_bad("query self-intersections gen:points -o " + file("x.csv"), "triangles");
+    expect_bad("query minimum-distance gen:points --with gen:points2d -o " + file("x.csv"), "one space");
+    expect_usage("query crossings gen:teapot -o " + file("x.csv"), "needs --with");
+    expect_usage("query crossings gen:cube --with gen:cube --from a.csv -o " + file("x.csv"), "no rows");
+    expect_usage("query self-intersections gen:cube --with gen:cube -o " + file("x.csv"), "leave out --with");
+}
+
+TEST_F(Query, ReadsAndWritesPipes) {
+    const std::string tool = HEDGEROW_TOOL_PATH " query closest-point gen:cube --quiet --from - ";
+    EXPECT_EQ(
+        run_shell("printf '0,0,9\\n9,0,0\\n' | " + tool + "--format csv --output-format csv -o -").output,
+        run_shell("echo '[[0,0,9],[9,0,0]]' | " + tool + "--format json --output-format csv -o -").output);
+    const auto json =
+        run_shell("printf '0 0 9\\n' | " + tool + "--format csv --output-format json -o -").output;
+    const auto parsed = nlohmann::json::parse(json);
+    ASSERT_EQ(parsed.size(), 1u);
+    EXPECT_GT(parsed[0]["distance"].get<double>(), 7.0);
+    // A million rows by pipe are the same as from a file.
+    write_rows<float>("rows.npy", 300000, 3);
+    expect_done("query closest-point gen:cube --quiet --from " + file("rows.npy") + " -o " + file("a.npy"));
+    EXPECT_EQ(run_shell("cat " + file("rows.npy") + " | " + tool + "--format npy -o " + file("b.npy")).code,
+              0);
+    EXPECT_EQ(run_shell("cat " + file("rows.npy") + " | " + tool +
+                        "--format npy --output-format npy -o - | cat > " + file("c.npy"))
+                  .code,
+              0);
+    EXPECT_EQ(run_shell("mkfifo " + file("f") + "; cat " + file("rows.npy") + " > " + file("f") + " & " +
+                        HEDGEROW_TOOL_PATH + " query closest-point gen:cube --quiet --format npy --from " +
+                        file("f") + " -o " + file("d.npy"))
+                  .code,
+              0);
+    for (const char* name : {"b.npy", "c.npy", "d.npy"})
+        EXPECT_TRUE(bytes_of(file(name)) == bytes_of(file("a.npy"))) << name;
+    EXPECT_EQ(run_shell(tool + "--format csv -o " + file("x.csv") + " </dev/null 2>&1").code, 3);
+    EXPECT_EQ(run_shell(tool + "--format csv -o " + file("x.csv") + " <&- 2>&1").code, 3);
+    expect_usage("query closest-point gen:cube --from - -o " + file("x.csv"), "--format");
+    const auto lists =
+        run_shell("echo 0,0,0 | " HEDGEROW_TOOL_PATH
+                  " query within gen:cube --radius 1 --from - --format csv --output-format npy -o - "
+                  "2>&1 | cat");
+    EXPECT_NE(lists.output.find("number of rows"), std::string::npos) << lists.output;
+}
+
+TEST_F(Query, SavedIndexesAreQueried) {
+    expect_done("build gen:teapot:300 --quiet -o " + file("t.hedgerow"));
+    write_rows<float>("3.npy", 100, 3);
+    for (const std::string scene : {"gen:teapot:300", "t.hedgerow"})
+        expect_done("query nearest " + (scene[0] == 'g' ? scene : file(scene)) + " -k 2 --from " +
+                    file("3.npy") + " -o " + file(scene[0] == 'g' ? "a.npy" : "b.npy"));
+    EXPECT_TRUE(bytes_of(file("a.npy")) == bytes_of(file("b.npy")));
+}
+
+TEST_F(Query, RowsThatAreNotFiniteHaveNoAnswerAndAreNamed) {
+    write("p.csv", "0,0,9\n1,nan,0\n0,0,-9\ninf,0,0\n");
+    auto r = run("query closest-point gen:cube --quiet --from " + file("p.csv") + " -o " + file("a.csv"));
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_NE(r.output.find("p.csv: row 1,"), std::string::npos) << r.output;
+    EXPECT_NE(r.output.find("1 later"), std::string::npos) << r.output;
+    const auto ids = rows_of(file("a.csv"), {"primitive"});
+    EXPECT_EQ(ids[1], 4294967295.0);
+    EXPECT_EQ(ids[3], 4294967295.0);
+    EXPECT_LT(ids[2], 12.0);
+    r = run("query within gen:cube --radius 9 --quiet --from " + file("p.csv") + " -o " + file("a.csv"));
+    for (const double query : rows_of(file("a.csv"), {"query"})) EXPECT_TRUE(query == 0 || query == 2);
+    write("r.json", "[[0,0,9,0,0,-1],[0,0,9,0,0,null],[null,0,9,0,0,-1],[0,0,9,0,0,-1,0,null]]");
+    for (const std::string kind : {"closest-hit", "any-hit", "all-hits"}) {
+        r = run("query " + kind + " gen:cube --quiet --from " + file("r.json") + " -o " + file("a.json"));
+        EXPECT_EQ(r.code, 0) << r.output;
+        EXPECT_NE(r.output.find("r.json: row 1,"), std::string::npos) << r.output;
+        const auto answers = nlohmann::json::parse(bytes_of(file("a.json")));
+        if (kind == "any-hit") {
+            EXPECT_EQ(answers,
+                      nlohmann::json::parse(R"([{"hit":true},{"hit":false},{"hit":false},{"hit":true}])"));
+        }
+    }
+    write("b.csv", "-inf,-inf,-inf,inf,inf,inf\n1,1,1,0,0,0\nnan,0,0,1,1,1\n");
+    r = run("query overlap gen:cube --quiet --from " + file("b.csv") + " -o " + file("a.csv"));
+    EXPECT_NE(r.output.find("b.csv: row 2,"), std::string::npos) << r.output;
+    EXPECT_EQ(rows_of(file("a.csv"), {"query"}), std::vector<double>(12, 0.0))
+        << "all of the cube, or nothing";
+}
+
+TEST_F(Query, MoreNeighboursThanThereAreAreAllOfThem) {
+    write("p.csv", "0,0,9\n");
+    expect_done("query nearest gen:cube -k 1000 --from " + file("p.csv") + " -o " + file("a.csv"));
+    EXPECT_EQ(rows_of(file("a.csv"), {"query"}).size(), 12u);
+    expect_done("query within gen:cube --radius 0 --from " + file("p.csv") + " -o " + file("a.csv"));
+    EXPECT_TRUE(rows_of(file("a.csv"), {"query"}).empty());
+    // Rows without a query in them are no fault.
+    write("none.csv", "x,y,z\n");
+    expect_done("query nearest gen:cube -k 3 --from " + file("none.csv") + " -o " + file("a.npy"));
+    EXPECT_TRUE(rows_of(file("a.npy"), {"query"}).empty());
+}
+
+TEST_F(Query, MoreAnswersThanWaitInMemoryAreInTheirOrder) {
+    // About 48 MB of records in one chunk, of which 32 MB may wait.
+    write_rows<float>("3.npy", 10000, 3);
+    expect_done("query within gen:teapot:300 --radius 1e9 --quiet --from " + file("3.npy") + " -o " +
+                file("a.npy"));
+    const auto set = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:teapot:300")));
+    const auto queries = rows_of(file("a.npy"), {"query"});
+    ASSERT_EQ(queries.size(), 10000 * set.size());
+    ASSERT_GT(queries.size() * 16, std::size_t(1) << 25);
+    for (std::size_t i = 0; i < queries.size(); ++i) ASSERT_EQ(queries[i], double(i / set.size()));
+}
+
+TEST_F(Query, MemoryDoesNotGrowWithTheRows) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers keep memory that was freed";
+#endif
+    // Rows and answers of the larger file take 72 MB and 120 MB.
+    write_rows<float>("few.npy", 600000, 3), write_rows<float>("many.npy", 6000000, 3);
+    const std::string asked = "query closest-point gen:cube --quiet -o " + file("a.npy") + " --from ";
+    const long few = peak_memory(asked + file("few.npy")), many = peak_memory(asked + file("many.npy"));
+    EXPECT_LT(many, few + 20000) << few << " and " << many << " KiB";
+    EXPECT_LT(many, 200000);
+}
+
+TEST_F(Query, WrongUsageIsTwo) {
+    write("p.csv", "0,0,9\n");
+    const std::string from = " --from " + file("p.csv"), to = " -o " + file("x.csv");
+    expect_usage("query closest-pint gen:cube" + from + to, "did you mean 'closest-point'");
+    expect_usage("query nearest gen:cube" + from + to, "needs --count");
+    expect_usage("query nearest gen:cube --count 0" + from + to, "at least 1");
+    expect_usage("query within gen:cube" + from + to, "needs --radius");
+    expect_usage("query within gen:cube --radius -1" + from + to, "at least 0");
+    expect_usage("query within gen:cube --radius nan" + from + to, "finite");
+    expect_usage("query closest-point gen:cube --radius 1" + from + to, "takes no --radius");
+    expect_usage("query closest-point gen:cube --count 1" + from + to, "takes no --count");
+    expect_usage("query closest-point gen:cube --with gen:cube" + from + to, "leave out --with");
+    expect_usage("query closest-point gen:cube" + to, "needs --from");
+    expect_usage("query closest-point gen:cube" + from + " -o " + file("x.txt"), "npy, csv or json");
+    expect_usage("query closest-point gen:cube --structure kdtre" + from + to, "did you mean 'kdtree'");
+    EXPECT_FALSE(fs::exists(file("x.csv")));
+}
+
+TEST_F(Query, BadInputIsThreeAndNamed) {
+    const auto expect_refused = [&](const std::string& name, const std::string& said) {
+        expect_bad("query closest-point gen:cube --from " + file(name) + " -o " + file("x.npy"), said);
+        EXPECT_FALSE(fs::exists(file("x.npy")));
+    };
+    expect_refused("missing.csv", "no such file");
+    write("p.csv", "1,2,3\n1,2\n");
+    expect_refused("p.csv", "line 2");
+    write_rows<float>("6.npy", 10, 6);
+    expect_refused("6.npy", "(N, 3)");
+    write_rows<float>("3.npy", 1000, 3);
+    for (const std::size_t length : {5, 60, 128, 1000, 12000}) {
+        write("cut.npy", bytes_of(file("3.npy")).substr(0, length));
+        expect_refused("cut.npy", "cut.npy");
+    }
+    const std::string from = " --from " + file("3.npy") + " -o " + file("x.npy");
+    expect_bad("query closest-hit gen:points" + from, "rays pass between points");
+    expect_bad("query closest-point " + file("missing.ply") + from, "missing.ply");
+    write("none.csv", "x,y,z\n");
+    expect_bad("query closest-point " + file("none.csv") + from, "none.csv");
+    expect_usage("query closest-point gen:cube --structure hash-grid" + from, "holds points alone");
+}
+
+TEST_F(Query, RowsBeforeAFaultAreAnswered) {
+    std::string text;
+    for (int i = 0; i < 200000; ++i) text += "0,0,9\n";
+    write("p.csv", text + "0,0,oops\n");
+    expect_bad("query closest-point gen:cube --from " + file("p.csv") + " -o " + file("a.npy"),
+               "line 200001: 'oops' where a number should stand");
+    EXPECT_FALSE(fs::exists(file("a.npy")));
+    EXPECT_EQ(rows_of(file("a.unfinished.npy"), {"primitive"}).size(), 200000u);
+}
+
+TEST_F(Query, FullDisksAreOne) {
+    if (!fs::exists("/dev/full")) GTEST_SKIP();
+    write_rows<float>("3.npy", 20000, 3);
+    for (const char* format : {"npy", "csv", "json"})
+        expect_failure(1,
+                       "query closest-point gen:cube --from " + file("3.npy") + " --output-format " + format +
+                           " -o /dev/full",
+                       "No space left");
+    EXPECT_EQ(run_shell(HEDGEROW_TOOL_PATH " query closest-point gen:cube --from " + file("3.npy") +
+                        " --output-format csv -o - >/dev/full 2>&1")
+                  .code,
+              1);
+    expect_failure(1, "query closest-point gen:cube --from " + file("3.npy") + " -o " + file("no/x.npy"),
+                   "no folder");
+}
+
+TEST_F(Query, AnInterruptLeavesTheRowsThatWereFinished) {
+    // Brute force over enough triangles takes minutes over these rows.
+    write_rows<float>("3.npy", 3000000, 3);
+    for (const std::string ending : {"npy", "csv", "json"}) {
+        const std::string output = file("a." + ending), unfinished = file("a.unfinished." + ending);
+        std::ofstream(output) << "precious";
+        for (int milliseconds = 2000; milliseconds <= 60000; milliseconds *= 3) {
+            EXPECT_EQ(run_interrupted({"query", "nearest", "gen:teapot:3000", "-k", "4", "--structure",
+                                       "brute-force", "--from", file("3.npy"), "--quiet", "-o", output},
+                                      milliseconds),
+                      130);
+            if (fs::exists(unfinished)) break;
+        }
+        EXPECT_EQ(bytes_of(output), "precious");
+        ASSERT_TRUE(fs::exists(unfinished));
+        const auto rows = rows_of(unfinished, {"query"});
+        ASSERT_GT(rows.size(), 0u);
+        for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i], double(i / 4));
+    }
+}
+
+TEST_F(Query, TheSummaryIsJsonWhereAsked) {
+    write_rows<float>("3.npy", 100, 3);
+    const auto r =
+        run("query nearest gen:cube -k 2 --json --quiet --from " + file("3.npy") + " -o " + file("a.csv"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const auto j = nlohmann::json::parse(r.output);
+    EXPECT_EQ(j["queries"], 100);
+    EXPECT_EQ(j["rows"], 200);
+    EXPECT_EQ(j["unusable"], 0);
+    EXPECT_EQ(j["finished"], true);
+    EXPECT_EQ(j["output"], file("a.csv"));
+}
+
+}  // namespace
