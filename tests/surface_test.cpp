@@ -1,4 +1,7 @@
-/// Positions of hits and normals of surfaces there, on every kind of primitive and in instances.
+/// Positions of hits and normals of surfaces there, on every kind of primitive and in instances; features
+/// that closest points are on.
+#include <map>
+
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
@@ -216,6 +219,84 @@ TEST(Surface, OfInstancesOfSpheres) {
                                EXPECT_LT(length(center + n * (4 * ball.radius) - p), 1e-12);
                            }),
               50u);
+}
+
+/// Expects the features of the closest points of many questions to give these points. Returns how often each
+/// kind of feature was found.
+template <class I>
+std::map<Feature, int> expect_features(const I& index, double tolerance) {
+    using T = typename I::Scalar;
+    constexpr int D = I::dimension;
+    std::map<Feature, int> kinds;
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+        Random random(43, i);
+        const Vec<T, D> p = point_in(index.bounds(), i % 2 == 0 ? 1.0 : 0.0, random);
+        const auto near = closest_point(index, p);
+        const auto on = feature(index, p, near);
+        ++kinds[on.feature];
+        const auto corners = detail::corners_of(index.primitives(), near);
+        Vec<double, D> there;
+        double sum = 0;
+        int without = 0;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            EXPECT_GE(on.weights[k], 0);
+            there += corners[k] * static_cast<double>(on.weights[k]);
+            sum += static_cast<double>(on.weights[k]);
+            without += on.weights[k] == 0;
+        }
+        EXPECT_NEAR(sum, 1, 4 * static_cast<double>(unit_roundoff<T>));
+        EXPECT_LT(error_of(near.point, there), tolerance) << i;
+        EXPECT_NEAR(length(Vec<double, D>(on.normal)), 1, 1e-6);
+        if (on.feature == Feature::vertex) {
+            EXPECT_EQ(without, D - 1);
+            EXPECT_EQ(on.weights[static_cast<std::size_t>(on.number)], 1);
+        } else if (on.feature == Feature::edge) {
+            EXPECT_EQ(without, 1);
+            EXPECT_EQ(on.weights[static_cast<std::size_t>((on.number + 2) % 3)], 0);
+        } else {
+            EXPECT_EQ(without, 0);
+            // The way to a face is along its normal.
+            const Vec<double, D> way = Vec<double, D>(p) - there;
+            const double away = std::abs(dot(way, Vec<double, D>(on.normal)));
+            EXPECT_NEAR(away, std::sqrt(static_cast<double>(near.distance2)), tolerance);
+        }
+    }
+    return kinds;
+}
+
+TYPED_TEST(Surface, FeaturesOfClosestPoints) {
+    using T = TypeParam;
+    const double tolerance = 256 * static_cast<double>(unit_roundoff<T>);
+    const auto mesh = soup<T>(60);
+    auto kinds = expect_features(build(mesh), tolerance);
+    for (const Feature kind : {Feature::face, Feature::edge, Feature::vertex}) EXPECT_GT(kinds[kind], 100);
+    kinds = expect_features(build<KdTree>(segments<T, 2>(40)), tolerance);
+    EXPECT_GT(kinds[Feature::face], 100);
+    EXPECT_GT(kinds[Feature::vertex], 100);
+    EXPECT_EQ(kinds[Feature::edge], 0);
+}
+
+TEST(Surface, FeaturesOfInstances) {
+    const auto index = build(soup<float>(40));
+    const InstanceSet set{Instance(index, Transform<3>::translation({1, 2, 3}) * Transform<3>::scaling(0.5))};
+    EXPECT_GT(expect_features(build<Bvh>(set), 1e-4)[Feature::face], 100);
+}
+
+/// A square of two triangles: above its corners, its sides, its diagonal and the rest.
+TEST(Surface, FeaturesOfASquare) {
+    TriangleMesh<double> mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const auto index = build(mesh);
+    const auto on = [&](const Vec3d& p) { return feature(index, p, closest_point(index, p)); };
+    EXPECT_EQ(on({-1, -1, 2}).feature, Feature::vertex);
+    EXPECT_EQ(on({-1, -1, 2}).number, 0);
+    EXPECT_EQ(on({0.25, -1, 1}).feature, Feature::edge);
+    EXPECT_EQ(on({0.25, -1, 1}).weights, (std::array<double, 3>{0.75, 0.25, 0}));
+    EXPECT_EQ(on({0.5, 0.5, 1}).feature, Feature::edge);
+    EXPECT_EQ(on({0.75, 0.25, 1}).feature, Feature::face);
+    EXPECT_EQ(on({0.75, 0.25, 1}).weights, (std::array<double, 3>{0.25, 0.5, 0.25}));
+    EXPECT_EQ(on({0.75, 0.25, -1}).normal, (Vec3d{0, 0, 1}));
 }
 
 }  // namespace

@@ -1,12 +1,14 @@
-/// The position of a hit in the world, and the surface's normal there. Everything is computed in double and
-/// rounded once.
+/// The position of a hit in the world, and the surface's normal there; and where on its primitive a closest
+/// point is. Everything is computed in double and rounded once.
 #pragma once
 
+#include <hedgerow/geometry/closest_feature.h>
 #include <hedgerow/geometry/entry.h>
 #include <hedgerow/geometry/exact_sum.h>
 #include <hedgerow/instances/instance_set.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/hit.h>
+#include <hedgerow/queries/point_query.h>
 
 namespace hedgerow {
 
@@ -152,6 +154,93 @@ template <class Of, class T>
 requires detail::has_coordinates<detail::PrimitivesOf<Of>>
 auto normal(const Of& of, const Hit<T>& hit) {
     return normal(of, Ray<T, Of::dimension>(), hit);
+}
+
+/// What a closest point lies on: the inside of its primitive, a side, or a corner.
+enum class Feature : std::uint8_t { face, edge, vertex };
+/// Where a closest point is on its triangle, or its segment in the plane. `number` is that of the corner, or
+/// of the edge from that corner to the next; 0 for a face. The closest point is the sum of the corners by
+/// their weights, which are 0 for corners that the feature lacks. `normal` is that of the primitive, of
+/// length
+/// 1. Neighbors share their edges and vertices, so which of them is the closest primitive says nothing there.
+template <std::floating_point T, int D>
+struct FeatureOfNear {
+    Feature feature = Feature::face;
+    int number = 0;
+    std::array<T, static_cast<std::size_t>(D)> weights{};
+    Vec<T, D> normal;
+};
+
+namespace detail {
+template <class P, class T, int D>
+auto corners_of(const P& set, const Near<T, D>& near) {
+    if constexpr (Instanced<P>) {
+        const auto& placed = set[near.instance];
+        auto corners = corners_of(placed.index().primitives(), near);
+        for (auto& corner : corners) corner = placed.transform().there().point(corner);
+        return corners;
+    } else {
+        const auto own = set.corners(near.element);
+        std::array<Vec<double, D>, static_cast<std::size_t>(D)> corners;
+        for (std::size_t i = 0; i < own.size(); ++i) corners[i] = Vec<double, D>(own[i]);
+        return corners;
+    }
+}
+/// The weights of a and b in the point of the line through them that is closest to p.
+template <int D>
+std::array<double, 2> weights_on_line(const Vec<double, D>& p, const Vec<double, D>& a,
+                                      const Vec<double, D>& b) {
+    const double scale = scale_to_one(std::max(max_component(abs(b - a)), max_component(abs(p - a))));
+    const Vec<double, D> along = (b - a) * scale;
+    const double t = std::clamp(dot((p - a) * scale, along) / length2(along), 0.0, 1.0);
+    return {1 - t, t};
+}
+}  // namespace detail
+
+/// Where on its primitive the closest point is that a question of `point` found. `of` is the index that was
+/// asked, or its primitives: triangles in space, segments in the plane, or instances of these. The weights
+/// err by some roundings of double for each of the triangle's coordinates, more where it is a sliver. O(1).
+template <class Of, class T, int D>
+FeatureOfNear<T, D> feature(const Of& of, const Vec<T, D>& point, const Near<T, D>& near) {
+    using V = Vec<double, D>;
+    const auto primitives = detail::primitives_of(of);
+    const auto corners = detail::corners_of(primitives, near);
+    const V p(point);
+    const int closest = closest_feature(p, corners).number;
+    FeatureOfNear<T, D> found;
+    Hit<T> hit;
+    hit.element = near.element, hit.instance = near.instance;
+    found.normal = Vec<T, D>(detail::normal_on(primitives, Ray<double, D>(), hit));
+    std::array<double, static_cast<std::size_t>(D)> weights{};
+    const auto on_edge = [&](std::size_t i) {
+        const std::size_t next = (i + 1) % D;
+        const auto ends = detail::weights_on_line(p, corners[i], corners[next]);
+        weights[i] = ends[0], weights[next] = ends[1];
+    };
+    if (closest >= D) {
+        found.feature = Feature::edge, found.number = closest - D;
+        on_edge(static_cast<std::size_t>(found.number));
+    } else if (closest >= 0) {
+        found.feature = Feature::vertex, found.number = closest;
+        weights[static_cast<std::size_t>(closest)] = 1;
+    } else if constexpr (D == 2) {
+        on_edge(0);
+    } else {
+        // Areas that the sides enclose with the foot of the perpendicular, over the triangle's.
+        const double scale = detail::safe_scale<double>(corners[1] - corners[0], corners[2] - corners[0]);
+        const auto area = [&](const V& x, std::size_t i, std::size_t j, const V& normal) {
+            return dot(cross((corners[i] - x) * scale, (corners[j] - x) * scale), normal);
+        };
+        const V normal = detail::unit_normal({corners[0], corners[1], corners[2]});
+        double sum = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            weights[i] = std::max(area(p, (i + 1) % 3, (i + 2) % 3, normal), 0.0);
+            sum += weights[i];
+        }
+        for (double& weight : weights) weight /= sum;
+    }
+    for (std::size_t i = 0; i < weights.size(); ++i) found.weights[i] = static_cast<T>(weights[i]);
+    return found;
 }
 
 }  // namespace hedgerow
