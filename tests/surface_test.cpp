@@ -270,7 +270,7 @@ TYPED_TEST(Surface, FeaturesOfClosestPoints) {
     const auto mesh = soup<T>(60);
     auto kinds = expect_features(build(mesh), tolerance);
     for (const Feature kind : {Feature::face, Feature::edge, Feature::vertex}) EXPECT_GT(kinds[kind], 100);
-    kinds = expect_features(build<KdTree>(segments<T, 2>(40)), tolerance);
+    kinds = expect_features(build<KdTree>(segments2d<T>(40)), tolerance);
     EXPECT_GT(kinds[Feature::face], 100);
     EXPECT_GT(kinds[Feature::vertex], 100);
     EXPECT_EQ(kinds[Feature::edge], 0);
