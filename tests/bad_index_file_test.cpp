@@ -181,6 +181,7 @@ TEST(BadIndexFile, WithAnUnsoundTreeOrMeshIsRefused) {
     const std::uint64_t children = layout.nodes + 4 * 6 * sizeof(float), counts = children + 4 * 4;
     refused(children, std::uint32_t(header.nodes), "a child that is not there");
     refused(children, std::uint32_t(0), "a child before its parent");
+    refused(counts, std::uint32_t(header.triangles) + 1, "a node's count is not its children's");
     refused(children, 0x80000000u | std::uint32_t(header.leaves), "a leaf that is not there");
     refused(children, 0x80000000u | (1u << 29), "a leaf that is not there");  // times 8, this overflows to 0
     refused(children, 0xFFFFFFFFu, "an empty place before a child");

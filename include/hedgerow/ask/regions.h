@@ -35,6 +35,8 @@ std::size_t overlapping(const Index<S, P>& index, const R& region, std::vector<I
 template <class S, class P, RegionFor<P> R, class Count = const NoVisits>
 std::size_t contained(const Index<S, P>& index, const R& region, std::vector<IdOf<P>>& found,
                       Count& count = no_visits) {
+    static_assert(Instanced<P> || LiesWithinRegions<P, R>,
+                  "a set of your own tells what lies in a region by `lies_within(i, region)`");
     return index.template answer<Overlapping<P, R>>(count, region, found, Finds::contained);
 }
 /// The number of primitives that overlap a region. Where a primitive may be offered twice, they are first

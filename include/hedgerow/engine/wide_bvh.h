@@ -173,6 +173,10 @@ public:
                 if (i >= boxes.size()) continue;
                 if (!box.contains(boxes[i])) fault = "a node reaches out of its parent's box";
                 self(self, child(r, i), boxes[i], depth + 1);
+                const WideChild below = tree_.nodes.child(r.first, i);
+                if (fault.empty() && !below.leaf() &&
+                    tree_.nodes.count(r.first, i) != tree_.nodes.count(below.word))
+                    fault = "a node's count is not its children's";
             }
         };
         if (!tree_.empty()) visit(visit, root(), tree_.bounds, 1);
@@ -216,13 +220,7 @@ private:
         const WideChild c = tree_.nodes.child(node, i);
         if (i >= boxes.size()) return boxes[i] == Box<T, D>() ? nullptr : "a box around nothing";
         if (c.empty()) return "an empty place before a child";
-        if (!c.leaf()) {
-            if (c.word <= node) return "a child before its parent";
-            if (c.word >= tree_.nodes.size()) return "a child that is not there";
-            return tree_.nodes.count(node, i) == tree_.nodes.count(c.word)
-                       ? nullptr
-                       : "a node's count is not its children's";
-        }
+        if (!c.leaf()) return c.word > node ? nullptr : "a child before its parent";
         if (c.block() >= leaf_count()) return "a leaf that is not there";
         return tree_.nodes.count(node, i) > 0 ? nullptr : "a leaf without primitives";
     }

@@ -1,5 +1,5 @@
 /// Regions: closed sets of points that a query is asked about. A box, a ball (geometry/ball.h), what lies
-/// between planes (geometry/half_spaces.h) and a cone (geometry/cone.h) are regions; so is any type with the
+/// between planes (geometry/slab_region.h) and a cone (geometry/cone.h) are regions; so is any type with the
 /// functions of the concept `Region`.
 #pragma once
 
@@ -19,7 +19,7 @@ struct Extent {
 /// scene: at most this.
 inline constexpr double scene_margin = 0x1p-34;
 
-/// A region R. The functions are found by the arguments' namespace.
+/// A region R: closed and convex. The functions are found by the arguments' namespace.
 /// - `is_empty` is true if the region has NaN, or is known to have no points. Queries of it find nothing, and
 ///   call nothing else.
 /// - `containment` tells how a box lies to the region. It may say across of a box that is outside or inside,
@@ -44,7 +44,7 @@ concept Region = std::is_trivially_copyable_v<R> &&
     { lies_in(point, region) } -> std::same_as<bool>;
 };
 
-// Shapes that are the hull of their corners lie in a convex region if their corners do.
+// Shapes that are the hull of their corners lie in a region if their corners do.
 
 template <class T, int D, Region R>
 bool lies_in(const Segment<T, D>& s, const R& region) {
