@@ -360,7 +360,8 @@ private:
     }
 
     /// An element of B, and how far a point is from it at most.
-    auto shape(PrimitiveId element) const {
+    using Shape = std::conditional_t<TriangleSet<B>, Triangle<double, 3>, Vec3d>;
+    Shape shape(PrimitiveId element) const {
         if constexpr (TriangleSet<B>) {
             const auto t = b_.primitives().triangle(element);
             return Triangle<double, 3>{Vec3d(t.a), Vec3d(t.b), Vec3d(t.c)};
@@ -417,7 +418,7 @@ private:
 
     /// Elements of B, and how far the corners of a part are from them at most.
     struct NearShapes {
-        decltype(std::declval<DirectedHausdorff>().shape(0)) shape[most_near];
+        Shape shape[most_near];
         int count = 0;
     };
     struct Apart3 {
