@@ -104,10 +104,14 @@ public:
             }
             for (std::uint32_t i = 1; i + 2 < loop.size(); ++i) {
                 mesh.triangles.push_back({first, first + i + 1, first + i});
-                const Vec3d a = loop[i] - loop[0], b = loop[i + 1] - loop[0];
-                cap.area += length(cross(a, b)) / 2;
+                // At least the triangle's area: the sum of the normal's components, whose squares may
+                // underflow.
+                const Vec3d n = abs(cross(loop[i] - loop[0], loop[i + 1] - loop[0]));
+                cap.area += (n[0] + n[1] + n[2]) / 2;
             }
             caps_.push_back(cap);
+            all_.box.expand(cap.box);
+            all_.area += cap.area;
         });
         index_ = build<WideBvh>(std::move(mesh), {}, executor);
     }
@@ -116,10 +120,12 @@ public:
     /// Whether all caps are surely seen under less than half of all directions: each under at most its area
     /// by the square of its distance.
     bool look_small(const Vec3d& point) const {
+        if (caps_.empty()) return false;
+        if (all_.area / distance2(point, all_.box) < most) return true;
         double seen = 0;
         for (const Cap& cap : caps_)
             if (seen += cap.area / distance2(point, cap.box); !(seen < most)) return false;
-        return !caps_.empty();
+        return true;
     }
     std::size_t bytes() const {
         return caps_.capacity() * sizeof(Cap) + index_.bytes() +
@@ -134,6 +140,7 @@ private:
     static constexpr double most = 2 * std::numbers::pi * (1 - 1e-6);  // of the solid angle
 
     std::vector<Cap> caps_;
+    Cap all_;  // their areas, in one box
     IndexOf<WideBvh, TriangleMesh<T>> index_;
 };
 /// In the plane, ends are as quick to look at as caps.
