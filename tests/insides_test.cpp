@@ -12,7 +12,7 @@
 
 #include "every_structure.h"
 #include "exact.h"
-#include "matrix.h"
+#include "generated.h"
 
 using namespace hedgerow;
 
@@ -282,6 +282,15 @@ TYPED_TEST(Insides, OfOpenMeshes) {
     expect_insides("some of tetrahedra", some);
     for (std::size_t i = 0; i < some.size(); i += 3) std::swap(some.triangles[i][0], some.triangles[i][1]);
     expect_insides("some turned", some);
+    // A ball with holes far from each other, at the ends of the range.
+    constexpr int most = std::is_same_v<T, float> ? 58 : 478;
+    for (const int exponent : {0, most, -most}) {
+        auto holes = ball<T>(20);
+        for (auto& v : holes.vertices) v = v * std::ldexp(T(1), exponent);
+        holes.triangles.erase(holes.triangles.begin() + 300);
+        holes.triangles.erase(holes.triangles.begin() + 500, holes.triangles.begin() + 502);
+        expect_insides("ball with holes", holes, 100);
+    }
     expect_insides("terrain", scene<T>("gen:terrain:500"));
     expect_insides("soup", soup<T>(100));
 }
@@ -374,6 +383,34 @@ TYPED_TEST(Insides, ExpansionsKeepTheirPromises) {
                     joined(cube_at<T>(Vec<T, 3>(0, 0, 0), 1), cube_at<T>(Vec<T, 3>(0, 0, 0), 1)));
     expect_promises("huge", tetrahedra<T>(40, 4, 6, most));
     expect_promises("tiny", tetrahedra<T>(40, 4, 7, -most));
+}
+
+/// Sets of any kind, many of whose primitives coincide, touch or have no area.
+template <class P>
+void expect_right_of_any() {
+    generated::expect_always([] {
+        const generated::AnyCase<P> any;
+        const auto p = any.point();
+        const auto brute = build<BruteForce>(any.set);
+        const auto wide = build(any.set);
+        const auto cut = build<KdTree>(any.set);
+        const Solid solid(brute);
+        const Solid of_wide(wide);
+        const Solid of_cut(cut);
+        RC_ASSERT(of_wide.side(p) == solid.side(p));
+        RC_ASSERT(of_cut.side(p) == solid.side(p));
+        RC_ASSERT(of_wide.winding_number(p) == solid.winding_number(p));
+        RC_ASSERT(of_cut.winding_number(p) == solid.winding_number(p));
+        RC_ASSERT(of_cut.signed_distance(p) == solid.signed_distance(p));
+        RC_ASSERT(!std::isnan(solid.signed_distance(p).distance));
+        if (solid.side(p) != Side::on && !any.wild)
+            RC_ASSERT(std::abs(solid.winding_number(p) - static_cast<double>(sum_of_turns(any.set, p))) <
+                      1e-9);
+    });
+}
+TYPED_TEST(Insides, OfGeneratedSets) {
+    expect_right_of_any<TriangleMesh<TypeParam>>();
+    expect_right_of_any<SegmentSet<TypeParam>>();
 }
 
 TYPED_TEST(Insides, OfNothing) {

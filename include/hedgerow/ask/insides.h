@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include <hedgerow/ask/near_order.h>
 #include <hedgerow/ask/points.h>
 #include <hedgerow/geometry/closing_angle.h>
 #include <hedgerow/primitives/pseudonormals.h>
@@ -103,10 +104,14 @@ public:
             }
             for (std::uint32_t i = 1; i + 2 < loop.size(); ++i) {
                 mesh.triangles.push_back({first, first + i + 1, first + i});
-                const Vec3d a = loop[i] - loop[0], b = loop[i + 1] - loop[0];
-                cap.area += length(cross(a, b)) / 2;
+                // At least the triangle's area: the sum of the normal's components, whose squares may
+                // underflow.
+                const Vec3d n = abs(cross(loop[i] - loop[0], loop[i + 1] - loop[0]));
+                cap.area += (n[0] + n[1] + n[2]) / 2;
             }
             caps_.push_back(cap);
+            all_.box.expand(cap.box);
+            all_.area += cap.area;
         });
         index_ = build<WideBvh>(std::move(mesh), {}, executor);
     }
@@ -115,10 +120,12 @@ public:
     /// Whether all caps are surely seen under less than half of all directions: each under at most its area
     /// by the square of its distance.
     bool look_small(const Vec3d& point) const {
+        if (caps_.empty()) return false;
+        if (all_.area / distance2(point, all_.box) < most) return true;
         double seen = 0;
         for (const Cap& cap : caps_)
             if (seen += cap.area / distance2(point, cap.box); !(seen < most)) return false;
-        return !caps_.empty();
+        return true;
     }
     std::size_t bytes() const {
         return caps_.capacity() * sizeof(Cap) + index_.bytes() +
@@ -133,6 +140,7 @@ private:
     static constexpr double most = 2 * std::numbers::pi * (1 - 1e-6);  // of the solid angle
 
     std::vector<Cap> caps_;
+    Cap all_;  // their areas, in one box
     IndexOf<WideBvh, TriangleMesh<T>> index_;
 };
 /// In the plane, ends are as quick to look at as caps.
@@ -237,7 +245,30 @@ public:
         return in_ieee_mode([&] { return with_side(point, near, count); });
     }
 
+    /// The box around all primitives.
+    const Box<Scalar, dimension>& bounds() const { return bounds_; }
+    /// Writes the distances of points to distances[places[k]]. The closest points are found in a batch.
+    void write_distances(std::span<const Point> points, std::span<const std::size_t> places,
+                         std::span<Scalar> distances) const {
+        std::vector<Near<Scalar, dimension>>& near = kept_by_thread();
+        near.resize(points.size());
+        closest_points(*index_, points, std::span(near), serial_executor());
+        if (by() == SideBy::pseudonormal)
+            for (const auto& n : near)
+                if (n) pseudonormals_.prefetch(n.element);
+        for (std::size_t k = 0; k < points.size(); ++k)
+            distances[places[k]] =
+                finite(points[k])
+                    ? in_ieee_mode([&] { return with_side(points[k], near[k], no_visits); }).distance
+                    : std::numeric_limits<Scalar>::infinity();
+    }
+
 private:
+    static std::vector<Near<Scalar, dimension>>& kept_by_thread() {
+        static thread_local std::vector<Near<Scalar, dimension>> near;
+        return near;
+    }
+
     using Ray = AxisRay<dimension>;
     /// Caps are made where less than one in so many edges is open: they cost as much as triangles do.
     static constexpr std::size_t few_open = 8;
@@ -335,53 +366,35 @@ private:
     detail::CapsOf<I> caps_;
     Pseudonormals<Scalar, dimension> pseudonormals_;
     std::optional<Expanded> expansion_;
-
-    template <class J>
-    friend void signed_distances(const Solid<J>&, const Strided<PointOf<J>>&, std::span<typename J::Scalar>,
-                                 Threads);
 };
 
 /// Writes the side of point i to sides[i], as `Solid::side` tells it; `winding_numbers` and
 /// `signed_distances` write the other answers. Large batches are cut into pieces over all cores, unless an
-/// executor is given (Threads). The points may have any layout in memory. Throws InputError, and writes
+/// executor is given (Threads), and answered in an order in which neighbours follow each other, for which
+/// they take 16 bytes a point. The points may have any layout in memory. Throws InputError, and writes
 /// nothing, if there are fewer places for answers than points.
 template <class I>
 void sides(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<Side> sides_of,
            Threads threads = {}) {
     detail::expect_room("points", points.size(), sides_of.size());
-    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) sides_of[i] = solid.side(points[i]);
+    detail::for_some_near(points, solid.bounds(), threads, [&](const auto& some, const auto& places) {
+        for (std::size_t k = 0; k < some.size(); ++k) sides_of[places[k]] = solid.side(some[k]);
     });
 }
 template <class I>
 void winding_numbers(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<double> numbers,
                      Threads threads = {}) {
     detail::expect_room("points", points.size(), numbers.size());
-    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) numbers[i] = solid.winding_number(points[i]);
+    detail::for_some_near(points, solid.bounds(), threads, [&](const auto& some, const auto& places) {
+        for (std::size_t k = 0; k < some.size(); ++k) numbers[places[k]] = solid.winding_number(some[k]);
     });
 }
 template <class I>
 void signed_distances(const Solid<I>& solid, const Strided<PointOf<I>>& points,
                       std::span<typename I::Scalar> distances, Threads threads = {}) {
     detail::expect_room("points", points.size(), distances.size());
-    threads.over(points.size()).for_each_piece(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        // Closest points are found for a hundred points at once, then their sides.
-        constexpr std::size_t most = 128;
-        NearOf<I> near[most];
-        for (std::size_t i = begin; i < end; i += most) {
-            const std::size_t some = std::min(most, end - i);
-            closest_points(solid.index(), points.part(i, some), std::span(near, some), serial_executor());
-            if (solid.by() == SideBy::pseudonormal)
-                for (std::size_t k = 0; k < some; ++k)
-                    if (near[k]) solid.pseudonormals_.prefetch(near[k].element);
-            in_ieee_mode([&] {
-                for (std::size_t k = 0; k < some; ++k)
-                    distances[i + k] = finite(points[i + k])
-                                           ? solid.with_side(points[i + k], near[k], no_visits).distance
-                                           : std::numeric_limits<typename I::Scalar>::infinity();
-            });
-        }
+    detail::for_some_near(points, solid.bounds(), threads, [&](const auto& some, const auto& places) {
+        solid.write_distances(some, places, distances);
     });
 }
 
