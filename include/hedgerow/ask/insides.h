@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include <hedgerow/ask/near_order.h>
 #include <hedgerow/ask/points.h>
 #include <hedgerow/geometry/closing_angle.h>
 #include <hedgerow/primitives/pseudonormals.h>
@@ -247,28 +246,28 @@ public:
 
     /// The box around all primitives.
     const Box<Scalar, dimension>& bounds() const { return bounds_; }
-    /// Writes the distances of points to distances[places[k]]. The closest points are found in a batch.
-    void write_distances(std::span<const Point> points, std::span<const std::size_t> places,
-                         std::span<Scalar> distances) const {
-        std::vector<Near<Scalar, dimension>>& near = kept_by_thread();
-        near.resize(points.size());
-        closest_points(*index_, points, std::span(near), serial_executor());
-        if (by() == SideBy::pseudonormal)
-            for (const auto& n : near)
-                if (n) pseudonormals_.prefetch(n.element);
-        for (std::size_t k = 0; k < points.size(); ++k)
-            distances[places[k]] =
-                finite(points[k])
-                    ? in_ieee_mode([&] { return with_side(points[k], near[k], no_visits); }).distance
-                    : std::numeric_limits<Scalar>::infinity();
+    /// Writes the distance of point number n to distances[n]. The closest points are found some at a time.
+    void write_distances(const PointBatch<Scalar, dimension>& points, std::span<Scalar> distances) const {
+        constexpr std::size_t at_once = 128;
+        std::array<Point, at_once> some;
+        std::array<Near<Scalar, dimension>, at_once> near;
+        for (std::size_t begin = 0; begin < points.size(); begin += at_once) {
+            const std::size_t count = std::min(at_once, points.size() - begin);
+            for (std::size_t k = 0; k < count; ++k) some[k] = points[begin + k];
+            closest_points(*index_, std::span<const Point>(some.data(), count), std::span(near),
+                           serial_executor());
+            if (by() == SideBy::pseudonormal)
+                for (std::size_t k = 0; k < count; ++k)
+                    if (near[k]) pseudonormals_.prefetch(near[k].element);
+            for (std::size_t k = 0; k < count; ++k)
+                distances[points.number(begin + k)] =
+                    finite(some[k])
+                        ? in_ieee_mode([&] { return with_side(some[k], near[k], no_visits); }).distance
+                        : std::numeric_limits<Scalar>::infinity();
+        }
     }
 
 private:
-    static std::vector<Near<Scalar, dimension>>& kept_by_thread() {
-        static thread_local std::vector<Near<Scalar, dimension>> near;
-        return near;
-    }
-
     using Ray = AxisRay<dimension>;
     /// Caps are made where less than one in so many edges is open: they cost as much as triangles do.
     static constexpr std::size_t few_open = 8;
@@ -368,6 +367,16 @@ private:
     std::optional<Expanded> expansion_;
 };
 
+namespace detail {
+/// Calls answer(part) for parts of a batch, which together are all of its points.
+template <class I, class Answer>
+void ask_solid_in_parts(const Solid<I>& solid, const Strided<PointOf<I>>& points, Threads threads,
+                        Answer answer) {
+    IeeeExecutor executor(threads.over(points.size()));
+    for_each_part(points, solid.bounds(), solid.index().bytes(), executor, answer);
+}
+}  // namespace detail
+
 /// Writes the side of point i to sides[i], as `Solid::side` tells it; `winding_numbers` and
 /// `signed_distances` write the other answers. Large batches are cut into pieces over all cores, unless an
 /// executor is given (Threads), and answered in an order in which neighbours follow each other, for which
@@ -377,25 +386,24 @@ template <class I>
 void sides(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<Side> sides_of,
            Threads threads = {}) {
     detail::expect_room("points", points.size(), sides_of.size());
-    detail::for_some_near(points, solid.bounds(), threads, [&](const auto& some, const auto& places) {
-        for (std::size_t k = 0; k < some.size(); ++k) sides_of[places[k]] = solid.side(some[k]);
+    detail::ask_solid_in_parts(solid, points, threads, [&](const auto& part) {
+        for (std::size_t k = 0; k < part.size(); ++k) sides_of[part.number(k)] = solid.side(part[k]);
     });
 }
 template <class I>
 void winding_numbers(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<double> numbers,
                      Threads threads = {}) {
     detail::expect_room("points", points.size(), numbers.size());
-    detail::for_some_near(points, solid.bounds(), threads, [&](const auto& some, const auto& places) {
-        for (std::size_t k = 0; k < some.size(); ++k) numbers[places[k]] = solid.winding_number(some[k]);
+    detail::ask_solid_in_parts(solid, points, threads, [&](const auto& part) {
+        for (std::size_t k = 0; k < part.size(); ++k) numbers[part.number(k)] = solid.winding_number(part[k]);
     });
 }
 template <class I>
 void signed_distances(const Solid<I>& solid, const Strided<PointOf<I>>& points,
                       std::span<typename I::Scalar> distances, Threads threads = {}) {
     detail::expect_room("points", points.size(), distances.size());
-    detail::for_some_near(points, solid.bounds(), threads, [&](const auto& some, const auto& places) {
-        solid.write_distances(some, places, distances);
-    });
+    detail::ask_solid_in_parts(solid, points, threads,
+                               [&](const auto& part) { solid.write_distances(part, distances); });
 }
 
 }  // namespace hedgerow

@@ -53,6 +53,7 @@ public:
         const T scale = cells / (2 * max_component(extent));
         scale_ = scale <= std::numeric_limits<T>::max() ? scale : T(0);
     }
+    /// The first 32 bits of the code.
     std::uint64_t code(const Vec<T, D>& p) const {
         std::uint64_t code = 0;
         for (int k = 0; k < D; ++k) {
@@ -60,7 +61,7 @@ public:
             const T cell = at > 0 ? std::min(at, cells - 1) : T(0);  // 0 for what is no number
             code |= spread_bits<D>(static_cast<std::uint64_t>(cell)) << k;
         }
-        return code;
+        return code >> (bits_an_axis * D - 32);
     }
 
 private:
@@ -88,12 +89,10 @@ void for_each_part(const Strided<Vec<T, D>>& points, const Box<T, D>& box, std::
         const std::size_t count = std::min(at_once, points.size() - first);
         BareVector<std::uint64_t> keys(count);
         executor.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) keys[i] = curve.code(points[first + i]) << 31 | i;
+            for (std::size_t i = begin; i < end; ++i) keys[i] = curve.code(points[first + i]) << 32 | i;
         });
         radix_sort(
             keys, [](std::uint64_t key) { return key; }, 31, 3, executor);
-        // The low half of a key has a bit of the code above the number.
-        for (auto& key : keys) key &= at_once - 1;
         const PointBatch<T, D> ordered(points, keys.data(), first, count);
         executor.for_each_piece(count, piece, [&](std::size_t begin, std::size_t end) {
             answer(ordered.part(begin, end - begin));
