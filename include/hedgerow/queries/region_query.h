@@ -29,7 +29,8 @@ public:
 
     template <class Index>
     RegionQuery(const Index& index, const R& region, Finds finds)
-        : probe_(region, index.bounds(), finds), limit_(is_empty(region) ? Scalar(-1) : std::numeric_limits<Scalar>::max()) {
+        : probe_(region, index.bounds(), finds),
+          limit_(is_empty(region) ? Scalar(-1) : std::numeric_limits<Scalar>::max()) {
         if constexpr (requires { index.structure().exclusive(); })
             takes_subtrees_ = !Instanced<Set> && index.structure().exclusive();
     }
