@@ -153,7 +153,7 @@ int draw_field_of(const DrawArguments& a, const P& set) {
     }();
     using I = std::remove_cvref_t<decltype(index)>;
     std::string note;
-    ordered_json of_field;
+    ordered_json of_field = ordered_json::object();
     FinishedPicture finished;
     const auto fill_shown = [&](auto ask) {
         ProgressLine line("computing the " + a.field, a.quiet, "rows");
