@@ -1,4 +1,4 @@
-/// hedgerow draw: pictures of structures, and of where rays spend their steps.
+/// hedgerow draw: pictures of structures, of where rays spend their steps, and of fields.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -23,6 +23,7 @@ template <class T>
 int draw(const DrawArguments& a, const Scene<T>& scene) {
     const ThreadLimit limit(a.threads);
     if (!a.ray.empty()) return draw_ray(a, scene);
+    if (!a.field.empty()) return draw_field(a, scene);
     const bool flat = std::visit([]<class P>(const P&) { return P::dimension == 2; }, scene);
     if (flat && !a.heat.empty())
         throw InputError(a.scene +
@@ -40,11 +41,14 @@ void check(const DrawArguments& a) {
         check_cells(a);
     else
         check_ray<T>(a);
+    if (!a.field.empty()) check_field(a);
     const std::string ending = ending_of(a.output);
     if (ending == ".png" && (a.tree || a.height))
         throw UsageError(fmt::format("{} is about flat pictures, as .svg: add --slice, or draw a flat scene",
                                      a.tree ? "--tree" : "--height"));
-    if (ending == ".svg" || ending == ".html")
+    if (!a.field.empty())
+        check_picture_memory(fmt::format("{0}x{0}", a.width), true);
+    else if (ending == ".svg" || ending == ".html")
         parse_size(a.view.size);
     else
         check_picture_memory(a.view.size, ending == ".exr");
@@ -91,7 +95,8 @@ std::vector<std::string> note_lines(const Image& image, const std::vector<std::s
 Run add_draw(CLI::App& verb) {
     auto a = std::make_shared<DrawArguments>();
     add_common(verb, *a, true);
-    verb.add_option("--structure", a->structure, "NAME[:OPTION=VALUE,...]")->capture_default_str();
+    auto* const structure =
+        verb.add_option("--structure", a->structure, "NAME[:OPTION=VALUE,...]")->capture_default_str();
     auto* const beside =
         verb.add_option(
                 "--beside", a->beside,
@@ -101,9 +106,11 @@ Run add_draw(CLI::App& verb) {
     auto* const tree = verb.add_flag("--tree", a->tree, "flat pictures: the tree too, beside its cells");
     auto* const slice = verb.add_option(
         "--slice", a->slice,
-        "x, y or z=FRACTION of the scene, or =@POSITION: the cells that a plane cuts, as SVG");
-    verb.add_option("--depth", a->levels, "draw the first so many levels; 0: all, or as many as can be seen")
-        ->check(CLI::Range(0, 128));
+        "x, y or z=FRACTION of the scene, or =@POSITION: the cells that a plane cuts, as SVG, or the plane "
+        "of --field");
+    auto* const depth = verb.add_option("--depth", a->levels,
+                                        "draw the first so many levels; 0: all, or as many as can be seen");
+    depth->check(CLI::Range(0, 128));
     auto* const ray = verb.add_option("--ray", a->ray,
                                       "origin and direction, ox,oy,oz,dx,dy,dz (flat: four numbers): "
                                       "the cells that the ray visits")
@@ -131,10 +138,26 @@ Run add_draw(CLI::App& verb) {
     verb.add_flag("--log", a->log, "the heat's scale is logarithmic")->needs(heat);
     ray->excludes(slice)->excludes(heat);
     heat->excludes(slice)->excludes(beside)->excludes(tree)->excludes(height);
+    auto* const field =
+        verb.add_option("--field", a->field,
+                        "distance, signed-distance, winding or count (of primitives within --radius) over "
+                        "the plane of --slice, by default through the middle, as .png")
+            ->check(CLI::IsMember({"distance", "signed-distance", "winding", "count"}));
+    verb.add_option("--width", a->width, "of the picture of a field, in pixels; its height follows")
+        ->capture_default_str()
+        ->check(CLI::Range(240, 16384))
+        ->needs(field);
+    field->excludes(structure)->excludes(beside)->excludes(tree)->excludes(depth)->excludes(ray);
+    field->excludes(height)->excludes(heat);
     verb.add_option("--threads", a->threads, "that build and cast rays; 0: all cores")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
+    field->excludes(verb.get_option("--size"));
+    verb.get_option("--radius")
+        ->description(
+            "of points, drawn as spheres; 0: by their number. With --field count: within which primitives "
+            "are counted; 0: a twentieth of the scene's diagonal");
     return [a] {
         return in_precision(*a, [&]<class T>(T) {
             check<T>(*a);

@@ -19,12 +19,12 @@
 namespace hedgerow::cli {
 
 struct DrawArguments : Common {
-    std::string structure = "wide", slice, heat;
+    std::string structure = "wide", slice, heat, field;
     std::vector<std::string> beside;
     ViewArguments view;
     std::vector<double> ray;
     bool frames = false, tree = false, log = false, stop_at_first = false;
-    int levels = 0;
+    int levels = 0, width = 1024;
     std::optional<int> height;
     unsigned threads = 0;
     std::uint64_t scale = 0;
@@ -35,6 +35,7 @@ std::vector<std::string> structures_of(const DrawArguments& a);
 
 /// Throw UsageError for options that are wrong whatever the scene holds.
 void check_cells(const DrawArguments& a);
+void check_field(const DrawArguments& a);
 template <class T>
 void check_ray(const DrawArguments& a);
 
@@ -52,6 +53,11 @@ int draw_wireframe(const DrawArguments& a, const Scene<T>& scene);
 /// scene.
 template <class T>
 int draw_heat(const DrawArguments& a, const Scene<T>& scene);
+
+/// Draws a field over a plane through a scene in space: distances, winding numbers or counts. Returns the
+/// exit code. Throws InputError for scenes without such a field.
+template <class T>
+int draw_field(const DrawArguments& a, const Scene<T>& scene);
 
 /// Throws UsageError unless the output has the extension `ending`. `what` names the picture in the message.
 void expect_ending(const DrawArguments& a, const std::string& ending, const std::string& what);

@@ -1,6 +1,4 @@
 /// Flat pictures of cells as SVG: the cells of a flat scene, or those that a slice cuts.
-#include <charconv>
-#include <cmath>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -12,6 +10,7 @@
 
 #include "draw.h"
 #include "section.h"
+#include "slice.h"
 
 namespace hedgerow::cli {
 
@@ -24,42 +23,9 @@ Section<2> section_of(const DrawArguments& a, const Box2d&, const Upright&) {
         throw InputError(a.scene + " is flat already, and has no slices: leave --slice out");
     return {};
 }
-/// The value of --slice: an axis, and where the plane crosses it.
-struct Slice {
-    int axis;
-    bool position;  ///< whether `value` is a position; else it is a fraction of the scene's extent
-    double value;
-};
-/// Parses --slice: "z=0.5" is a fraction, "z=@12.5" a position. Throws UsageError for any other text.
-Slice slice_of(const std::string& slice) {
-    const std::string_view text = slice;
-    const auto bad = [&] {
-        return UsageError(
-            fmt::format("--slice {}: write x, y or z, then = and a fraction from 0 to 1, as z=0.5, or @ and "
-                        "a position, as "
-                        "z=@12.5",
-                        slice));
-    };
-    if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != '=') throw bad();
-    const int axis = text[0] - 'x';
-    const bool position = text[2] == '@';
-    const std::string_view digits = text.substr(position ? 3 : 2);
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) throw bad();
-    if (!position && !(value >= 0 && value <= 1)) throw bad();
-    return {axis, position, value};
-}
 Section<3> section_of(const DrawArguments& a, const Box3d& bounds, const Upright& upright) {
-    const auto [axis, position, value] = slice_of(a.slice);
-    Section<3> section;
-    section.origin[axis] = section.within.low[axis] = section.within.high[axis] =
-        position ? value : bounds.low[axis] + value * bounds.extent()[axis];
-    // Let the scene's up axis point up in the picture, unless the plane is perpendicular to it.
-    const int up = axis != upright.axis ? upright.axis : (axis == 2 ? 1 : 2);
-    section.right[3 - axis - up] = 1;
-    section.up[up] = 1;
-    return section;
+    const Slice slice = slice_of(a.slice);
+    return section_across(slice.axis, slice.position(bounds), upright);
 }
 
 /// The cells that have at most `most` levels of cells below them in the whole structure, which is given by

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/parallel/radix_sort.h>
 #include <hedgerow/parallel/sort.h>
 
+#include "check.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -104,6 +106,20 @@ ordered_json facts(const SegmentSet<T>& s, Executor&) {
     return {{"kind", "segments"}, {"segments", s.size()}, {"dimension", 2}};
 }
 
+/// What is in a scene, and between what coordinates.
+template <class T>
+ordered_json facts_of_scene(const Common& c, const Scene<T>& scene) {
+    ProgressLine line("looking at " + c.scene, c.quiet);
+    WatchedExecutor watched(serial_executor(), line.progress());
+    return std::visit(
+        [&](const auto& set) {
+            auto j = facts(set, watched);
+            j.update(extent_of(set, watched));
+            return j;
+        },
+        scene);
+}
+
 /// The facts about a saved index that its mesh does not show.
 ordered_json facts_of_index(const std::string& path) {
     constexpr const char* builders[] = {"fast", "medium", "high"};
@@ -125,24 +141,27 @@ ordered_json facts_of_index(const std::string& path) {
 
 Run add_info(CLI::App& verb) {
     auto c = std::make_shared<Common>();
+    auto check = std::make_shared<bool>(false);
     add_common(verb, *c, false);
-    return [c] {
+    verb.add_flag("--check", *check,
+                  "look for the faults of a mesh: holes, edges and parts turned the wrong way, triangles "
+                  "without area, twice or intersecting. The exit code is 0 with faults, too");
+    return [c, check] {
         return in_precision(*c, [&]<class T>(T) {
             const Scene<T> scene = load<T>(*c);
-            ProgressLine line("looking at " + c->scene, c->quiet);
-            WatchedExecutor watched(serial_executor(), line.progress());
-            ordered_json all = std::visit(
-                [&](const auto& set) {
-                    auto j = facts(set, watched);
-                    j.update(extent_of(set, watched));
-                    return j;
-                },
-                scene);
+            const auto* const mesh = std::get_if<TriangleMesh<T>>(&scene);
+            if (*check && mesh == nullptr)
+                throw InputError(c->scene + " has no triangles, of which --check finds the faults");
+            ordered_json all = facts_of_scene(*c, scene);
             if (names_index_file(c->scene)) all.update(facts_of_index(c->scene));
+            MeshFaults faults;
+            if (*check) faults = faults_of(*c, *mesh);
             if (c->json) {
+                if (*check) all["check"] = faults.facts;
                 print_json(all);
             } else {
                 for (const auto& [key, value] : all.items()) fmt::print("{:22} {}\n", key, value.dump());
+                if (*check) fmt::print("\n"), print_faults(faults);
             }
             return 0;
         });

@@ -67,8 +67,9 @@ constexpr Verb verbs[] = {
      "  hedgerow draw gen:segments2d:80 --ray=-0.1,0.3,1,0.3 --frames -o steps.html\n"
      "  hedgerow draw gen:segments2d:80 --structure bvh:builder=midpoint --beside bvh:builder=sweep -o "
      "two.svg\n"
-     "  hedgerow draw gen:teapot-in-stadium --heat tests --scale 60 -o heat.png\n\n"
-     "what a structure looks like, and where rays spend their steps",
+     "  hedgerow draw gen:teapot-in-stadium --heat tests --scale 60 -o heat.png\n"
+     "  hedgerow draw gen:boulder --field signed-distance --slice z=0.5 -o distance.png\n\n"
+     "what a structure looks like, where rays spend their steps, and how far away a surface is",
      add_draw},
     {"compare",
      "Examples:\n  hedgerow compare dragon.ply\n  hedgerow compare gen:grass:20000 --html grass.html\n"
@@ -83,7 +84,8 @@ constexpr Verb verbs[] = {
      "the engine's rays a second, beside every peer that is present",
      add_bench},
     {"info",
-     "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n\n"
+     "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n"
+     "  hedgerow info scan.ply --check\n\n"
      "what is in a scene, and what is wrong with it",
      add_info},
     {"generate",
