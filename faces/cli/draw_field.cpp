@@ -53,6 +53,7 @@ FieldPlane field_plane_of(const DrawArguments& a, const Box3d& bounds, const Upr
     Vec2d half = Vec2d(extent[plane.right], extent[plane.up]) * 0.5;
     double longest = std::max(half[0], half[1]);
     if (longest == 0) longest = plane.diagonal > 0 ? plane.diagonal / 2 : 1;
+    if (half[0] == 0 && half[1] == 0) half = Vec2d::all(longest);
     half = half + Vec2d::all(longest / 5);
     half[0] = std::max(half[0], half[1]);
     half[1] = std::max(half[1], half[0] / 2);
@@ -140,7 +141,7 @@ int draw_field_of(const DrawArguments& a, const P& set) {
         a.view.radius > 0 ? a.view.radius : (plane.diagonal > 0 ? plane.diagonal / 20 : 1.0);
     FieldValues field;
     field.kind = kind, field.frame = plane.frame;
-    field.width = a.width - legend_width(a.width);
+    field.width = a.width - width_of_legend(a.width);
     field.height = std::max(
         1, static_cast<int>(std::lround(field.width * plane.frame.extent()[1] / plane.frame.extent()[0])));
     field.values.assign(static_cast<std::size_t>(field.width) * static_cast<std::size_t>(field.height),

@@ -181,7 +181,7 @@ FieldScale::FieldScale(const FieldValues& field) {
     if (field.kind == FieldKind::count) step = std::max(1.0, step);
 }
 
-int legend_width(int picture_width) {
+int width_of_legend(int picture_width) {
     return (6 + 14 + 4 + 10 * letter_width) * unit_of(picture_width);
 }
 
@@ -189,7 +189,7 @@ Image field_picture(const FieldValues& field, const FieldScale& scale, const std
                     const std::vector<FlatPrimitive>& cut) {
     // The title on top, the field below it, the legend beside.
     int width = field.width;
-    while (width - legend_width(width) < field.width) ++width;
+    while (width - width_of_legend(width) < field.width) ++width;
     const int unit = unit_of(width);
     std::vector<std::string> lines;
     for (const auto& text : title)

@@ -43,7 +43,7 @@ struct FieldScale {
 };
 
 /// The part of a picture's width that is beside the field, for the legend.
-int legend_width(int picture_width);
+int width_of_legend(int picture_width);
 
 /// Draws a field below its title, with the cut of the scene's primitives in the plane, and a legend beside.
 Image field_picture(const FieldValues& field, const FieldScale& scale, const std::vector<std::string>& title,
