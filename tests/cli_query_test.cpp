@@ -291,7 +291,8 @@ TEST_F(Query, InsidesAnswerAsTheLibraryDoes) {
 
 TEST_F(Query, InsidesOfACubeAreKnown) {
     // The cube from -1 to 1 or another: its first corner says where it ends.
-    const auto box = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:cube"))).bounds(0);
+    const auto box =
+        std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:cube"))).view().bounds(0);
     const float end = std::max(std::abs(box.low[0]), std::abs(box.high[0]));
     const std::string e = std::to_string(end), half = std::to_string(end / 2);
     write("p.csv", "0,0,0\n9,0,0\n" + e + ",0,0\n" + half + ",0,0\n0,nan,0\n");
