@@ -1,20 +1,15 @@
 /// hedgerow query: answers rows of queries from a file, in chunks.
-#include "query.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/spelling.h>
-#include <hedgerow/io/index_file.h>
 
-#include "row_stream.h"
-#include "verbs.h"
+#include "row_query.h"
 
 namespace hedgerow::cli {
 
@@ -46,99 +41,41 @@ std::vector<Column> answer_columns() {
 
 /// Puts a question to an index for each of `count` rows.
 template <class Question, std::floating_point T, int D>
-void answer_rows(const AnyIndex<T, D>& index, const RowOptions& options, std::size_t columns,
-                 const T* numbers, std::uint64_t first, std::size_t count, AnsweredRows& answers) {
+void answer_piece(const AnyIndex<T, D>& index, const RowOptions& options, const T* numbers,
+                  std::uint64_t first, std::size_t count, AnsweredRows& answers) {
     using Given = typename Question::Given;
     using Answer = typename Question::Answer;
-    const auto row = [&](std::size_t i) { return numbers + i * columns; };
     if constexpr (is_list<Answer>) {
-        Answer found;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (!RowsOf<Given>::usable(row(i))) {
-                answers.refuse(first + i);
-                continue;
-            }
-            Question::ask(index, RowsOf<Given>::of(row(i), options), found);
-            for (const auto& item : found)
-                append_record(answers.records, [&](Record& record) {
-                    record("query", first + i);
-                    list_item_columns(index, item, record);
-                });
-            answers.rows += found.size();
-        }
+        answer_by_lists<Given, typename Answer::value_type>(
+            options, numbers, first, count, answers,
+            [&](const Given& given, Answer& found) { Question::ask(index, given, found); },
+            [&](const auto& item, Record& record) { list_item_columns(index, item, record); });
     } else {
-        // The thread keeps this memory for its next rows.
-        static thread_local std::vector<Given> given;
-        static thread_local std::unique_ptr<Answer[]> found;
-        if (given.size() < count) found.reset(new Answer[count]);
-        given.resize(std::max(given.size(), count));
-        for (std::size_t i = 0; i < count; ++i) given[i] = RowsOf<Given>::of(row(i), options);
-        const std::span<const Given> asked(given.data(), count);
-        if constexpr (AsksMany<Question>) {
-            Question::ask_all(index, asked, std::span<Answer>(found.get(), count));
-        } else {
-            Visits nobodys;
-            for (std::size_t i = 0; i < count; ++i) Question::ask(index, asked[i], found[i], nobodys);
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            const bool usable = RowsOf<Given>::usable(row(i));
-            if (!usable) answers.refuse(first + i);
-            append_record(answers.records, [&](Record& record) {
-                list_answer<Question>(usable ? found[i] : Answer(), record);
-            });
-        }
-        answers.rows = count;
-    }
-}
-
-/// Ends the file after `run` has written its rows. Where it ended early, those that it wrote are kept under
-/// the name of unfinished work.
-template <class F>
-void write_rows(const QueryArguments& a, RowWriter& out, QueryReport& report, F run) {
-    const auto keep = [&] {
-        report.finished = false;
-        report.answered = out.rows();
-        if (report.answered == 0 && a.output != "-") return;
-        report.output = a.output == "-" ? a.output : unfinished_name(a.output);
-        out.finish_as(report.output);
-    };
-    try {
-        run();
-        out.finish();
-        report.output = a.output, report.answered = out.rows();
-    } catch (const Cancelled&) {
-        keep();
-    } catch (const InputError& e) {
-        keep();
-        if (report.output.empty() || a.output == "-") throw;
-        throw InputError(fmt::format("{}. The answers to rows before it are in {}", e.what(), report.output));
+        answer_by_rows<Given>(
+            options, numbers, first, count, answers, Answer(),
+            [&](std::span<const Given> given, std::span<Answer> found) {
+                if constexpr (AsksMany<Question>) {
+                    Question::ask_all(index, given, found);
+                } else {
+                    Visits nobodys;
+                    for (std::size_t i = 0; i < count; ++i) Question::ask(index, given[i], found[i], nobodys);
+                }
+            },
+            [](const Answer& answer, Record& record) { list_answer<Question>(answer, record); });
     }
 }
 
 template <class Question, std::floating_point T, int D>
 int query(const QueryArguments& a, RowReader<T>& in, const AnyIndex<T, D>& index, QueryReport report) {
-    using Answer = typename Question::Answer;
     const RowOptions options{a.count, a.radius};
     const std::size_t columns = RowsOf<typename Question::Given>::columns().size();
-    std::optional<std::uint64_t> rows;
-    if constexpr (!is_list<Answer>) rows = in.size();
-    RowWriter out(a.output, row_format(a.output, a.output_format), answer_columns<Question>(), rows);
-    RowStream<T> stream(in, columns, out, default_executor(),
-                        is_list<Answer> ? cut_for_lists : cut_for_batches);
     report.primitives = index.size();
-    const double start = now();
-    write_rows(a, out, report, [&] {
-        ProgressLine line("answering " + a.kind, a.quiet, "rows");
-        stream.run(
-            [&](const T* numbers, std::uint64_t first, std::size_t count, AnsweredRows& answers) {
-                answer_rows<Question>(index, options, columns, numbers, first, count, answers);
-            },
-            line.progress());
-    });
-    report.seconds = now() - start;
-    report.asked = stream.asked();
-    report.unusable = stream.unusable(), report.first_unusable = stream.first_unusable();
-    return print_report(a, report);
+    return answer_all<T>(
+        a, in, {columns, answer_columns<Question>(), is_list<typename Question::Answer>},
+        [&](const T* numbers, std::uint64_t first, std::size_t count, AnsweredRows& answers) {
+            answer_piece<Question>(index, options, numbers, first, count, answers);
+        },
+        report);
 }
 
 /// Opens the rows, lets `make_index` build or load an index, and queries it.
@@ -186,6 +123,8 @@ int query_saved(const QueryArguments& a) {
 
 std::vector<std::string_view> kind_names() {
     auto names = question_names<TriangleMesh<float>>();
+    for (const EngineKind& kind : region_kinds()) names.push_back(kind.name);
+    for (const EngineKind& kind : inside_kinds()) names.push_back(kind.name);
     for (const PairKind& kind : pair_kinds()) names.push_back(kind.name);
     return names;
 }
@@ -203,6 +142,9 @@ std::string kinds_help() {
         for (const Column& c : answer_columns<Question>()) writes += (writes.empty() ? "" : " ") + c.name;
         text += fmt::format("  {:19} {}\n  {:19}   -> {}\n", Question::name, reads, "", writes);
     });
+    for (const auto kinds : {region_kinds(), inside_kinds()})
+        for (const EngineKind& kind : kinds)
+            text += fmt::format("  {:19} {}\n  {:19}   -> {}\n", kind.name, kind.reads, "", kind.writes);
     for (const PairKind& kind : pair_kinds()) text += fmt::format("  {:19} {}\n", kind.name, kind.meaning);
     return text + "\n";
 }
@@ -255,7 +197,17 @@ Run add_query(CLI::App& verb) {
     verb.add_option("--format", a->format, "of --from: npy, csv or json; needed for a pipe");
     verb.add_option("--output-format", a->output_format, "of -o: npy, csv or json; needed for a pipe");
     verb.add_option("-k,--count", a->count, "nearest: how many neighbours");
-    verb.add_option("--radius", a->radius, "within: the distance, not squared");
+    verb.add_option("--radius", a->radius, "within, balls, pairs-within: the distance, not squared");
+    verb.add_option(
+            "--by", a->by,
+            "side, signed-distance: how insides are told, crossings (default), parity, pseudonormal or "
+            "expansion; winding-number: crossings or expansion")
+        ->check(CLI::IsMember({"crossings", "parity", "pseudonormal", "expansion"}));
+    verb.add_option("--error", a->error,
+                    "--by expansion: how far winding numbers may be off, 1e-9 to 1 (1e-3)");
+    verb.add_option("--tolerance", a->tolerance,
+                    "hausdorff: how wide the interval may be, in parts of the distance")
+        ->capture_default_str();
     verb.add_option("--structure", a->structure,
                     "NAME[:OPTION=VALUE,...]; of a .hedgerow file 'wide' is the index as it was saved")
         ->capture_default_str();
@@ -275,13 +227,27 @@ Run add_query(CLI::App& verb) {
         row_format(a->output, a->output_format);
         if (a->output != "-") check_writable(a->output);
         const ThreadLimit limit(a->threads);
-        for (const PairKind& kind : pair_kinds())
-            if (kind.name == a->kind) return query_pairs(*a);
+        const auto is_one_of = [&](const auto& kinds) {
+            return std::any_of(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == a->kind; });
+        };
+        const bool of_inside = is_one_of(inside_kinds()), of_region = is_one_of(region_kinds());
+        if (!of_inside && !a->by.empty()) throw UsageError(a->kind + " takes no --by");
+        if (verb.count("--error") > 0 && a->by != "expansion")
+            throw UsageError("--error is the promise of --by expansion: ask for both");
+        if (verb.count("--tolerance") > 0 && a->kind != "hausdorff")
+            throw UsageError(a->kind + " takes no --tolerance");
+        if (is_one_of(pair_kinds())) return query_pairs(*a);
         if (!a->with.empty()) throw UsageError(a->kind + " is asked of one scene: leave out --with");
         if (a->from.empty()) throw UsageError(a->kind + " needs --from: the file of rows, or - for a pipe");
         row_format(a->from, a->format);
         if (a->from != "-" && !std::filesystem::exists(a->from))
             throw InputError(a->from + ": there is no such file. Check the path");
+        if (of_inside || of_region) {
+            if (a->structure != "wide")
+                throw UsageError(a->kind + " is answered by the engine: leave out --structure");
+            if (a->count != 0) throw UsageError(a->kind + " takes no --count");
+            return of_inside ? query_inside(*a) : query_region(*a);
+        }
         return in_precision(*a, [&]<class T>(T) {
             if (names_index_file(a->scene) && a->structure == "wide") return query_saved<T>(*a);
             return std::visit([&](const auto& set) { return query_set(*a, set); }, load<T>(*a));

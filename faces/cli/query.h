@@ -13,9 +13,9 @@
 namespace hedgerow::cli {
 
 struct QueryArguments : Common {
-    std::string kind, from, with, format, output_format, structure = "wide";
+    std::string kind, from, with, format, output_format, structure = "wide", by;
     std::uint64_t count = 0;
-    double radius = -1;
+    double radius = -1, error = 1e-3, tolerance = 1e-3;
     unsigned threads = 0;
 };
 
@@ -33,10 +33,22 @@ struct QueryReport {
 /// Prints the report, and returns the exit code.
 int print_report(const QueryArguments& a, const QueryReport& report);
 
+/// Kinds of queries of rows that the engine alone answers, and the columns of each in space.
+struct EngineKind {
+    std::string_view name, reads, writes;
+};
+/// What lies in boxes and balls. Returns the exit code, as the other queries do.
+std::span<const EngineKind> region_kinds();
+int query_region(const QueryArguments& a);
+/// Whether points are inside of a surface.
+std::span<const EngineKind> inside_kinds();
+int query_inside(const QueryArguments& a);
+
 /// The kinds of queries between two scenes, or a scene and itself, and what each answers.
 struct PairKind {
     std::string_view name, meaning;
-    bool between_two;
+    enum class Scenes : unsigned char { one, two, either } scenes;
+    bool takes_radius = false;
 };
 std::span<const PairKind> pair_kinds();
 /// Runs a query of pairs. Returns the exit code.

@@ -1,5 +1,6 @@
 /// Queries of pairs: what of two scenes meets, and how far apart they are.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -15,12 +16,21 @@ namespace hedgerow::cli {
 
 namespace {
 
+using Scenes = PairKind::Scenes;
 constexpr PairKind all_pair_kinds[] = {
-    {"crossings", "of two meshes (--with): the pairs of triangles that share a point -> a b", true},
+    {"crossings", "of two meshes (--with): the pairs of triangles that share a point -> a b", Scenes::two},
     {"self-intersections", "of a mesh: the pairs of triangles that meet beyond their common corners -> a b",
-     false},
+     Scenes::one},
     {"minimum-distance",
-     "of two scenes (--with): the closest two primitives -> a b distance ax ay az bx by bz", true},
+     "of two scenes (--with): the closest two primitives -> a b distance ax ay az bx by bz", Scenes::two},
+    {"hausdorff",
+     "of two meshes or clouds (--with): an interval around how far one is from the other at most "
+     "(--tolerance)"
+     " -> a b lower upper ax ay az bx by bz from_b",
+     Scenes::two},
+    {"pairs-within",
+     "of points, or of two sets of points (--with): the pairs at most --radius apart -> a b distance",
+     Scenes::either, true},
 };
 
 template <class P>
@@ -65,13 +75,33 @@ void write_pairs(const QueryArguments& a, const A& one, const B& other, const st
         f("a", id_of(one, pair.a)), f("b", id_of(other, pair.b));
     });
 }
+template <class T, class A, class B>
+void write_pairs(const QueryArguments& a, const A& one, const B& other,
+                 const std::vector<PairWithin<T>>& pairs, QueryReport& report) {
+    write_all(a, pairs.size(), report, [&](auto& f, std::optional<std::uint64_t> i) {
+        const PairWithin<T> pair = i ? pairs[*i] : PairWithin<T>{no_primitive, no_primitive, 0};
+        f("a", id_of(one, pair.a)), f("b", id_of(other, pair.b));
+        f("distance", rounded_to<T>(std::sqrt(static_cast<double>(pair.distance2))));
+    });
+}
+/// The columns of two points that a distance is between.
+template <class T, int D>
+void list_points(auto& f, const Vec<T, D>& of_a, const Vec<T, D>& of_b) {
+    constexpr std::string_view names_a[] = {"ax", "ay", "az"}, names_b[] = {"bx", "by", "bz"};
+    for (int k = 0; k < D; ++k) f(names_a[k], of_a[k]);
+    for (int k = 0; k < D; ++k) f(names_b[k], of_b[k]);
+}
 template <class T, int D>
 void list_apart(auto& f, const Apart<T, D>& apart, std::uint32_t a, std::uint32_t b) {
-    constexpr std::string_view of_a[] = {"ax", "ay", "az"}, of_b[] = {"bx", "by", "bz"};
     f("a", a), f("b", b);
     f("distance", rounded_to<T>(std::sqrt(static_cast<double>(apart.distance2))));
-    for (int k = 0; k < D; ++k) f(of_a[k], apart.point_a[k]);
-    for (int k = 0; k < D; ++k) f(of_b[k], apart.point_b[k]);
+    list_points(f, apart.point_a, apart.point_b);
+}
+template <class T, int D>
+void list_hausdorff(auto& f, const Hausdorff<T, D>& far, std::uint32_t a, std::uint32_t b) {
+    f("a", a), f("b", b), f("lower", far.lower), f("upper", far.upper);
+    list_points(f, far.point_a, far.point_b);
+    f("from_b", far.from_b);
 }
 
 /// Runs `ask` between the times that the report says.
@@ -84,54 +114,107 @@ void timed(const QueryArguments& a, QueryReport& report, F ask) {
     report.seconds = now() - start;
 }
 
+/// The squared radius, rounded as `within` has it.
+template <class T>
+T squared_radius(const QueryArguments& a) {
+    return RowsOf<Ball<T, 2>>::of(std::array<T, 2>().data(), {.radius = a.radius}).radius2;
+}
+
 [[noreturn]] void refuse(const QueryArguments& a, const std::string& scenes, const char* wanted) {
     throw InputError(fmt::format("{}: {} is asked of {}. Name such scenes", scenes, a.kind, wanted));
 }
 
 template <class A>
 int query_self(const QueryArguments& a, const A& set) {
-    if constexpr (TriangleSet<ViewOf<A>>) {
-        QueryReport report;
-        const double start = now();
-        const auto index = build_pair_index(a, a.scene, set);
-        report.build_seconds = now() - start, report.primitives = set.size();
-        std::vector<ElementPair> pairs;
-        timed(a, report, [&](Executor& executor) { self_intersections(index, pairs, executor); });
-        write_pairs(a, index, index, pairs, report);
-        return print_report(a, report);
-    } else {
-        refuse(a, a.scene, "triangles");
+    using T = typename A::Scalar;
+    constexpr bool triangles = TriangleSet<ViewOf<A>>, points = PointSet<ViewOf<A>>;
+    const bool within = a.kind == "pairs-within";
+    if constexpr (triangles || points) {
+        if (within == points) {
+            QueryReport report;
+            const double start = now();
+            const auto index = build_pair_index(a, a.scene, set);
+            report.build_seconds = now() - start, report.primitives = set.size();
+            std::conditional_t<points, std::vector<PairWithin<T>>, std::vector<ElementPair>> pairs;
+            timed(a, report, [&](Executor& executor) {
+                if constexpr (points)
+                    pairs_within_radius2(index, squared_radius<T>(a), pairs, executor);
+                else
+                    self_intersections(index, pairs, executor);
+            });
+            write_pairs(a, index, index, pairs, report);
+            return print_report(a, report);
+        }
     }
+    refuse(a, a.scene, within ? "points" : "triangles");
 }
 
 template <class A, class B>
 int query_two(const QueryArguments& a, const A& set, const B& with) {
+    using T = typename A::Scalar;
     const std::string scenes = a.scene + " and " + a.with;
-    constexpr bool triangles = TriangleSet<ViewOf<A>> && TriangleSet<ViewOf<B>>;
     constexpr bool same_space = A::dimension == B::dimension;
-    constexpr bool points = same_space && (PointSet<ViewOf<A>> || PointSet<ViewOf<B>>);
-    if constexpr (triangles || points) {
+    constexpr bool triangles = TriangleSet<ViewOf<A>> && TriangleSet<ViewOf<B>>;
+    constexpr bool point_and_any = same_space && (PointSet<ViewOf<A>> || PointSet<ViewOf<B>>);
+    constexpr bool points = same_space && PointSet<ViewOf<A>> && PointSet<ViewOf<B>>;
+    if constexpr (triangles || point_and_any) {
         QueryReport report;
-        const double start = now();
-        const auto one = build_pair_index(a, a.scene, set);
-        const auto other = build_pair_index(a, a.with, with);
-        report.build_seconds = now() - start, report.primitives = set.size() + with.size();
-        if (a.kind == "minimum-distance") {
-            Apart<typename A::Scalar, A::dimension> apart;
-            timed(a, report, [&](Executor&) { apart = minimum_distance(one, other); });
-            write_all(a, 1, report, [&](auto& f, std::optional<std::uint64_t>) {
-                list_apart(f, apart, id_of(one, apart.element_a), id_of(other, apart.element_b));
-            });
+        // Builds both indexes, asks for the answer, writes it and reports.
+        const auto answer = [&](auto ask, auto write) {
+            const double start = now();
+            const auto one = build_pair_index(a, a.scene, set);
+            const auto other = build_pair_index(a, a.with, with);
+            report.build_seconds = now() - start, report.primitives = set.size() + with.size();
+            decltype(ask(one, other, serial_executor())) found;
+            timed(a, report, [&](Executor& executor) { found = ask(one, other, executor); });
+            write(one, other, found);
             return print_report(a, report);
-        } else if constexpr (triangles) {
-            std::vector<ElementPair> pairs;
-            timed(a, report, [&](Executor& executor) { crossing_pairs(one, other, pairs, executor); });
-            write_pairs(a, one, other, pairs, report);
-            return print_report(a, report);
-        }
+        };
+        const auto one_row = [&](auto list) {
+            return [&, list](const auto& one, const auto& other, const auto& found) {
+                write_all(a, 1, report, [&](auto& f, std::optional<std::uint64_t>) {
+                    list(f, found, id_of(one, found.element_a), id_of(other, found.element_b));
+                });
+            };
+        };
+        const auto pairs = [&](const auto& one, const auto& other, const auto& found) {
+            write_pairs(a, one, other, found, report);
+        };
+        if (a.kind == "minimum-distance")
+            return answer(
+                [](const auto& one, const auto& other, Executor&) { return minimum_distance(one, other); },
+                one_row([](auto& f, const auto&... rest) { list_apart(f, rest...); }));
+        if constexpr (FarFrom<ViewOf<A>, ViewOf<B>> && FarFrom<ViewOf<B>, ViewOf<A>>)
+            if (a.kind == "hausdorff")
+                return answer(
+                    [&](const auto& one, const auto& other, Executor& executor) {
+                        return hausdorff_distance(one, other, {.relative = a.tolerance}, executor);
+                    },
+                    one_row([](auto& f, const auto&... rest) { list_hausdorff(f, rest...); }));
+        if constexpr (points)
+            if (a.kind == "pairs-within")
+                return answer(
+                    [&](const auto& one, const auto& other, Executor& executor) {
+                        std::vector<PairWithin<T>> found;
+                        pairs_within_radius2(one, other, squared_radius<T>(a), found, executor);
+                        return found;
+                    },
+                    pairs);
+        if constexpr (triangles)
+            if (a.kind == "crossings")
+                return answer(
+                    [](const auto& one, const auto& other, Executor& executor) {
+                        std::vector<ElementPair> found;
+                        crossing_pairs(one, other, found, executor);
+                        return found;
+                    },
+                    pairs);
     }
     refuse(a, scenes,
-           a.kind == "crossings" ? "triangles" : "triangles, or of points and any others, in one space");
+           a.kind == "crossings"      ? "triangles"
+           : a.kind == "pairs-within" ? "points in one space"
+           : a.kind == "hausdorff"    ? "triangles or points in one space"
+                                      : "triangles, or of points and any others, in one space");
 }
 
 }  // namespace
@@ -141,17 +224,22 @@ std::span<const PairKind> pair_kinds() {
 }
 
 int query_pairs(const QueryArguments& a) {
-    const bool two = std::find_if(std::begin(all_pair_kinds), std::end(all_pair_kinds), [&](const auto& k) {
-                         return k.name == a.kind;
-                     })->between_two;
-    if (two && a.with.empty()) throw UsageError(a.kind + " needs --with: the other scene");
-    if (!two && !a.with.empty()) throw UsageError(a.kind + " is asked of one scene: leave out --with");
+    const PairKind& kind = *std::find_if(std::begin(all_pair_kinds), std::end(all_pair_kinds),
+                                         [&](const auto& k) { return k.name == a.kind; });
+    if (kind.scenes == Scenes::two && a.with.empty())
+        throw UsageError(a.kind + " needs --with: the other scene");
+    if (kind.scenes == Scenes::one && !a.with.empty())
+        throw UsageError(a.kind + " is asked of one scene: leave out --with");
     if (!a.from.empty()) throw UsageError(a.kind + " reads no rows: leave out --from");
     if (a.structure != "wide") throw UsageError(a.kind + " is answered by the engine: leave out --structure");
-    if (a.count != 0 || a.radius >= 0) throw UsageError(a.kind + " takes neither --count nor --radius");
+    if (a.count != 0) throw UsageError(a.kind + " takes no --count");
+    if (kind.takes_radius && a.radius < 0)
+        throw UsageError(a.kind + " needs --radius: a distance, at least 0");
+    if (!kind.takes_radius && a.radius >= 0) throw UsageError(a.kind + " takes no --radius");
+    if (!(a.tolerance >= 0)) throw UsageError("--tolerance: a tolerance is at least 0");
     return in_precision(a, [&]<class T>(T) {
         const Scene<T> scene = load<T>(a);
-        if (!two) return std::visit([&](const auto& set) { return query_self(a, set); }, scene);
+        if (a.with.empty()) return std::visit([&](const auto& set) { return query_self(a, set); }, scene);
         Common of_other = a;
         of_other.scene = a.with;
         const Scene<T> other = load<T>(of_other);

@@ -102,6 +102,14 @@ struct RowsOf<Ball<T, D>> : detail::PointRows<T, D> {
         return {detail::vec_at<D>(row), fits ? rounded_to<T>(squared) : std::numeric_limits<T>::max()};
     }
 };
+/// A solid ball, as a region.
+template <std::floating_point T, int D>
+struct RowsOf<Sphere<T, D>> : detail::PointRows<T, D> {
+    static constexpr bool takes_count = false, takes_radius = true;
+    static Sphere<T, D> of(const T* row, const RowOptions& o) {
+        return {detail::vec_at<D>(row), rounded_to<T>(o.radius)};
+    }
+};
 template <std::floating_point T, int D>
 struct RowsOf<Box<T, D>> {
     static constexpr bool takes_count = false, takes_radius = false;

@@ -33,6 +33,8 @@ void with_number(NumberType type, const char* at, F f) {
             return give(float());
         case NumberType::f64:
             return give(double());
+        case NumberType::sign:
+            return give(std::int8_t());
     }
 }
 
@@ -53,6 +55,8 @@ void append_json(std::string& text, NumberType type, const char* at) {
             if constexpr (std::is_floating_point_v<N>) none = !std::isfinite(number);
             if constexpr (std::is_same_v<N, std::uint32_t>)
                 none = number == std::numeric_limits<std::uint32_t>::max();
+            if constexpr (std::is_same_v<N, std::int8_t>)
+                none = number == std::numeric_limits<std::int8_t>::min();
             if (none)
                 text += "null";
             else
@@ -63,12 +67,12 @@ void append_json(std::string& text, NumberType type, const char* at) {
 
 /// The header of records. With `length`, it takes at least so many bytes.
 std::string records_header(const std::vector<Column>& columns, std::uint64_t rows, std::size_t length = 0) {
-    constexpr const char* dtypes[] = {"b1", "u4", "u8", "f4", "f8"};
+    constexpr const char* dtypes[] = {"b1", "u4", "u8", "f4", "f8", "i1"};
     constexpr char order = std::endian::native == std::endian::little ? '<' : '>';
     std::string descr = "[";
     for (const Column& c : columns) {
         if (descr.size() > 1) descr += ", ";
-        descr += "('" + c.name + "', '" + (c.type == NumberType::flag ? '|' : order) +
+        descr += "('" + c.name + "', '" + (size_of(c.type) == 1 ? '|' : order) +
                  dtypes[static_cast<std::size_t>(c.type)] + "')";
     }
     return detail::npy_header_of(descr + "]", {static_cast<std::size_t>(rows)}, length);

@@ -20,8 +20,9 @@ struct InputColumns {
     std::size_t required() const { return names.size() - defaults.size(); }
 };
 
-/// The type of the numbers in a column. An id is a `std::uint32_t`, of which 2^32 − 1 stands for none.
-enum class NumberType : unsigned char { flag, id, count, f32, f64 };
+/// The type of the numbers in a column. An id is a `std::uint32_t`, of which 2^32 − 1 stands for none. A sign
+/// is a `std::int8_t`, of which −128 stands for none.
+enum class NumberType : unsigned char { flag, id, count, f32, f64, sign };
 
 template <class N>
 constexpr NumberType number_type() {
@@ -29,11 +30,12 @@ constexpr NumberType number_type() {
     if constexpr (std::is_same_v<N, std::uint32_t>) return NumberType::id;
     if constexpr (std::is_same_v<N, std::uint64_t>) return NumberType::count;
     if constexpr (std::is_same_v<N, float>) return NumberType::f32;
+    if constexpr (std::is_same_v<N, std::int8_t>) return NumberType::sign;
     return NumberType::f64;
 }
 /// Bytes of a number in a record.
 constexpr std::size_t size_of(NumberType type) {
-    constexpr std::size_t sizes[] = {1, 4, 8, 4, 8};
+    constexpr std::size_t sizes[] = {1, 4, 8, 4, 8, 1};
     return sizes[static_cast<std::size_t>(type)];
 }
 
