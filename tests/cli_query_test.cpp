@@ -201,6 +201,255 @@ TEST_F(Query, PairsAnswerAsTheLibraryDoes) {
     expect_usage("query self-intersections gen:cube --with gen:cube -o " + file("x.csv"), "leave out --with");
 }
 
+/// A scene's set, its index, and rows around it of which one is not finite.
+template <class T, class P>
+struct Asked {
+    static constexpr int dimension = P::dimension;
+    P set;
+    IndexOf<WideBvh, P> index;
+    std::vector<Vec<T, P::dimension>> points;
+    std::string query;  // the arguments behind the kind
+
+    Asked(const std::string& scene, const fs::path& folder)
+        : set(std::get<P>(generate<T>(parse_scene_spec(scene)))), index(build<WideBvh>(set)) {
+        constexpr std::size_t rows = 3000;
+        std::vector<T> numbers;
+        Random random(5, 0);
+        for (std::size_t i = 0; i < rows; ++i) {
+            Vec<T, P::dimension> p;
+            for (int k = 0; k < P::dimension; ++k)
+                numbers.push_back(p[k] = static_cast<T>(random.uniform() * 4 - 2));
+            points.push_back(p);
+        }
+        numbers[7 * P::dimension] = std::numeric_limits<T>::quiet_NaN();
+        save_npy<T>((folder / "points.npy").string(), numbers, {rows, P::dimension});
+        query = " " + scene + " --quiet" + (std::is_same_v<T, double> ? " --precision double" : "") +
+                " --from " + (folder / "points.npy").string();
+    }
+};
+
+/// Runs the tool over rows of which number 7 has no answer. Returns the column of its answers.
+template <class T>
+std::vector<T> column_of(const std::string& arguments, const std::string& output, const std::string& name) {
+    const auto r = run(arguments + " -o " + output);
+    EXPECT_EQ(r.code, 0) << arguments << "\n" << r.output;
+    EXPECT_NE(r.output.find("row 7,"), std::string::npos) << arguments << "\n" << r.output;
+    std::vector<T> all, some;
+    const auto rows = open_rows<T>(output, row_format(output), InputColumns{{name}});
+    while (rows->read(some, 1000) > 0) all.insert(all.end(), some.begin(), some.end());
+    return all;
+}
+
+/// Compares what the tool says of insides with the library's answers, one by one.
+template <class T, class P>
+void expect_insides(const std::string& scene, const fs::path& folder) {
+    const Asked<T, P> asked(scene, folder);
+    constexpr std::pair<const char*, SideBy> ways[] = {{"", SideBy::crossings},
+                                                       {" --by crossings", SideBy::crossings},
+                                                       {" --by parity", SideBy::parity},
+                                                       {" --by pseudonormal", SideBy::pseudonormal},
+                                                       {" --by expansion --error 0.01", SideBy::expansion}};
+    for (const auto& [by, way] : ways) {
+        const bool expansion = way == SideBy::expansion;
+        if (expansion && P::dimension == 2) continue;
+        const Solid solid(asked.index, {way, expansion ? 0.01 : 1e-3});
+        for (const std::string ending : {"npy", "csv", "json"}) {
+            const std::string output = (folder / ("answers." + ending)).string(), rest = asked.query + by;
+            const auto sides = column_of<T>("query side" + rest, output, "side");
+            const auto distances = column_of<T>("query signed-distance" + rest, output, "distance");
+            std::vector<double> windings;
+            if (by == std::string() || expansion)
+                windings = column_of<double>("query winding-number" + rest, output, "winding_number");
+            ASSERT_EQ(sides.size(), asked.points.size());
+            ASSERT_EQ(distances.size(), asked.points.size());
+            int inside = 0;
+            for (std::size_t i = 0; i < sides.size(); ++i) {
+                if (i == 7) {
+                    EXPECT_TRUE(ending == "json" ? std::isnan(sides[i]) : sides[i] == -128);
+                    EXPECT_TRUE(std::isnan(distances[i]));
+                    EXPECT_TRUE(windings.empty() || std::isnan(windings[i]));
+                    continue;
+                }
+                const auto& p = asked.points[i];
+                ASSERT_EQ(sides[i], T(static_cast<int>(solid.side(p)) - 1)) << rest << ", row " << i;
+                ASSERT_EQ(distances[i], solid.signed_distance(p).distance) << rest << ", row " << i;
+                if (!windings.empty()) {
+                    ASSERT_EQ(windings[i], solid.winding_number(p)) << rest << ", row " << i;
+                }
+                inside += sides[i] > 0;
+            }
+            EXPECT_GT(inside, 0) << rest;
+        }
+    }
+}
+
+TEST_F(Query, InsidesAnswerAsTheLibraryDoes) {
+    expect_insides<float, TriangleMesh<float>>("gen:teapot:300", folder);
+    expect_insides<double, TriangleMesh<double>>("gen:cube", folder);
+    expect_insides<double, SegmentSet<double>>("gen:segments2d:100", folder);
+}
+
+TEST_F(Query, InsidesOfACubeAreKnown) {
+    const auto cube = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:cube")));
+    const float end = max_component(abs(cube.vertices[0]));
+    const std::string e = std::to_string(end), half = std::to_string(end / 2);
+    write("p.csv", "0,0,0\n9,0,0\n" + e + ",0,0\n" + half + ",0,0\n0,nan,0\n");
+    expect_done("query side gen:cube --quiet --from " + file("p.csv") + " -o " + file("s.json"));
+    EXPECT_EQ(nlohmann::json::parse(bytes_of(file("s.json"))),
+              nlohmann::json::parse(R"([{"side":1},{"side":-1},{"side":0},{"side":1},{"side":null}])"));
+    expect_done("query signed-distance gen:cube --quiet --from " + file("p.csv") + " -o " + file("d.csv"));
+    const auto distances = rows_of(file("d.csv"), {"distance"});
+    EXPECT_EQ(distances[0], -double(end));
+    EXPECT_EQ(distances[1], 9 - double(end));
+    EXPECT_EQ(distances[2], 0.0);
+    EXPECT_EQ(distances[3], -double(end / 2));
+    // A saved index is asked, and a pipe.
+    expect_done("build gen:cube --quiet -o " + file("c.hedgerow"));
+    EXPECT_EQ(run_shell("cat " + file("p.csv") + " | " HEDGEROW_TOOL_PATH " query winding-number " +
+                        file("c.hedgerow") + " --quiet --from - --format csv -o " + file("w.npy"))
+                  .code,
+              0);
+    const auto windings = rows_of(file("w.npy"), {"winding_number"});
+    EXPECT_EQ(std::vector<double>(windings.begin(), windings.begin() + 2), (std::vector<double>{1, 0}));
+    const std::string rest = " --from " + file("p.csv") + " -o " + file("x.csv");
+    expect_bad("query side gen:points" + rest, "triangles");
+    expect_bad("query side gen:spheres" + rest, "triangles");
+    expect_usage("query side gen:cube --by magic" + rest, "--by");
+    expect_usage("query side gen:cube --error 0.1" + rest, "--by expansion");
+    expect_usage("query side gen:cube --by expansion --error 2" + rest, "1e-9 to 1");
+    expect_usage("query side gen:cube --radius 2" + rest, "no --radius");
+    expect_usage("query side gen:cube --count 2" + rest, "no --count");
+    expect_usage("query side gen:cube --structure bvh" + rest, "leave out --structure");
+    expect_usage("query winding-number gen:cube --by parity" + rest, "crossings or expansion");
+    expect_usage("query closest-point gen:cube --by parity" + rest, "no --by");
+    EXPECT_FALSE(fs::exists(file("x.csv")));
+}
+
+/// Compares the tool's answers about regions with those of brute force over the rows of `in`.
+template <class Region, class T, class P>
+void expect_regions(const Asked<T, P>& asked, const std::string& in, std::size_t bad, double radius) {
+    const auto all = build<BruteForce>(asked.set);
+    const std::size_t columns = RowsOf<Region>::columns().size();
+    std::vector<T> rows;
+    open_rows<T>(in, RowFormat::npy, RowsOf<Region>::columns())->read(rows, 100000);
+    const std::string scene = asked.query.substr(0, asked.query.find(" --from"));
+    for (const std::string ending : {".npy", ".csv"}) {
+        const std::string output = in + ending;
+        const auto answers = [&](const std::string& kind, const std::vector<std::string>& names) {
+            const auto r = run("query " + kind + scene + " --from " + in + " -o " + output +
+                               (radius >= 0 ? " --radius " + std::to_string(radius) : ""));
+            EXPECT_EQ(r.code, 0) << r.output;
+            EXPECT_NE(r.output.find("row " + std::to_string(bad) + ","), std::string::npos) << r.output;
+            std::vector<double> numbers;
+            open_rows<double>(output, row_format(output), InputColumns{names})->read(numbers, 1000000);
+            return numbers;
+        };
+        std::vector<double> lists, counts, any;
+        for (std::size_t i = 0; i < rows.size() / columns; ++i) {
+            const T* const row = &rows[i * columns];
+            std::vector<PrimitiveId> found;
+            if (i != bad) {
+                const auto region = RowsOf<Region>::of(row, {.radius = radius});
+                contained(all, region, found);
+                for (const PrimitiveId id : found) lists.insert(lists.end(), {double(i), double(id)});
+                overlapping(all, region, found);
+            }
+            counts.push_back(double(found.size())), any.push_back(!found.empty());
+        }
+        EXPECT_GT(lists.size(), 0u);
+        EXPECT_EQ(answers("contained", {"query", "primitive"}), lists);
+        EXPECT_EQ(answers("count", {"count"}), counts);
+        EXPECT_EQ(answers("any-overlap", {"overlaps"}), any);
+    }
+}
+template <class T, class P>
+void expect_both_regions(const std::string& scene, const fs::path& folder) {
+    constexpr int D = P::dimension;
+    const Asked<T, P> asked(scene, folder);
+    expect_regions<Sphere<T, D>>(asked, (folder / "points.npy").string(), 7, 0.5);
+    std::vector<T> rows;
+    for (std::size_t i = 0; i < 1000; ++i) {
+        for (int k = 0; k < D; ++k) rows.push_back(asked.points[i][k]);
+        for (int k = 0; k < D; ++k) rows.push_back(asked.points[i][k] + static_cast<T>(i % 3));
+    }
+    rows[2 * D * 20 + 1] = std::numeric_limits<T>::quiet_NaN();
+    save_npy<T>((folder / "boxes.npy").string(), rows, {1000, 2 * D});
+    expect_regions<Box<T, D>>(asked, (folder / "boxes.npy").string(), 20, -1);
+}
+
+TEST_F(Query, RegionsAnswerAsTheLibraryDoes) {
+    expect_both_regions<float, TriangleMesh<float>>("gen:teapot:300", folder);
+    expect_both_regions<double, SphereSet<double, 3>>("gen:spheres:100", folder);
+    expect_both_regions<float, PointCloud<float, 3>>("gen:points:500", folder);
+    expect_both_regions<double, SegmentSet<double>>("gen:segments2d:100", folder);
+    expect_both_regions<float, PointCloud<float, 2>>("gen:points2d:100", folder);
+    const std::string rest = " --from " + file("points.npy") + " -o " + file("x.csv");
+    expect_bad("query contained gen:cube" + rest, "(N, 6)");
+    expect_usage("query count gen:cube --radius -1" + rest, "at least 0");
+    expect_usage("query count gen:cube --structure bvh" + rest, "leave out --structure");
+    expect_usage("query any-overlap gen:cube -k 3" + rest, "no --count");
+    expect_usage("query any-overlap gen:cube --by parity" + rest, "no --by");
+}
+
+TEST_F(Query, HausdorffDistancesAnswerAsTheLibraryDoes) {
+    const auto a = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:teapot:400")));
+    const auto b = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:cube")));
+    const auto c = std::get<PointCloud<float, 3>>(generate<float>(parse_scene_spec("gen:points:50")));
+    const auto expect_interval = [&](const std::string& arguments, const auto& want) {
+        expect_done("query hausdorff " + arguments + " --quiet -o " + file("h.npy"));
+        EXPECT_EQ(rows_of(file("h.npy"), {"a", "b", "lower", "upper", "ax", "bz", "from_b"}),
+                  (std::vector<double>{double(want.element_a), double(want.element_b), want.lower, want.upper,
+                                       want.point_a[0], want.point_b[2], double(want.from_b)}))
+            << arguments;
+        EXPECT_GT(want.lower, 0);
+    };
+    expect_interval("gen:teapot:400 --with gen:cube", hausdorff_distance(build(a), build(b)));
+    expect_interval("gen:teapot:400 --with gen:cube --tolerance 0.2",
+                    hausdorff_distance(build(a), build(b), {.relative = 0.2}));
+    expect_interval("gen:teapot:400 --with gen:points:50", hausdorff_distance(build(a), build(c)));
+    expect_interval("gen:points:50 --with gen:cube", hausdorff_distance(build(c), build(b)));
+    const auto flat = std::get<PointCloud<float, 2>>(generate<float>(parse_scene_spec("gen:points2d:30")));
+    const auto more = std::get<PointCloud<float, 2>>(generate<float>(parse_scene_spec("gen:points2d:70")));
+    expect_done("query hausdorff gen:points2d:30 --with gen:points2d:70 --quiet -o " + file("h.csv"));
+    EXPECT_EQ(static_cast<float>(rows_of(file("h.csv"), {"upper"})[0]),
+              hausdorff_distance(build(flat), build(more)).upper);
+    const std::string to = " -o " + file("x.csv");
+    expect_usage("query hausdorff gen:cube" + to, "needs --with");
+    expect_usage("query hausdorff gen:cube --with gen:cube --tolerance -1" + to, "at least 0");
+    expect_usage("query hausdorff gen:cube --with gen:cube --radius 1" + to, "no --radius");
+    expect_usage("query crossings gen:cube --with gen:cube --tolerance 1" + to, "no --tolerance");
+    expect_bad("query hausdorff gen:cube --with gen:spheres" + to, "triangles or points");
+    expect_bad("query hausdorff gen:cube --with gen:points2d" + to, "one space");
+    EXPECT_FALSE(fs::exists(file("x.csv")));
+}
+
+TEST_F(Query, PairsWithinARadiusAnswerAsTheLibraryDoes) {
+    const auto a = std::get<PointCloud<double, 3>>(generate<double>(parse_scene_spec("gen:points:500")));
+    const auto b = std::get<PointCloud<double, 3>>(generate<double>(parse_scene_spec("gen:points:200")));
+    std::vector<PairWithin<double>> pairs;
+    const auto expect_pairs = [&](const std::string& arguments) {
+        std::vector<double> want;
+        for (const auto& p : pairs)
+            want.insert(want.end(), {double(p.a), double(p.b), std::sqrt(p.distance2)});
+        EXPECT_GT(pairs.size(), 0u);
+        for (const std::string name : {"w.npy", "w.csv", "w.json"}) {
+            expect_done("query pairs-within " + arguments + " --radius 0.25 --precision double --quiet -o " +
+                        file(name));
+            EXPECT_EQ(rows_of(file(name), {"a", "b", "distance"}), want) << name;
+        }
+    };
+    pairs_within_radius(build(a), 0.25, pairs);
+    expect_pairs("gen:points:500");
+    pairs_within_radius(build(a), build(b), 0.25, pairs);
+    expect_pairs("gen:points:500 --with gen:points:200");
+    const std::string to = " -o " + file("x.csv");
+    expect_usage("query pairs-within gen:points" + to, "needs --radius");
+    expect_usage("query pairs-within gen:points --radius -1" + to, "at least 0");
+    expect_bad("query pairs-within gen:cube --radius 1" + to, "points");
+    expect_bad("query pairs-within gen:points --with gen:cube --radius 1" + to, "points in one space");
+    expect_bad("query self-intersections gen:points" + to, "triangles");
+}
+
 TEST_F(Query, ReadsAndWritesPipes) {
     const std::string tool = HEDGEROW_TOOL_PATH " query closest-point gen:cube --quiet --from - ";
     EXPECT_EQ(
