@@ -290,10 +290,8 @@ TEST_F(Query, InsidesAnswerAsTheLibraryDoes) {
 }
 
 TEST_F(Query, InsidesOfACubeAreKnown) {
-    // The cube from -1 to 1 or another: its first corner says where it ends.
-    const auto box =
-        std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:cube"))).view().bounds(0);
-    const float end = std::max(std::abs(box.low[0]), std::abs(box.high[0]));
+    const auto cube = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:cube")));
+    const float end = max_component(abs(cube.vertices[0]));
     const std::string e = std::to_string(end), half = std::to_string(end / 2);
     write("p.csv", "0,0,0\n9,0,0\n" + e + ",0,0\n" + half + ",0,0\n0,nan,0\n");
     expect_done("query side gen:cube --quiet --from " + file("p.csv") + " -o " + file("s.json"));

@@ -52,8 +52,9 @@ constexpr Verb verbs[] = {
      "Examples:\n  hedgerow query closest-point dragon.ply --from points.npy -o closest.npy\n"
      "  hedgerow query nearest scan.ply --count 8 --from places.csv -o near.csv\n"
      "  hedgerow query crossings part.stl --with case.stl -o pairs.json\n"
+     "  hedgerow query signed-distance dragon.ply --from points.npy -o depth.npy\n"
      "  make-rays | hedgerow query closest-hit dragon.ply --from - --format csv -o hits.npy\n\n"
-     "answer queries from a file, as many as it holds: rays, points, boxes, pairs",
+     "answer queries from a file, as many as it holds: rays, points, regions, insides, pairs",
      add_query},
     {"build",
      "Examples:\n  hedgerow build dragon.ply -o dragon.hedgerow\n"
