@@ -64,8 +64,8 @@ void measure_radius(const TriangleMesh<float>& mesh, float diagonal) {
     const float radius = 3 * diagonal / std::sqrt(static_cast<float>(mesh.size()));
     const auto by_pairs = [&cloud, radius]<template <class, int> class S>(const auto& options) -> Contender {
         return [&cloud, radius, options, found = std::vector<PairWithin<float>>()]() mutable {
-            return pairs_within_radius(build<S>(cloud, options, serial_executor()), radius, found,
-                                       serial_executor());
+            return pairs_within(build<S>(cloud, options, serial_executor()), {.radius = radius}, found,
+                                serial_executor());
         };
     };
     Contest contest;

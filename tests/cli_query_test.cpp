@@ -438,9 +438,9 @@ TEST_F(Query, PairsWithinARadiusAnswerAsTheLibraryDoes) {
             EXPECT_EQ(rows_of(file(name), {"a", "b", "distance"}), want) << name;
         }
     };
-    pairs_within_radius(build(a), 0.25, pairs);
+    pairs_within(build(a), {.radius = 0.25}, pairs);
     expect_pairs("gen:points:500");
-    pairs_within_radius(build(a), build(b), 0.25, pairs);
+    pairs_within(build(a), build(b), {.radius = 0.25}, pairs);
     expect_pairs("gen:points:500 --with gen:points:200");
     const std::string to = " -o " + file("x.csv");
     expect_usage("query pairs-within gen:points" + to, "needs --radius");

@@ -36,9 +36,9 @@ void expect_pairs(const char* scene, const Cloud& a, const Cloud& b, typename Cl
     const auto other = build(b);
     for_each_index(a, [&](const char* name, const auto& index) {
         std::vector<PairWithin<typename Cloud::Scalar>> found;
-        EXPECT_EQ(pairs_within_radius2(index, radius2, found), alone.size()) << name;
+        EXPECT_EQ(pairs_within(index, {.radius2 = radius2}, found), alone.size()) << name;
         EXPECT_EQ(found, alone) << name;
-        EXPECT_EQ(pairs_within_radius2(index, other, radius2, found), with.size()) << name;
+        EXPECT_EQ(pairs_within(index, other, {.radius2 = radius2}, found), with.size()) << name;
         EXPECT_EQ(found, with) << name;
         // What `within` finds for each point: the same primitives and distances.
         std::vector<Near<typename Cloud::Scalar, Cloud::dimension>> near;
@@ -95,39 +95,36 @@ TYPED_TEST(PairsWithinRadius, RadiusAndRadius2) {
     for (int i = 0; i < 8; ++i) cloud.points.emplace_back(T(i) * T(0.1), T(0), T(0));
     const auto index = build(cloud);
     std::vector<PairWithin<T>> found, squared;
-    EXPECT_EQ(pairs_within_radius(index, T(0.25), found), 7u + 6u);
-    EXPECT_EQ(pairs_within_radius2(index, T(0.0625), squared), found.size());
+    EXPECT_EQ(pairs_within(index, {.radius = T(0.25)}, found), 7u + 6u);
+    EXPECT_EQ(pairs_within(index, {.radius2 = T(0.0625)}, squared), found.size());
     EXPECT_EQ(found, squared);
-    EXPECT_EQ(pairs_within_radius(index, index, T(0.05), found), 8u);  // each with itself
-    // A radius that is the distance of two points, rounded to T, has that pair or not as its exact square
-    // has.
+    EXPECT_EQ(pairs_within(index, index, {.radius = T(0.05)}, found), 8u);  // each with itself
+    // A radius that is the distance of two points has that pair.
     Random random(31);
     for (int i = 0; i < 1000; ++i) {
         PointCloud<T, 3> two;
         two.points = {Vec<T, 3>(), Vec<T, 3>(T(random.uniform()), T(0), T(0))};
-        ASSERT_EQ(pairs_within_radius(build(two), two.points[1][0], found),
-                  detail::square_of_radius(two.points[1][0]) >=
-                      closest_point(two.points[0], two.points[1]).distance2);
+        ASSERT_EQ(pairs_within(build(two), {.radius = two.points[1][0]}, found), 1u);
     }
     for (const T bad : {T(-1), std::numeric_limits<T>::quiet_NaN(), -std::numeric_limits<T>::infinity()}) {
-        EXPECT_EQ(pairs_within_radius(index, bad, found), 0u);
-        EXPECT_EQ(pairs_within_radius2(index, bad, found), 0u);
-        EXPECT_EQ(pairs_within_radius(index, index, bad, found), 0u);
+        EXPECT_EQ(pairs_within(index, {.radius = bad}, found), 0u);
+        EXPECT_EQ(pairs_within(index, {.radius2 = bad}, found), 0u);
+        EXPECT_EQ(pairs_within(index, index, {.radius = bad}, found), 0u);
         EXPECT_TRUE(found.empty());
     }
-    EXPECT_EQ(pairs_within_radius(index, std::numeric_limits<T>::infinity(), found), 28u);
+    EXPECT_EQ(pairs_within(index, {.radius = std::numeric_limits<T>::infinity()}, found), 28u);
 }
 TYPED_TEST(PairsWithinRadius, TheSameForAnyNumberOfThreads) {
     using T = TypeParam;
     const auto a = build(points<T>(20000)), b = build(points<T>(10000, 1));
     std::vector<PairWithin<T>> serial, parallel;
     const ThreadLimit limit(2);
-    pairs_within_radius(a, T(0.03), serial, serial_executor());
-    pairs_within_radius(a, T(0.03), parallel, default_executor());
+    pairs_within(a, {.radius = T(0.03)}, serial, serial_executor());
+    pairs_within(a, {.radius = T(0.03)}, parallel, default_executor());
     EXPECT_EQ(serial, parallel);
     EXPECT_GT(serial.size(), 10000u);
-    pairs_within_radius(a, b, T(0.03), serial, serial_executor());
-    pairs_within_radius(a, b, T(0.03), parallel);
+    pairs_within(a, b, {.radius = T(0.03)}, serial, serial_executor());
+    pairs_within(a, b, {.radius = T(0.03)}, parallel);
     EXPECT_EQ(serial, parallel);
     EXPECT_GT(serial.size(), 10000u);
 }

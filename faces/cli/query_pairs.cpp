@@ -138,7 +138,7 @@ int query_self(const QueryArguments& a, const A& set) {
             std::conditional_t<points, std::vector<PairWithin<T>>, std::vector<ElementPair>> pairs;
             timed(a, report, [&](Executor& executor) {
                 if constexpr (points)
-                    pairs_within_radius2(index, squared_radius<T>(a), pairs, executor);
+                    pairs_within(index, {.radius2 = squared_radius<T>(a)}, pairs, executor);
                 else
                     self_intersections(index, pairs, executor);
             });
@@ -196,7 +196,7 @@ int query_two(const QueryArguments& a, const A& set, const B& with) {
                 return answer(
                     [&](const auto& one, const auto& other, Executor& executor) {
                         std::vector<PairWithin<T>> found;
-                        pairs_within_radius2(one, other, squared_radius<T>(a), found, executor);
+                        pairs_within(one, other, {.radius2 = squared_radius<T>(a)}, found, executor);
                         return found;
                     },
                     pairs);

@@ -11,6 +11,7 @@
 #include <hedgerow/queries/crossings.h>
 #include <hedgerow/queries/minimum_distance.h>
 #include <hedgerow/queries/pairs_within.h>
+#include <hedgerow/queries/point_query.h>
 
 namespace hedgerow {
 
@@ -140,28 +141,18 @@ bool any_self_intersection(const Index<S, P>& index) {
     });
 }
 
-namespace detail {
-/// The largest number whose root is no more than `radius`, short of underflow; negative if the radius is, or
-/// is NaN.
-template <std::floating_point T>
-T square_of_radius(T radius) {
-    if (!(radius >= 0)) return -1;
-    const auto square = two_product(radius, radius);
-    return square.low < 0 ? std::nextafter(square.high, T(0)) : square.high;
-}
-}  // namespace detail
-
-/// Writes all pairs (i, j), i < j, of points of one set whose squared distance is at most `radius2` to
-/// `found`, each once and ascending, with that distance: what `within` finds for each point. None if the
-/// radius is negative or NaN. Returns how many there are. Takes memory for all pairs, which may be n²/2 of
-/// them, and time to sort them. Large sets are walked on all cores, unless an executor is given (Threads);
-/// the list is the same.
+/// Writes all pairs (i, j), i < j, of points of one set that are within the options' distance of each other
+/// to `found`, each once and ascending, with the squared distance: what `within` finds for each point, so
+/// `pairs_within(index, {.radius = 0.5f}, found)`. None if the radius is negative or NaN. Returns how many
+/// there are. Takes memory for all pairs, which may be n²/2 of them, and time to sort them. Large sets are
+/// walked on all cores, unless an executor is given (Threads); the list is the same.
 template <class S, PointSet P>
-std::size_t pairs_within_radius2(const Index<S, P>& index, typename P::Scalar radius2,
-                                 std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
+std::size_t pairs_within(const Index<S, P>& index, const NearOptions<typename P::Scalar>& options,
+                         std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
     found.clear();
     return in_ieee_mode([&] {
         const auto tree = hierarchy_of(index.structure(), index.primitives());
+        const auto radius2 = options.max_distance2();
         if (tree.empty() || !(radius2 >= 0)) return std::size_t(0);
         detail::collect_pairs(
             tree, tree, detail::whole_of(tree), threads.over(index.size()),
@@ -172,29 +163,20 @@ std::size_t pairs_within_radius2(const Index<S, P>& index, typename P::Scalar ra
 }
 /// Finds the pairs of a point of A and one of B.
 template <class SA, PointSet A, class SB, PointSet B>
-std::size_t pairs_within_radius2(const Index<SA, A>& a, const Index<SB, B>& b, typename A::Scalar radius2,
-                                 std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
+std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,
+                         const NearOptions<typename A::Scalar>& options,
+                         std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
     found.clear();
     return in_ieee_mode([&] {
         const auto of_a = hierarchy_of(a.structure(), a.primitives());
         const auto of_b = hierarchy_of(b.structure(), b.primitives());
+        const auto radius2 = options.max_distance2();
         if (of_a.empty() || of_b.empty() || !(radius2 >= 0)) return std::size_t(0);
         detail::collect_pairs(
             of_a, of_b, detail::whole_of(of_a, of_b), threads.over(a.size() + b.size()),
             [&](auto f) { return PairsWithin(a.primitives(), b.primitives(), radius2, f); }, found);
         return detail::sort_pairs(found);
     });
-}
-/// The functions above for a radius that is not squared. Its square is rounded down.
-template <class S, PointSet P>
-std::size_t pairs_within_radius(const Index<S, P>& index, typename P::Scalar radius,
-                                std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
-    return pairs_within_radius2(index, detail::square_of_radius(radius), found, threads);
-}
-template <class SA, PointSet A, class SB, PointSet B>
-std::size_t pairs_within_radius(const Index<SA, A>& a, const Index<SB, B>& b, typename A::Scalar radius,
-                                std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
-    return pairs_within_radius2(a, b, detail::square_of_radius(radius), found, threads);
 }
 
 }  // namespace hedgerow
