@@ -62,10 +62,10 @@ inline std::vector<HalfSpace> half_spaces(const Corners& t) {
     return all;
 }
 
-/// Corners of the common part of two triangles; none if they are disjoint.
-inline std::vector<Point> common(const Corners& s, const Corners& t) {
-    std::vector<Point> polygon(s.begin(), s.end());
-    for (const HalfSpace& h : half_spaces(t)) {
+/// Corners of what a convex polygon, segment or point has in common with all half-spaces (Sutherland and
+/// Hodgman 1974).
+inline std::vector<Point> clipped(std::vector<Point> polygon, const std::vector<HalfSpace>& planes) {
+    for (const HalfSpace& h : planes) {
         std::vector<Point> kept;
         for (std::size_t i = 0; i < polygon.size(); ++i) {
             const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
@@ -80,6 +80,10 @@ inline std::vector<Point> common(const Corners& s, const Corners& t) {
         polygon.swap(kept);
     }
     return polygon;
+}
+/// Corners of the common part of two triangles; none if they are disjoint.
+inline std::vector<Point> common(const Corners& s, const Corners& t) {
+    return clipped({s.begin(), s.end()}, half_spaces(t));
 }
 
 template <class T>

@@ -38,24 +38,9 @@ std::vector<rational::HalfSpace> half_spaces(const V& region, const std::vector<
     });
     return all;
 }
-bool clips_to_something(std::vector<rational::Point> polygon,
+bool clips_to_something(const std::vector<rational::Point>& polygon,
                         const std::vector<rational::HalfSpace>& planes) {
-    using namespace rational;
-    for (const auto& h : planes) {
-        std::vector<Point> kept;
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-            const Number from = dot(h.normal, p) - h.offset, to = dot(h.normal, q) - h.offset;
-            if (from <= 0) kept.push_back(p);
-            if (sgn(from) * sgn(to) >= 0) continue;
-            const Number share = from / (from - to);
-            Point crossing;
-            for (std::size_t a = 0; a < 3; ++a) crossing[a] = p[a] + (q[a] - p[a]) * share;
-            kept.push_back(crossing);
-        }
-        polygon.swap(kept);
-    }
-    return !polygon.empty();
+    return !rational::clipped(polygon, planes).empty();
 }
 /// The distance of a point from what half-spaces have in common, in rational numbers but for the last root:
 /// the least to a feasible foot on one, two or three planes. Nothing if there is no such foot.
