@@ -26,9 +26,13 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The nearest primitive that has been tested, at first one behind all that are within the distance.
-HWY_INLINE Near<float, 3> nothing_within(float max_distance2) {
-    return {max_distance2, no_primitive, no_primitive, {}, no_primitive};
+// The nearest primitive that has been tested, at first one behind all that are within the distance. Members
+// are set one by one: a copy of the whole would wait for the stores of its parts.
+HWY_INLINE void begin(Near<float, 3>& best, float max_distance2) {
+    best.distance2 = max_distance2;
+    best.primitive = best.element = no_primitive;
+    best.point.data[0] = best.point.data[1] = best.point.data[2] = 0;
+    best.instance = no_primitive;
 }
 
 // The closest of the triangles that leaves offer. Lanes only bound the distances: triangles that may be
@@ -41,12 +45,11 @@ public:
     struct Best {
         Near<float, 3>* best;
 
-        HWY_INLINE void take(const TriangleBlock<float>& block, std::uint32_t place, float distance2,
-                             const Vec<double, 3>& foot) const {
-            const Near<float, 3> found{distance2, 0, block.id[place], {}};
-            if (!nearer(found, *best)) return;
-            *best = found;
-            best->point = detail::clamped_into(block, place, foot);
+        HWY_INLINE void take(std::uint32_t id, float distance2, const Vec<float, 3>& foot) const {
+            if (distance2 > best->distance2 || (distance2 == best->distance2 && id > best->element)) return;
+            best->distance2 = distance2;
+            best->element = id;
+            best->point = foot;
         }
     };
     struct Shared {
@@ -64,40 +67,52 @@ public:
 
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
     HWY_INLINE const Limit& limit() const { return limit_; }
+    template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
-        using F = Floats<8>;
-        constexpr F f;
-        constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
         if (count_ > most - 8) [[unlikely]]
             make_room(shared);
+        V limit = hn::Set(f, limit_.distance2());
         for (int at = 0; at < 8; at += lanes) {
             const TriangleDistances<F> distances(f, shared.blocks[leaf], at, all_lanes(f, p_));
-            const float least = distances.least_most(f);
-            if (least < limit_.distance2()) limit_.set(least);
-            unsigned near = distances.within(f, limit_.distance2());
-            if (near == 0) continue;
-            alignas(64) float bounds[lanes];
-            hn::Store(distances.least(), f, bounds);
-            for (; near != 0; near &= near - 1) {
-                const int i = std::countr_zero(near);
-                waiting_[count_++] = {bounds[i], 8 * leaf + static_cast<std::uint32_t>(at + i)};
+            const V most = distances.least_most(f);
+            if constexpr (alone) {
+                if (hn::GetLane(most) < hn::GetLane(limit)) limit = most;
+            } else {
+                limit = hn::Min(limit, most);
             }
+            const auto near = distances.within(limit);
+            keep(hn::BitCast(i, distances.least()), hn::RebindMask(i, near), least_);
+            keep(hn::Add(hn::Set(i, static_cast<std::int32_t>(8 * leaf) + at), hn::Iota(i, 0)),
+                 hn::RebindMask(i, near), place_);
+            count_ += static_cast<int>(hn::CountTrue(f, near));
         }
+        limit_.set(hn::GetLane(limit));
     }
     // Hands what waits and may still be closest to the exact tests.
     HWY_INLINE void end(Shared& shared) {
-        for (int i = 0; i < count_; ++i)
-            if (!(waiting_[i].least > limit_.distance2())) shared.tests.add(p_, waiting_[i].place, {best_});
+        const V limit = hn::Set(f, limit_.distance2());
+        for (int first = 0; first < count_; first += lanes) {
+            const auto far = hn::Gt(hn::Load(f, reinterpret_cast<const float*>(least_ + first)), limit);
+            unsigned near = ~bits_of(f, far) & ((1u << std::min(count_ - first, lanes)) - 1);
+            for (; near != 0; near &= near - 1)
+                shared.tests.add(p_, static_cast<std::uint32_t>(place_[first + std::countr_zero(near)]),
+                                 {best_});
+        }
         count_ = 0;
     }
 
 private:
     static constexpr int most = 64;
-    struct Waiting {
-        float least;          // a lower bound of its squared distance
-        std::uint32_t place;  // among the places of all blocks
-    };
+    using F = Floats<8>;
+    using V = hn::Vec<F>;
+    static constexpr F f{};
+    static constexpr hn::RebindToSigned<F> i{};
+    static constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
 
+    // Appends the lanes of a mask to what waits.
+    HWY_INLINE void keep(hn::Vec<decltype(i)> v, hn::Mask<decltype(i)> which, std::int32_t* all) {
+        hn::StoreU(compressed(i, v, which), i, all + count_);
+    }
     HWY_NOINLINE void make_room(Shared& shared) {
         end(shared);
         shared.tests.flush();
@@ -108,7 +123,9 @@ private:
     Near<float, 3>* best_ = nullptr;
     Limit limit_;
     int count_ = 0;
-    Waiting waiting_[most];
+    // Triangles that wait: the bits of a lower bound of the squared distance, and the place among those of
+    // all blocks.
+    alignas(32) std::int32_t least_[most], place_[most];
 };
 
 // The closest point of a cloud: lanes compute exactly.
@@ -130,6 +147,7 @@ public:
 
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
     HWY_INLINE const Limit& limit() const { return limit_; }
+    template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         const PointBlock<float, 3>& block = shared.blocks[leaf];
         for_each_within(
@@ -144,7 +162,9 @@ public:
         if (element_of(key_) == no_primitive) return;
         const PointBlock<float, 3>& block = shared.blocks[place_ / 8];
         const auto at = [&](int axis) { return block.at[axis][place_ % 8]; };
-        *best_ = {distance2_of(key_), 0, element_of(key_), {at(0), at(1), at(2)}};
+        best_->distance2 = distance2_of(key_);
+        best_->element = element_of(key_);
+        best_->point = {at(0), at(1), at(2)};
     }
 
 private:
@@ -155,31 +175,35 @@ private:
     std::uint32_t place_ = 0;
 };
 
-// What a search reports, when all is tested.
-HWY_INLINE Near<float, 3> reported(const WideScene& scene, Near<float, 3> best) {
-    if (best.element == no_primitive) return {};
-    best.primitive = scene.faces.empty() ? best.element : scene.faces[best.element];
-    return best;
+// Makes what a search has found its answer, when all is tested.
+HWY_INLINE void finish(const WideScene& scene, Near<float, 3>& best) {
+    if (best.element == no_primitive)
+        best.distance2 = std::numeric_limits<float>::infinity();
+    else
+        best.primitive = scene.faces.empty() ? best.element : scene.faces[best.element];
+    best.instance = 0;
 }
-HWY_INLINE Near<float, 3> reported(const WidePoints&, Near<float, 3> best) {
-    if (best.element == no_primitive) return {};
+HWY_INLINE void finish(const WidePoints&, Near<float, 3>& best) {
+    if (best.element == no_primitive) best.distance2 = std::numeric_limits<float>::infinity();
     best.primitive = best.element;
-    return best;
+    best.instance = 0;
 }
 
 template <int W, class Search>
 Near<float, 3> closest_one(const typename Search::Scene& scene, const Vec<float, 3>& p, float max_distance2) {
-    Near<float, 3> best = nothing_within(max_distance2);
+    Near<float, 3> best;
+    begin(best, max_distance2);
     typename Search::Shared shared(scene);
     Search search(p, best);
     search_through<W>(scene, search, shared);
     shared.end();
-    return reported(scene, best);
+    finish(scene, best);
+    return best;
 }
 template <int W, class Search>
 void closest_many(const typename Search::Scene& scene, const PointBatch<float, 3>& points,
                   float max_distance2, Near<float, 3>* found) {
-    for (std::size_t i = 0; i < points.size(); ++i) found[points.number(i)] = nothing_within(max_distance2);
+    for (std::size_t i = 0; i < points.size(); ++i) begin(found[points.number(i)], max_distance2);
     if (!scene.tree.empty() && max_distance2 >= 0) {
         typename Search::Shared shared(scene);
         Flights<W, Search>(scene, shared)
@@ -189,10 +213,7 @@ void closest_many(const typename Search::Scene& scene, const PointBatch<float, 3
                 });
         shared.end();
     }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        Near<float, 3>& near = found[points.number(i)];
-        near = reported(scene, near);
-    }
+    for (std::size_t i = 0; i < points.size(); ++i) finish(scene, found[points.number(i)]);
 }
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -89,15 +89,13 @@ public:
         const V least = hn::Mul(height, hn::Div(height, hn::Max(length2, hn::Set(f, 0x1p-120f))));
         least_ = hn::Mul(hn::Sub(least, error), hn::Set(f, 1 - 0x1.1p-16f));
     }
-    // The least of the upper bounds; infinite if there is none.
-    HWY_INLINE float least_most(F f) const {
+    // The least of the upper bounds, in all lanes; infinite if there is none.
+    HWY_INLINE V least_most(F f) const {
         const V none = hn::Set(f, std::numeric_limits<float>::infinity());
-        return hn::GetLane(hn::MinOfLanes(f, hn::IfThenElse(there_, most_, none)));
+        return hn::MinOfLanes(f, hn::IfThenElse(there_, most_, none));
     }
-    // The triangles that may be within a squared distance, a bit each.
-    HWY_INLINE unsigned within(F f, float distance2) const {
-        return bits_of(f, hn::AndNot(hn::Gt(least_, hn::Set(f, distance2)), there_));
-    }
+    // The triangles that may be within a squared distance.
+    HWY_INLINE hn::Mask<F> within(V distance2) const { return hn::AndNot(hn::Gt(least_, distance2), there_); }
     // A lower bound of each squared distance.
     HWY_INLINE V least() const { return least_; }
 

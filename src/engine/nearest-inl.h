@@ -136,6 +136,7 @@ public:
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
     HWY_INLINE const Limit& limit() const { return limit_; }
     HWY_INLINE const Sink& sink() const { return sink_; }
+    template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         for_each_within(
             shared.blocks[leaf], p_,
@@ -158,9 +159,8 @@ public:
     struct Taker {
         Sink* sink;
 
-        HWY_INLINE void take(const TriangleBlock<float>& block, std::uint32_t place, float distance2,
-                             const Vec<double, 3>&) const {
-            if (distance2 <= sink->distance2()) sink->take(key_of(distance2, block.id[place]));
+        HWY_INLINE void take(std::uint32_t id, float distance2, const Vec<float, 3>&) const {
+            if (distance2 <= sink->distance2()) sink->take(key_of(distance2, id));
         }
     };
     struct Shared {
@@ -177,13 +177,15 @@ public:
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
     HWY_INLINE const Limit& limit() const { return limit_; }
     HWY_INLINE const Sink& sink() const { return sink_; }
+    template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         using F = Floats<8>;
         constexpr F f;
         constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
         for (int at = 0; at < 8; at += lanes) {
             const TriangleDistances<F> distances(f, shared.blocks[leaf], at, all_lanes(f, p_));
-            for (unsigned near = distances.within(f, limit_.distance2()); near != 0; near &= near - 1)
+            for (unsigned near = bits_of(f, distances.within(hn::Set(f, limit_.distance2()))); near != 0;
+                 near &= near - 1)
                 shared.tests.add(p_, 8 * leaf + static_cast<std::uint32_t>(at + std::countr_zero(near)),
                                  {&sink_});
         }

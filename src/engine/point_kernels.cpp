@@ -82,18 +82,4 @@ const AllPointKernels point_kernels{
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET != HWY_SCALAR
-
-#if HWY_ONCE
-namespace hedgerow::detail {
-
-Vec<float, 3> clamped_into(const TriangleBlock<float>& block, std::uint32_t place,
-                           const Vec<double, 3>& foot) {
-    const auto corner = [&](int c) {
-        return Vec<float, 3>(block.corner[0][c][place], block.corner[1][c][place], block.corner[2][c][place]);
-    };
-    return clamped(Vec<float, 3>(foot), Triangle<float, 3>{corner(0), corner(1), corner(2)}.bounds());
-}
-
-}  // namespace hedgerow::detail
-#endif
 #endif

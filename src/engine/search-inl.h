@@ -52,7 +52,7 @@ public:
         : search_(search), shared_(shared) {}
 
     HWY_INLINE Reach<W> slabs() const { return Reach<W>(search_.point(), search_.limit().of_boxes()); }
-    HWY_INLINE bool test(std::uint32_t leaf) { return search_.test(shared_, leaf), false; }
+    HWY_INLINE bool test(std::uint32_t leaf) { return search_.template test<true>(shared_, leaf), false; }
     HWY_INLINE float limit() const { return search_.limit().of_boxes(); }
     HWY_INLINE bool found() const { return false; }
 
@@ -68,13 +68,14 @@ HWY_INLINE void search_through(const typename Search::Scene& scene, Search& sear
     search.end(shared);
 }
 
-// Several searches in flight. Each goes down to its next leaf, one after the other, and then each tests its
-// leaf: a leaf's test is a long chain of operations that wait for each other, which the processor overlaps
-// with those of the other searches; and what a search reads next is prefetched while the others compute.
+// Several searches in flight, which advance in turns: all that stand at a node look at its boxes, then all
+// that stand at a leaf look at its primitives, then all that have to go back pop a child. So no branch
+// depends on what one search meets, the processor overlaps the searches' chains of operations, and what a
+// search reads next is prefetched while the others compute.
 template <int W, class Search>
 class Flights {
 public:
-    static constexpr int most = 8;
+    static constexpr int most = 16;
 
     HWY_INLINE Flights(const typename Search::Scene& scene, typename Search::Shared& shared)
         : scene_(scene), shared_(shared), prefetch_(scene) {}
@@ -84,26 +85,23 @@ public:
     template <class Begin>
     HWY_INLINE void make(std::size_t count, Begin begin) {
         const auto take_off = [&](int i) __attribute__((always_inline)) {
-            Flight& flight = flights_[i];
-            flight.stack.clear();
-            flight.word = 0;
-            flight.search = begin(next_++, i);
+            flights_[i].stack.clear();
+            flights_[i].word = 0;
+            flights_[i].search = begin(next_++, i);
+            at_nodes_.add(i, true);
         };
-        for (int i = 0; i < most && next_ < count; ++i) order_[active_++] = i, take_off(i);
-        while (active_ > 0) {
-            for (int i = 0; i < active_; ++i) go_down(flights_[order_[i]]);
-            for (int i = active_; i-- > 0;) {
-                Flight& flight = flights_[order_[i]];
-                if (flight.word != Stack::end) {
-                    look(flight);
-                    continue;
-                }
-                flight.search.end(shared_);
-                if (next_ < count)
-                    take_off(order_[i]);
-                else
-                    std::swap(order_[i], order_[--active_]);
-            }
+        for (int i = 0; i < most && next_ < count; ++i) take_off(i);
+        while (at_nodes_.size + at_leaves_.size > 0) {
+            at_nodes_.take_each([&](int i) __attribute__((always_inline)) { open(i); });
+            at_leaves_.take_each([&](int i) __attribute__((always_inline)) {
+                flights_[i].search.template test<false>(shared_, flights_[i].word & ~WideChild::leaf_bit);
+                back_.add(i, true);
+            });
+            back_.take_each([&](int i) __attribute__((always_inline)) { pop(i); });
+            ended_.take_each([&](int i) __attribute__((always_inline)) {
+                flights_[i].search.end(shared_);
+                if (next_ < count) take_off(i);
+            });
         }
     }
 
@@ -115,33 +113,60 @@ private:
         std::uint32_t word;
         Search search;
 
-        HWY_INLINE Flight() : stack(places, 0, 0) {}
+        HWY_INLINE Flight() : stack(places, Stack::below, 0) {}
         HWY_INLINE float limit() const { return search.limit().of_boxes(); }
     };
+    // The numbers of some flights.
+    struct Some {
+        int size = 0;
+        int all[most + 1];
 
-    HWY_INLINE void go_down(Flight& flight) {
-        const Reach<W> reach(flight.search.point(), flight.limit());
-        flight.word = down<W, Wanted::near>(
-            scene_.tree.nodes.data(), reach, flight.stack, flight.word, [&]() __attribute__((always_inline)) {
-                return flight.stack.pop_within(flight.limit());
-            });
-        prefetch(flight.word);
+        HWY_INLINE void add(int i, bool whether) {
+            all[size] = i;
+            size += whether;
+        }
+        // Calls f for each after it has been removed; f may add up to one for each.
+        template <class F>
+        HWY_INLINE void take_each(F f) {
+            const int count = size;
+            size = 0;
+            for (int i = 0; i < count; ++i) f(all[i]);
+        }
+    };
+
+    HWY_INLINE void open(int i) {
+        Flight& flight = flights_[i];
+        const std::byte* const node =
+            scene_.tree.nodes.data() + flight.word * WideNodes<float, 3>::stride_of(W);
+        const Boxes<W> boxes(node, Reach<W>(flight.search.point(), flight.limit()));
+        const bool entered = boxes.bits() != 0;
+        std::uint32_t word = 0;
+        if constexpr (Boxes<W>::parts == 1)
+            word = flight.stack.push_others(boxes, children_of<W>(node));
+        else if (entered)
+            word = flight.stack.push_others(boxes, children_of<W>(node));
+        flight.word = word;
+        prefetch_(word);
+        const bool leaf = (word & WideChild::leaf_bit) != 0;
+        at_nodes_.add(i, entered && !leaf);
+        at_leaves_.add(i, entered && leaf);
+        back_.add(i, !entered);
     }
-    HWY_INLINE void look(Flight& flight) {
-        flight.search.test(shared_, flight.word & ~WideChild::leaf_bit);
-        flight.word = flight.stack.pop_within(flight.limit());
-        prefetch(flight.word);
-    }
-    HWY_INLINE void prefetch(std::uint32_t word) const {
+    HWY_INLINE void pop(int i) {
+        Flight& flight = flights_[i];
+        const std::uint32_t word = flight.word = flight.stack.pop_lanes_within(flight.limit());
         if (word != Stack::end) prefetch_(word);
+        const bool leaf = (word & WideChild::leaf_bit) != 0;
+        at_nodes_.add(i, !leaf);
+        at_leaves_.add(i, leaf && word != Stack::end);
+        ended_.add(i, word == Stack::end);
     }
 
     const typename Search::Scene& scene_;
     typename Search::Shared& shared_;
     const Prefetch<W, typename Search::Scene> prefetch_;
     std::size_t next_ = 0;
-    int active_ = 0;
-    int order_[most];  // the active flights first
+    Some at_nodes_, at_leaves_, back_, ended_;
     Flight flights_[most];
 };
 

@@ -103,10 +103,14 @@ class WalkStack {
 public:
     using Place = std::conditional_t<wanted == Wanted::any, std::uint32_t, std::uint64_t>;
     static constexpr std::uint32_t end = WideChild::none().word;
+    // Places below the lowest that is used: pops for near answers read whole vectors.
+    static constexpr int below = wanted == Wanted::near && compresses ? 8 : 0;
     // Places for the walk of a tree of `depth` levels, with room for pushes, which write whole vectors.
-    static constexpr int room(int depth) { return (depth * (W - 1) + 2 * W + 15) / 16 * 16; }
+    static constexpr int room(int depth) { return (below + depth * (W - 1) + 2 * W + 15) / 16 * 16; }
 
-    HWY_INLINE WalkStack(Place* places, int bottom, int top) : places_(places), bottom_(bottom), top_(top) {}
+    HWY_INLINE WalkStack(Place* places, int bottom, int top) : places_(places), bottom_(bottom), top_(top) {
+        for (int i = 0; i < below; ++i) places_[i] = 0;
+    }
     HWY_INLINE void clear() {
         places_[bottom_] = end;
         top_ = bottom_ + 1;
@@ -118,6 +122,22 @@ public:
         const std::uint64_t last = waiting(limit, end);
         do --top_;
         while (places_[top_] > last);
+        return static_cast<std::uint32_t>(places_[top_]);
+    }
+    // As pop_within, several places at once: no branch depends on how many children are out of reach. Slow
+    // for children that were pushed just now, since a vector is not forwarded from several stores.
+    HWY_INLINE std::uint32_t pop_lanes_within(float limit) requires(wanted == Wanted::near) {
+        if constexpr (below == 0) return pop_within(limit);
+        constexpr hn::CappedTag<std::int64_t, 8> d;
+        constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
+        const auto last = hn::Set(d, static_cast<std::int64_t>(waiting(limit, end)));
+        unsigned within;
+        do {
+            top_ -= lanes;
+            const auto* const from = reinterpret_cast<const std::int64_t*>(places_ + top_);
+            within = bits_of(d, hn::Not(hn::Gt(hn::LoadU(d, from), last)));
+        } while (within == 0);
+        top_ += static_cast<int>(std::bit_width(within)) - 1;
         return static_cast<std::uint32_t>(places_[top_]);
     }
     HWY_INLINE void push(Place child) { places_[top_++] = child; }

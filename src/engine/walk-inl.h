@@ -71,7 +71,7 @@ HWY_INLINE bool walk(const WideTree<float, 3>& tree, Asker asker) {
     // The stack, with room for the deepest tree.
     using Stack = WalkStack<W, wanted>;
     typename Stack::Place places[Stack::room(bvh_max_depth + 1)];
-    Stack stack(places, 0, 0);
+    Stack stack(places, Stack::below, 0);
     stack.clear();
     const auto next = [&]() __attribute__((always_inline)) {
         if constexpr (wanted == Wanted::near)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <hedgerow/engine/ray_kernels.h>
@@ -44,11 +45,11 @@ protected:
     }
     // Squared distances of farther points may overflow; NaN is no nearer to anything. Kernels are exact.
     static bool takes(const Vec<float, 3>& point, const NearOptions<float>& options) {
-        return finite(point) && max_component(abs(point)) <= largest_coordinate<float> && options.factor == 1;
+        return takes(point) && options.factor == 1;
     }
     static bool takes_all(const PointBatch<float, 3>& points, const NearOptions<float>& options) {
-        bool all = true;
-        for (std::size_t i = 0; i < points.size(); ++i) all = all && takes(points[i], options);
+        bool all = options.factor == 1;
+        for (std::size_t i = 0; i < points.size(); ++i) all &= takes(points[i]);
         return all;
     }
     template <class Q, class... Arguments>
@@ -77,6 +78,10 @@ protected:
     }
 
 private:
+    static bool takes(const Vec<float, 3>& point) {  // without a branch
+        constexpr float most = largest_coordinate<float>;
+        return (std::abs(point[0]) <= most) & (std::abs(point[1]) <= most) & (std::abs(point[2]) <= most);
+    }
     const WideKernels* kernels_ = wide_kernels();
 };
 
