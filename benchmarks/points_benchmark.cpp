@@ -131,8 +131,8 @@ std::vector<Vec3f> in_order(std::vector<Vec3f> points, const Box3f& box) {
     return points;
 }
 
-/// Measures listing all within a radius, which is that of the greatest of the `many` nearest of the first
-/// query.
+/// Measures listing and counting all within a radius, which is that of the greatest of the `many` nearest of
+/// the first query.
 template <class I>
 void measure_lists(const I& index, const PointPeer* peer, std::size_t many,
                    const std::vector<Vec3f>& points) {
@@ -151,6 +151,16 @@ void measure_lists(const I& index, const PointPeer* peer, std::size_t many,
     contest.add("batch", [&] {
         ours = within(index, points, {.radius = radius}, serial_executor()).all().size();
         return points.size();
+    });
+    ListColumns<typename I::Primitives> columns;
+    contest.add("columns", [&] {
+        ours = within(index, points, {.radius = radius}, columns, serial_executor());
+        return points.size();
+    });
+    contest.add("counts", [&] {
+        std::size_t all = 0;
+        for (const Vec3f& p : points) all += count_overlapping(index, Sphere<float, 3>{p, radius});
+        return all > 0 ? points.size() : 0;
     });
     const auto times =
         measured_in_turn(rounds, contest, Clock::wall, [](const std::string&) { return true; });

@@ -150,4 +150,59 @@ TEST(NearOptions, ColumnsOfNearest) {
     });
 }
 
+/// Expects that lists in columns are those of single queries, over any cut of the batch.
+template <class Set, class Points>
+void expect_lists_in_columns(const Set& set, const Points& points, typename Set::Scalar radius) {
+    for_each_index(set, [&](const char* name, const auto& index) {
+        SCOPED_TRACE(name);
+        using I = std::decay_t<decltype(index)>;
+        ListColumns<typename I::Primitives> serial, parallel;
+        serial.ids.resize(3);  // what the columns hold is replaced
+        const std::size_t all = within(index, points, {.radius = radius}, serial, serial_executor());
+        EXPECT_EQ(within(index, points, {.radius = radius}, parallel), all);
+        EXPECT_EQ(serial.offsets, parallel.offsets);
+        EXPECT_EQ(serial.ids, parallel.ids);
+        EXPECT_EQ(serial.distances2, parallel.distances2);
+        ASSERT_EQ(serial.offsets.size(), points.size() + 1);
+        EXPECT_EQ(serial.offsets.back(), all);
+        std::vector<NearOf<I>> found;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::size_t count = within(index, points[i], {.radius = radius}, found);
+            ASSERT_EQ(serial.offsets[i + 1] - serial.offsets[i], count);
+            for (std::size_t j = 0; j < count; ++j) {
+                ASSERT_EQ(serial.ids[serial.offsets[i] + j], found[j].element);
+                ASSERT_EQ(serial.distances2[serial.offsets[i] + j], found[j].distance2);
+                if (j > 0) {
+                    ASSERT_TRUE(nearer(found[j - 1], found[j]));
+                }
+            }
+        }
+    });
+}
+TEST(NearOptions, ListsInColumns) {
+    const auto questions_of = [](const auto& set) {
+        const auto index = build<BruteForce>(set);
+        std::vector<PointOf<std::decay_t<decltype(index)>>> points;
+        for (std::uint64_t i = 0; i < 300; ++i) points.push_back(question(index, i));
+        points[7][0] = std::numeric_limits<typename std::decay_t<decltype(set)>::Scalar>::quiet_NaN();
+        return points;
+    };
+    const auto cloud = some_points<float, 3>(600);
+    expect_lists_in_columns(cloud, questions_of(cloud), 0.5f);
+    const auto plane = some_points<double, 2>(60);
+    expect_lists_in_columns(plane, questions_of(plane), 0.5);
+    const auto triangles = soup<float>(200);
+    expect_lists_in_columns(triangles, questions_of(triangles), 0.3f);
+}
+/// Long lists of many equal distances: a lattice, each point of it three times.
+TEST(NearOptions, LongListsOfTies) {
+    PointCloud<float, 3> lattice;
+    for (int copy = 0; copy < 3; ++copy)
+        for (int x = 0; x < 9; ++x)
+            for (int y = 0; y < 9; ++y)
+                for (int z = 0; z < 9; ++z) lattice.points.emplace_back(float(8 - x), float(y), float(z));
+    expect_lists_in_columns(lattice, std::vector<Vec3f>{{4, 4, 4}, {0.5f, 4, 8}, {-1, -1, -1}, {20, 0, 0}},
+                            6.0f);
+}
+
 }  // namespace

@@ -140,16 +140,6 @@ private:
     V least_, most_;
 };
 
-HWY_INLINE NearKey key_of(float distance2, std::uint32_t element) {
-    return NearKey(std::bit_cast<std::uint32_t>(distance2)) << 32 | element;
-}
-HWY_INLINE float distance2_of(NearKey key) {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
-}
-HWY_INLINE std::uint32_t element_of(NearKey key) {
-    return static_cast<std::uint32_t>(key);
-}
-
 // The squared distances of the points of a block from `at` on, in the lanes of F: computed in double and
 // rounded once, as by `closest_point` (geometry/distance.h).
 template <class F>

@@ -113,6 +113,62 @@ void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::
         });
 }
 
+/// Lists of a batch in columns: those of point i stand from offsets[i] to offsets[i + 1], in the order of
+/// (distance², instance, element). The vectors are the caller's: what they hold is replaced, and their memory
+/// used again.
+template <class P>
+struct ListColumns {
+    std::vector<std::size_t> offsets;
+    std::vector<IdOf<P>> ids;  ///< positions in the set, or PlacedIds among instances
+    std::vector<typename P::Scalar> distances2;
+
+    void clear() { offsets.assign(1, 0), ids.clear(), distances2.clear(); }
+    /// Appends the lists of more points.
+    void append(const ListColumns& more) {
+        for (std::size_t i = 1; i < more.offsets.size(); ++i) offsets.push_back(ids.size() + more.offsets[i]);
+        ids.insert(ids.end(), more.ids.begin(), more.ids.end());
+        distances2.insert(distances2.end(), more.distances2.begin(), more.distances2.end());
+    }
+};
+/// Writes all primitives within the options' distance of each of `points` to columns. Returns how many there
+/// are in all. Over several threads the call needs the memory of the answers twice while it runs.
+template <class S, class P>
+std::size_t within(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
+                   const NearOptions<typename P::Scalar>& options, ListColumns<P>& columns,
+                   Threads threads = {}) {
+    using Part = PointBatch<typename P::Scalar, P::dimension>;
+    const auto answer = [&](const Part& part, ListColumns<P>& to) {
+        to.clear();
+        if constexpr (HasKernel<Within<P>, Index<S, P>>) {
+            const Kernel<Within<P>, Index<S, P>> kernel;
+            if (kernel && in_ieee_mode([&] {
+                    return kernel.answer_many(index, part, options, to.offsets, to.ids, to.distances2);
+                }))
+                return;
+        }
+        std::vector<Near<typename P::Scalar, P::dimension>> found;
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            within(index, part[i], options, found);
+            for (const auto& near : found) {
+                to.ids.push_back(Identity<P>::of(near));
+                to.distances2.push_back(near.distance2);
+            }
+            to.offsets.push_back(to.ids.size());
+        }
+    };
+    // The executor cuts the row of pieces; the lists of each cut are joined in the order of the points.
+    constexpr std::size_t piece = 256;
+    std::vector<ListColumns<P>> cuts((points.size() + piece - 1) / piece);
+    columns.clear();
+    threads.over(points.size()).for_each_piece(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        if (begin == end) return;
+        const std::size_t first = begin * piece, last = std::min(end * piece, points.size());
+        answer(Part(points).part(first, last - first), end - begin == cuts.size() ? columns : cuts[begin]);
+    });
+    for (const ListColumns<P>& lists : cuts) columns.append(lists);
+    return columns.ids.size();
+}
+
 /// A list of primitives for each of many points (ask/asking.h).
 template <class S, class P>
 AnswerLists<Near<typename P::Scalar, P::dimension>> nearest(

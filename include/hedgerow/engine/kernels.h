@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <hedgerow/engine/hit_filter.h>
+#include <hedgerow/engine/near_keys.h>
 #include <hedgerow/engine/point_blocks.h>
 #include <hedgerow/engine/triangle_blocks.h>
 #include <hedgerow/engine/wide_tree.h>
@@ -67,16 +68,6 @@ struct RayKernels {
 struct WidePoints {
     const WideTree<float, 3>& tree;
     const PointBlock<float, 3>* blocks;
-};
-
-/// A primitive at a distance from a point, in one number: the bits of the squared distance above the element.
-/// The order of the numbers is that of answers, by (distance², element).
-using NearKey = std::uint64_t;
-/// A list of keys in the caller's memory. `grow` makes room for at least eight more.
-struct NearKeys {
-    NearKey* keys;
-    std::size_t size, room;
-    void (*grow)(NearKeys&);
 };
 
 /// Kernels insert into sorted lists; a walk has a heap, which is better for more than these.

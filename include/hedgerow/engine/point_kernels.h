@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include <hedgerow/engine/near_keys.h>
 #include <hedgerow/engine/ray_kernels.h>
 #include <hedgerow/queries/closest_point.h>
 #include <hedgerow/queries/nearest.h>
@@ -62,19 +63,21 @@ protected:
     template <class Found>
     static std::size_t read(const I& index, const Vec<float, 3>& point, std::span<const NearKey> keys,
                             Found& found) {
-        found.clear();
-        for (const NearKey key : keys) {
-            const auto element = static_cast<PrimitiveId>(key);
-            const auto foot = index.primitives().closest_point(element, point);
-            found.push_back(
-                {foot.distance2, reported_id(index.primitives(), element, 0), element, foot.point});
+        const auto& set = index.primitives();
+        found.resize(keys.size());
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const PrimitiveId element = element_of(keys[i]);
+            auto& near = found[i];
+            near.distance2 = distance2_of(keys[i]);
+            near.primitive = reported_id(set, element, 0);
+            near.element = element;
+            if constexpr (CloudForKernels<I>)
+                near.point = set.point(element);
+            else
+                near.point = set.closest_point(element, point).point;
+            near.instance = 0;
         }
         return found.size();
-    }
-    /// Memory for keys, which the thread keeps.
-    static std::vector<NearKey>& keys() {
-        static thread_local std::vector<NearKey> kept;
-        return kept;
     }
 
 private:
@@ -129,20 +132,46 @@ struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
                        std::vector<Near<float, 3>>& found) const {
         if (!this->takes(point, options)) [[unlikely]]
             return this->template answer_of_walk<Within<Set>>(index, point, options, found);
-        // Collect the keys in memory that the thread keeps.
-        std::vector<NearKey>& kept = this->keys();
+        return this->read(index, point, sorted_keys(index, point, options), found);
+    }
+    /// Appends what is within the options' distance of each point, and where each list ends. False, and
+    /// nothing is written, where a point is none for the kernels.
+    bool answer_many(const I& index, const PointBatch<float, 3>& points, const NearOptions<float>& options,
+                     std::vector<std::size_t>& offsets, std::vector<PrimitiveId>& ids,
+                     std::vector<float>& distances2) const {
+        if (!this->takes_all(points, options)) return false;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto keys = sorted_keys(index, points[i], options);
+            const std::size_t first = ids.size();
+            ids.resize(first + keys.size()), distances2.resize(first + keys.size());
+            for (std::size_t k = 0; k < keys.size(); ++k) {
+                ids[first + k] = element_of(keys[k]);
+                distances2[first + k] = distance2_of(keys[k]);
+            }
+            offsets.push_back(ids.size());
+        }
+        return true;
+    }
+
+private:
+    /// The keys of one query, in memory that the thread keeps until the next.
+    std::span<const NearKey> sorted_keys(const I& index, const Vec<float, 3>& point,
+                                         const NearOptions<float>& options) const {
+        std::vector<NearKey>& kept = kept_by_thread();
         kept.resize(std::max<std::size_t>(kept.capacity(), 64));
         NearKeys keys{kept.data(), 0, kept.size(), [](NearKeys& full) {
                           kept_by_thread().resize(2 * full.room);
                           full.keys = kept_by_thread().data(), full.room = kept_by_thread().size();
                       }};
         this->kernels().within(this->scene(index), point, options.max_distance2(), keys);
-        std::sort(keys.keys, keys.keys + keys.size);
-        return this->read(index, point, {keys.keys, keys.size}, found);
+        static thread_local std::vector<NearKey> other;
+        sort_keys({keys.keys, keys.size}, other);
+        return {keys.keys, keys.size};
     }
-
-private:
-    static std::vector<NearKey>& kept_by_thread() { return Kernel::keys(); }
+    static std::vector<NearKey>& kept_by_thread() {
+        static thread_local std::vector<NearKey> kept;
+        return kept;
+    }
 };
 
 }  // namespace hedgerow
