@@ -1,11 +1,14 @@
 /// Hausdorff distances against those that are known, against dense samples, and against all pairs of points.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "engine.h"
 #include "every_structure.h"
 #include "generated.h"
 
@@ -140,7 +143,7 @@ TYPED_TEST(HausdorffOf, AMeshAndItself) {
     const auto mesh = boulder<T>(600);
     expect_directed("itself", mesh, mesh, 0);
     const auto index = build(mesh);
-    EXPECT_LE(static_cast<double>(hausdorff_distance(index, index).upper), floor_of<T>(0, 2));
+    EXPECT_EQ(hausdorff_distance(index, index).upper, 0);
     // Each triangle in four, at midpoints: on a lattice these are exact, so the surface is the same.
     auto coarse = mesh;
     for (auto& v : coarse.vertices)
@@ -157,6 +160,63 @@ TYPED_TEST(HausdorffOf, AMeshAndItself) {
     }
     expect_directed("from the finer", fine, coarse, 0);
     expect_directed("to the finer", coarse, fine, 0);
+}
+TYPED_TEST(HausdorffOf, SharedTriangles) {
+    using T = TypeParam;
+    // Every other triangle is B's too, with its corners in another order and other vertices.
+    const auto mesh = boulder<T>(600);
+    TriangleMesh<T> moved, some, only_moved;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+        const auto t = mesh.view().triangle(i);
+        const Vec<T, 3> by(0, 0, i % 2 == 0 ? T(0) : T(0.0625 * static_cast<double>(i % 7)));
+        for (auto* to : {&moved, &only_moved}) {
+            if (to == &only_moved && i % 2 == 0) continue;
+            const auto first = static_cast<std::uint32_t>(to->vertices.size());
+            for (const auto& p : {t.b, t.c, t.a}) to->vertices.push_back(p + by);
+            to->triangles.push_back(i % 3 == 0 ? TriangleIndices{first, first + 1, first + 2}
+                                               : TriangleIndices{first + 1, first, first + 2});
+        }
+    }
+    const auto from = build(moved), to = build(mesh);
+    const HausdorffOptions options{0, 1e-4};
+    const auto found = directed_hausdorff_distance(from, to, options);
+    const auto want = directed_hausdorff_distance(build(only_moved), to, options);
+    expect_sound(found, from, to, options, reach_of(moved, mesh));
+    EXPECT_EQ(found.element_a % 2, 1u);
+    EXPECT_LE(found.lower, want.upper);
+    EXPECT_GE(found.upper, want.lower);
+    EXPECT_GT(found.lower, T(0.1));
+    // Without those that were moved, the distance is 0; zeros of either sign are equal.
+    for (std::size_t i = 0; i < moved.size(); i += 2) some.triangles.push_back(moved.triangles[i]);
+    some.vertices = moved.vertices;
+    auto signless = mesh, signful = some;
+    for (auto& v : signless.vertices) v[2] = T(0);
+    for (auto& v : signful.vertices) v[2] = -T(0);
+    EXPECT_EQ(directed_hausdorff_distance(build(some), to).upper, 0);
+    EXPECT_EQ(directed_hausdorff_distance(build(signful), build(signless)).upper, 0);
+    // What was erased from B is not shared.
+    auto part = build<Bvh>(mesh);
+    for (std::size_t i = 0; i < mesh.size(); i += 2) part.erase(mesh, static_cast<PrimitiveId>(i));
+    EXPECT_GT(directed_hausdorff_distance(to, part).lower, T(0.01));
+}
+TYPED_TEST(HausdorffOf, LargeMeshesFarApart) {
+    using T = TypeParam;
+    // So far apart that whole blocks of triangles are dropped, in whatever order they come.
+    const auto mesh = boulder<T>(6000);
+    auto aside = mesh, mixed = mesh;
+    for (auto& v : aside.vertices) v = v + Vec<T, 3>(T(0.5), T(0.25), T(1));
+    std::shuffle(mixed.triangles.begin(), mixed.triangles.end(), std::mt19937(7));
+    const auto from = build(mixed), to = build(aside);
+    const double samples = sampled(mesh, aside, 2);
+    for (const double relative : {0.1, 1e-3, 1e-5}) {
+        const HausdorffOptions options{0, relative};
+        const auto found = directed_hausdorff_distance(from, to, options);
+        expect_sound(found, from, to, options, reach_of(mixed, aside));
+        EXPECT_LE(samples, static_cast<double>(found.upper));
+        EXPECT_LE(static_cast<double>(found.lower), samples * 1.01);
+        const auto back = directed_hausdorff_distance(to, from, options);
+        EXPECT_LE(sampled(aside, mesh, 1), static_cast<double>(back.upper));
+    }
 }
 TYPED_TEST(HausdorffOf, AMovedCube) {
     using T = TypeParam;
@@ -362,6 +422,11 @@ TYPED_TEST(HausdorffOf, StructuresAndThreadsAgree) {
     const auto from = build(large), to = build(other);
     EXPECT_EQ(hausdorff_distance(from, to, {}, serial_executor()),
               hausdorff_distance(from, to, {}, default_executor()));
+    const auto on_all = hausdorff_distance(from, to, {0, 1e-4});
+    for (const auto name : instruction_sets()) {
+        const Using use(name);
+        EXPECT_EQ(hausdorff_distance(from, to, {0, 1e-4}), on_all) << name;
+    }
 }
 TYPED_TEST(HausdorffOf, WhatWasErasedDoesNotCount) {
     using T = TypeParam;

@@ -50,7 +50,8 @@ template <Wanted wanted, class Answer>
 inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, answer_ray<wanted, Answer>,
                                                    answer_rays<wanted, Answer>};
 
-extern const AllPointKernels point_kernels;  // in point_kernels.cpp
+extern const AllPointKernels point_kernels;   // in point_kernels.cpp
+extern const ElementKernels element_kernels;  // in near_element_kernels.cpp
 
 inline constexpr WideKernels kernels {
 #if HWY_TARGET == HWY_AVX3
@@ -62,7 +63,8 @@ inline constexpr WideKernels kernels {
 #else
     "neon", 4,
 #endif
-        ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>, &point_kernels
+        ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>, &point_kernels,
+        &element_kernels
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <hedgerow/engine/hit_filter.h>
+#include <hedgerow/engine/near_elements.h>
 #include <hedgerow/engine/near_keys.h>
 #include <hedgerow/engine/point_blocks.h>
 #include <hedgerow/engine/triangle_blocks.h>
@@ -107,6 +108,7 @@ struct WideKernels {
     RayKernels<Hit<float>> closest;
     RayKernels<bool> any;
     const AllPointKernels* points;
+    const ElementKernels* elements;
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses them: those that the

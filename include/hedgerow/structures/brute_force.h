@@ -56,7 +56,11 @@ public:
                   Leaf{items_.data(), 0, static_cast<std::uint32_t>(items_.size())}, query);
     }
 
-    bool holds(PrimitiveId id) const { return std::binary_search(items_.begin(), items_.end(), id); }
+    /// Whether a primitive is in the structure: O(1) where none was erased before it, else O(log n).
+    bool holds(PrimitiveId id) const {
+        return (id < items_.size() && items_[id] == id) ||
+               std::binary_search(items_.begin(), items_.end(), id);
+    }
     /// Inserts primitive `id`. Returns false, and changes nothing, if it is already in the structure. Throws
     /// InputError if the set has no such primitive or it is bad. Does what Orthtree::insert does, as its
     /// oracle, but in O(n).
