@@ -10,6 +10,7 @@
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "cubes.h"
 #include "every_structure.h"
 #include "exact.h"
 #include "generated.h"
@@ -57,15 +58,6 @@ Long sum_of_turns(const P& set, const V& q) {
 
 // ---- Scenes
 
-template <class T>
-TriangleMesh<T> cube_at(const Vec<T, 3>& low, T width) {
-    TriangleMesh<T> mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.vertices.push_back(low + Vec<T, 3>(T(i & 1u), T(i >> 1 & 1u), T(i >> 2)) * width);
-    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return mesh;
-}
 /// A ball of `rings` rings of twice as many vertices.
 template <class T>
 TriangleMesh<T> ball(std::uint32_t rings) {
@@ -90,13 +82,6 @@ TriangleMesh<T> ball(std::uint32_t rings) {
         mesh.triangles.push_back({bottom, top - around + next, top - around + k});
     }
     return mesh;
-}
-template <class T>
-TriangleMesh<T> joined(TriangleMesh<T> a, const TriangleMesh<T>& b) {
-    const auto first = static_cast<std::uint32_t>(a.vertices.size());
-    a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    return a;
 }
 template <class T>
 TriangleMesh<T> turned(TriangleMesh<T> mesh) {

@@ -7,6 +7,7 @@
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "cubes.h"
 #include "every_structure.h"
 #include "exact.h"
 #include "rational_triangles.h"
@@ -71,22 +72,6 @@ void expect_pairs(const char* scene, const TriangleMesh<T>& mesh, const Triangle
 
 // ---- Scenes
 
-template <class T>
-TriangleMesh<T> cube_at(const Vec<T, 3>& low, T width) {
-    TriangleMesh<T> mesh;
-    for (unsigned i = 0; i < 8; ++i)
-        mesh.vertices.push_back(low + Vec<T, 3>(T(i & 1u), T(i >> 1 & 1u), T(i >> 2)) * width);
-    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    return mesh;
-}
-template <class T>
-TriangleMesh<T> joined(TriangleMesh<T> a, const TriangleMesh<T>& b) {
-    const auto first = static_cast<std::uint32_t>(a.vertices.size());
-    a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-    for (const auto& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-    return a;
-}
 /// Triangles with corners of small integers times 2^exponent: many share corners, touch or have no area.
 template <class T>
 TriangleMesh<T> lattice_soup(std::size_t count, int reach, std::uint64_t seed, int exponent = 0) {
@@ -201,19 +186,27 @@ TYPED_TEST(Pairs, AreAsFarApartAsInExactArithmetic) {
 template <class A, class B>
 void expect_distances(const char* name, const A& a, const B& b) {
     SCOPED_TRACE(name);
+    using T = typename A::Scalar;
     const auto oracle = build<BruteForce>(b);
     const auto want = minimum_distance(build<BruteForce>(a), oracle);
     EXPECT_TRUE(want);
     for_each_index(a, [&](const char* of_a, const auto& index) {
         Visits visits;
         EXPECT_EQ(minimum_distance(index, oracle), want) << of_a;
-        EXPECT_EQ(minimum_distance(index, build(b), std::numeric_limits<typename A::Scalar>::max(), visits),
-                  want)
+        EXPECT_EQ(minimum_distance(index, build(b), {}, visits), want) << of_a;
+        EXPECT_EQ(minimum_distance(index, oracle, {.radius2 = want.distance2}), want) << of_a;
+        const T radius = std::sqrt(want.distance2);
+        EXPECT_EQ(minimum_distance(index, oracle, {.radius = radius * T(1.0001)}), want) << of_a;
+        EXPECT_FALSE(minimum_distance(index, oracle, {.radius = -1})) << of_a;
+        EXPECT_FALSE(minimum_distance(index, oracle, {.radius = std::numeric_limits<T>::quiet_NaN()}))
             << of_a;
-        EXPECT_EQ(minimum_distance(index, oracle, want.distance2), want) << of_a;
+        const auto about = minimum_distance(index, oracle, {.factor = T(1.5)});
+        EXPECT_GE(about.distance2, want.distance2) << of_a;
+        EXPECT_LE(about.distance2, want.distance2 * T(2.2501)) << of_a;
+        EXPECT_THROW(minimum_distance(index, oracle, {.factor = T(0.5)}), InputError);
         if (want.distance2 > 0) {
-            EXPECT_FALSE(
-                minimum_distance(index, oracle, std::nextafter(want.distance2, typename A::Scalar(0))))
+            EXPECT_FALSE(minimum_distance(index, oracle, {.radius = radius * T(0.9999)})) << of_a;
+            EXPECT_FALSE(minimum_distance(index, oracle, {.radius2 = std::nextafter(want.distance2, T(0))}))
                 << of_a;
         }
     });

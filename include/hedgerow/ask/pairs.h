@@ -15,17 +15,16 @@
 
 namespace hedgerow {
 
-/// The closest points of two sets within `max_distance2` (squared, included), their squared distance, and the
-/// primitives that they are on; an Apart that is false if there are none so close. Equal distances go to the
-/// lowest (element_a, element_b). Triangles that meet are at distance 0 exactly. For triangles in space, and
-/// for points and any primitives with a closest point. `count` may be a Visits, of pairs.
+/// The closest points of two sets within the options' distance, their squared distance, and the primitives
+/// that they are on; an Apart that is false if there are none so close. Equal distances go to the lowest
+/// (element_a, element_b). Triangles that meet are at distance 0 exactly. For triangles in space, and for
+/// points and any primitives with a closest point. `count` may be a Visits, of pairs.
 template <class SA, class A, class SB, class B, class Count = const NoVisits>
-Apart<typename A::Scalar, A::dimension> minimum_distance(
-    const Index<SA, A>& a, const Index<SB, B>& b,
-    typename A::Scalar max_distance2 = std::numeric_limits<typename A::Scalar>::max(),
-    Count& count = no_visits) {
+Apart<typename A::Scalar, A::dimension> minimum_distance(const Index<SA, A>& a, const Index<SB, B>& b,
+                                                         const NearOptions<typename A::Scalar>& options = {},
+                                                         Count& count = no_visits) {
     return in_ieee_mode([&] {
-        MinimumDistance query(a.primitives(), b.primitives(), max_distance2);
+        MinimumDistance query(a.primitives(), b.primitives(), options);
         walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
                    query, count);
         return query.answer();
@@ -66,14 +65,28 @@ std::size_t sort_pairs(std::vector<Pair>& found) {
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found.size();
 }
-/// The whole walk over two hierarchies.
-template <class A, class B>
-NodePair<A, B> whole_of(const A& a, const B& b) {
-    return {a.root(), b.root()};
+/// Lists the pairs of two indexes, or of one, that the queries of `make` find: ascending, each once. Returns
+/// how many there are.
+template <class IA, class IB, class Make, class Pair>
+std::size_t list_pairs(const IA& a, const IB& b, Threads threads, Make make, std::vector<Pair>& found) {
+    found.clear();
+    return in_ieee_mode([&] {
+        const auto of_a = hierarchy_of(a.structure(), a.primitives());
+        const auto of_b = hierarchy_of(b.structure(), b.primitives());
+        if (of_a.empty() || of_b.empty()) return std::size_t(0);
+        collect_pairs(of_a, of_b, {of_a.root(), of_b.root()}, threads.over(a.size() + b.size()), make, found);
+        return sort_pairs(found);
+    });
 }
-template <class A>
-NodePair<A, A> whole_of(const A& a) {
-    return {a.root(), a.root(), true};
+template <class I, class Make, class Pair>
+std::size_t list_pairs(const I& index, Threads threads, Make make, std::vector<Pair>& found) {
+    found.clear();
+    return in_ieee_mode([&] {
+        const auto tree = hierarchy_of(index.structure(), index.primitives());
+        if (tree.empty()) return std::size_t(0);
+        collect_pairs(tree, tree, {tree.root(), tree.root(), true}, threads.over(index.size()), make, found);
+        return sort_pairs(found);
+    });
 }
 
 /// A function for queries that stop at the first pair.
@@ -90,16 +103,8 @@ struct StopAtFirst {
 template <class SA, TriangleSet A, class SB, TriangleSet B>
 std::size_t crossing_pairs(const Index<SA, A>& a, const Index<SB, B>& b, std::vector<ElementPair>& found,
                            Threads threads = {}) {
-    found.clear();
-    return in_ieee_mode([&] {
-        const auto of_a = hierarchy_of(a.structure(), a.primitives());
-        const auto of_b = hierarchy_of(b.structure(), b.primitives());
-        if (of_a.empty() || of_b.empty()) return std::size_t(0);
-        detail::collect_pairs(
-            of_a, of_b, detail::whole_of(of_a, of_b), threads.over(a.size() + b.size()),
-            [&](auto f) { return Crossings(triangles_of(a), triangles_of(b), f); }, found);
-        return detail::sort_pairs(found);
-    });
+    return detail::list_pairs(
+        a, b, threads, [&](auto f) { return Crossings(triangles_of(a), triangles_of(b), f); }, found);
 }
 /// Whether any triangles of two meshes share a point. Stops at the first pair.
 template <class SA, TriangleSet A, class SB, TriangleSet B>
@@ -120,15 +125,8 @@ bool any_crossing(const Index<SA, A>& a, const Index<SB, B>& b) {
 template <class S, TriangleSet P>
 std::size_t self_intersections(const Index<S, P>& index, std::vector<ElementPair>& found,
                                Threads threads = {}) {
-    found.clear();
-    return in_ieee_mode([&] {
-        const auto tree = hierarchy_of(index.structure(), index.primitives());
-        if (tree.empty()) return std::size_t(0);
-        detail::collect_pairs(
-            tree, tree, detail::whole_of(tree), threads.over(index.size()),
-            [&](auto f) { return SelfCrossings(triangles_of(index), f); }, found);
-        return detail::sort_pairs(found);
-    });
+    return detail::list_pairs(
+        index, threads, [&](auto f) { return SelfCrossings(triangles_of(index), f); }, found);
 }
 /// Whether any triangles of a mesh intersect. Stops at the first pair.
 template <class S, TriangleSet P>
@@ -149,34 +147,20 @@ bool any_self_intersection(const Index<S, P>& index) {
 template <class S, PointSet P>
 std::size_t pairs_within(const Index<S, P>& index, const NearOptions<typename P::Scalar>& options,
                          std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
-    found.clear();
-    return in_ieee_mode([&] {
-        const auto tree = hierarchy_of(index.structure(), index.primitives());
-        const auto radius2 = options.max_distance2();
-        if (tree.empty() || !(radius2 >= 0)) return std::size_t(0);
-        detail::collect_pairs(
-            tree, tree, detail::whole_of(tree), threads.over(index.size()),
-            [&](auto f) { return PairsWithin(index.primitives(), index.primitives(), radius2, f, true); },
-            found);
-        return detail::sort_pairs(found);
-    });
+    const auto& set = index.primitives();
+    const auto radius2 = options.max_distance2();
+    return detail::list_pairs(
+        index, threads, [&](auto f) { return PairsWithin(set, set, radius2, f, true); }, found);
 }
 /// Finds the pairs of a point of A and one of B.
 template <class SA, PointSet A, class SB, PointSet B>
 std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,
                          const NearOptions<typename A::Scalar>& options,
                          std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
-    found.clear();
-    return in_ieee_mode([&] {
-        const auto of_a = hierarchy_of(a.structure(), a.primitives());
-        const auto of_b = hierarchy_of(b.structure(), b.primitives());
-        const auto radius2 = options.max_distance2();
-        if (of_a.empty() || of_b.empty() || !(radius2 >= 0)) return std::size_t(0);
-        detail::collect_pairs(
-            of_a, of_b, detail::whole_of(of_a, of_b), threads.over(a.size() + b.size()),
-            [&](auto f) { return PairsWithin(a.primitives(), b.primitives(), radius2, f); }, found);
-        return detail::sort_pairs(found);
-    });
+    const auto radius2 = options.max_distance2();
+    return detail::list_pairs(
+        a, b, threads, [&](auto f) { return PairsWithin(a.primitives(), b.primitives(), radius2, f); },
+        found);
 }
 
 }  // namespace hedgerow

@@ -58,7 +58,7 @@ bool surely_farther(const Triangle<T, 3>& a, const Triangle<T, 3>& b, const Vec3
 }
 }  // namespace detail
 
-/// Finds the closest pair within `max_distance2` (squared, included).
+/// Finds the closest pair within the options' distance.
 template <class A, class B>
 class MinimumDistance {
 public:
@@ -68,10 +68,11 @@ public:
     using Boxed = BoxedLeaf<Scalar, dimension>;
     static constexpr Order order = Order::nearest;
 
-    MinimumDistance(const A& a, const B& b, Scalar max_distance2) : a_(a), b_(b), max_(max_distance2) {}
+    MinimumDistance(const A& a, const B& b, const NearOptions<Scalar>& options)
+        : a_(a), b_(b), options_(options), max_(options.max_distance2()) {}
 
     static Scalar bound(const BoxType& a, const BoxType& b) { return distance2(a, b); }
-    Scalar limit() const { return limit_of_boxes(best_ ? best_.distance2 : max_); }
+    Scalar limit() const { return limit_of_boxes(best_ ? options_.limit(best_.distance2) : max_); }
     Flow offer(const Boxed& a, const Boxed& b) {
         for (std::uint32_t i = a.items.first; i < a.items.first + a.items.count; ++i) {
             const PrimitiveId of_a = a.items.ids[i];
@@ -110,6 +111,7 @@ private:
 
     const A& a_;
     const B& b_;
+    NearOptions<Scalar> options_;
     Scalar max_;
     Apart<Scalar, dimension> best_;
 };
