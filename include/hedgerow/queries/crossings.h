@@ -1,6 +1,7 @@
 /// The pairs of triangles that meet: of two sets, or within one beyond what neighbours share.
 #pragma once
 
+#include <bit>
 #include <compare>
 #include <memory>
 #include <utility>
@@ -88,24 +89,22 @@ public:
         for (int i = 0; i < count_; ++i) {
             const auto& s = slots_.triangle[i];
             const L low = L::load(s.low), high = L::load(s.high);
-            Prepared prepared;
-            bool ready = false;
+            // Compare all boxes first, since few branches on single boxes are foreseen.
+            unsigned left = 0;
             for (int j = this == &others ? i + 1 : 0; j < others.count_; ++j) {
                 const auto& t = others.slots_.triangle[j];
-                if (!overlap(low, high, L::load(t.low), L::load(t.high))) continue;
-                if (!std::exchange(ready, true)) std::construct_at(&prepared.plane, s.plane());
-                if (f(s, prepared.plane, t) == Flow::stop) return Flow::stop;
+                left |= static_cast<unsigned>(overlap(low, high, L::load(t.low), L::load(t.high))) << j;
             }
+            if (left == 0) continue;
+            const auto plane = s.plane();
+            for (; left != 0; left &= left - 1)
+                if (f(s, plane, others.slots_.triangle[std::countr_zero(left)]) == Flow::stop)
+                    return Flow::stop;
         }
         return Flow::go_on;
     }
 
 private:
-    /// A plane that is computed when a first box overlaps. An optional would be cleared for each triangle.
-    union Prepared {
-        Prepared() {}  // NOLINT(modernize-use-equals-default): not cleared
-        SideFilter<T> plane;
-    };
     union Slots {
         Slots() {}  // NOLINT(modernize-use-equals-default): not cleared
         RowsOfTriangle<T> triangle[most];
