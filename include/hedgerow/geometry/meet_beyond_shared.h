@@ -141,6 +141,17 @@ inline bool meet_beyond_shared(const Triangle<double, 3>& s, const Triangle<doub
     return meet_beyond_shared(Facet(s), t);
 }
 
+/// Bit i is set if corner i of t, given by the corners' coordinates by axis, is a corner of s.
+template <class T>
+unsigned corners_of_both(const Triangle<T, 3>& s, const T (&t)[3][4]) {
+    using L = Lanes<T>;
+    const L x = L::load(t[0]), y = L::load(t[1]), z = L::load(t[2]);
+    const auto apart = [&](const Vec<T, 3>& p) {
+        return abs(x - L::all(p[0])) + abs(y - L::all(p[1])) + abs(z - L::all(p[2]));
+    };
+    return 7u & ~min(min(apart(s.a), apart(s.b)), apart(s.c)).positive();
+}
+
 /// Whether it is plain that t, given by its corners' coordinates by axis, meets s at most in corners that
 /// both have or in the edge between them: its other corners are surely on one side of the plane of s. So most
 /// neighbours are told from others by the signs that a test needs first anyway.
@@ -148,15 +159,9 @@ template <class T>
 bool plainly_beside(const Triangle<T, 3>& s, const SideFilter<T>& plane, const T (&t)[3][4]) {
     unsigned in_front, behind;
     plane.sure_sides(t, in_front, behind);
-    if (in_front != 0 && behind != 0) return false;
-    unsigned in_doubt = 7u & ~(in_front | behind);
-    if (in_doubt == 7u) return false;
-    for (; in_doubt != 0; in_doubt &= in_doubt - 1) {
-        const auto i = std::countr_zero(in_doubt);
-        const Vec<T, 3> corner(t[0][i], t[1][i], t[2][i]);
-        if (corner != s.a && corner != s.b && corner != s.c) return false;
-    }
-    return true;
+    const unsigned sure = in_front | behind;
+    // Without branches on single corners, which are not foreseen.
+    return ((in_front != 0) != (behind != 0)) && ((sure | corners_of_both(s, t)) & 7u) == 7u;
 }
 
 }  // namespace hedgerow
