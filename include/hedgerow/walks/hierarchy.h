@@ -50,23 +50,30 @@ auto box_around(const P& set, const Leaf& leaf) {
     return box;
 }
 
-/// The boxes of a tree's nodes, by id. Cells that share a primitive have boxes that overlap more than they
-/// do.
-template <class S>
-class FoldedBoxes {
+/// What hierarchies of trees without boxes have in common: the tree, and the boxes of its nodes by id, folded
+/// from the leaves up. Cells that share a primitive have boxes that overlap more than they do. A node is
+/// found by a Where.
+template <class S, class Where>
+class FoldedHierarchy {
 public:
     using BoxType = BoundsOf<S>;
+    using Node = BoxedNode<typename BoxType::Scalar, BoxType::dimension, Where>;
 
     template <class P>
-    FoldedBoxes(const S& tree, const P& set)
-        : boxes_(fold(
+    FoldedHierarchy(const S& tree, const P& set)
+        : tree_(tree),
+          boxes_(fold(
               tree, [&](const Leaf& leaf) { return box_around(set, leaf); },
               [](const BoxType& a, const BoxType& b) { return merged(a, b); })) {}
+    bool empty() const { return tree_.root().empty(); }
+    Node root() const { return node(tree_.root(), 0); }
+    std::size_t node_count() const { return boxes_.size(); }
+    Leaf leaf(const Node& n) const { return tree_.leaf(n.place); }
 
-    const BoxType& operator[](NodeId id) const { return boxes_[id]; }
-    std::size_t size() const { return boxes_.size(); }
+protected:
+    Node node(Where place, NodeId id) const { return {place, id, boxes_[id]}; }
 
-private:
+    const S& tree_;
     std::vector<BoxType> boxes_;
 };
 
@@ -100,76 +107,55 @@ private:
 
 /// A BVH of other volumes: only the children of a node are read.
 template <VolumeTree S>
-class VolumeHierarchy {
+class VolumeHierarchy : public FoldedHierarchy<S, NodeRef> {
 public:
-    using BoxType = BoundsOf<S>;
-    using Node = BoxedNode<typename BoxType::Scalar, BoxType::dimension, NodeRef>;
+    using typename FoldedHierarchy<S, NodeRef>::Node;
+    using FoldedHierarchy<S, NodeRef>::FoldedHierarchy;
     static constexpr int width = S::width;
 
-    template <class P>
-    VolumeHierarchy(const S& tree, const P& set) : tree_(tree), boxes_(tree, set) {}
-    bool empty() const { return tree_.root().empty(); }
-    Node root() const { return {tree_.root(), 0, boxes_[0]}; }
-    std::size_t node_count() const { return boxes_.size(); }
     bool is_leaf(const Node& n) const { return n.place.leaf(); }
-    Leaf leaf(const Node& n) const { return tree_.leaf(n.place); }
     template <class F>
     void for_each_child(const Node& n, F f) const {
         for (int i = 0; i < width; ++i)
-            if (const NodeRef child = tree_.child(n.place, i); !child.empty())
-                f(Node{child, S::child_id(n.place, i), boxes_[S::child_id(n.place, i)]});
+            if (const NodeRef child = this->tree_.child(n.place, i); !child.empty())
+                f(this->node(child, S::child_id(n.place, i)));
     }
-
-private:
-    const S& tree_;
-    FoldedBoxes<S> boxes_;
 };
 
 /// An octree or quadtree.
 template <OrthantTree S>
-class OrthantHierarchy {
+class OrthantHierarchy : public FoldedHierarchy<S, OrthantNode> {
 public:
-    using BoxType = BoundsOf<S>;
-    using Node = BoxedNode<typename BoxType::Scalar, BoxType::dimension, OrthantNode>;
+    using typename FoldedHierarchy<S, OrthantNode>::Node;
+    using FoldedHierarchy<S, OrthantNode>::FoldedHierarchy;
     static constexpr int width = 1 << S::dimension;
 
-    template <class P>
-    OrthantHierarchy(const S& tree, const P& set) : tree_(tree), boxes_(tree, set) {}
-    bool empty() const { return tree_.root().empty(); }
-    Node root() const { return {tree_.root(), 0, boxes_[0]}; }
-    std::size_t node_count() const { return boxes_.size(); }
     bool is_leaf(const Node& n) const { return !n.place.inner(); }
-    Leaf leaf(const Node& n) const { return tree_.leaf(n.place); }
     template <class F>
     void for_each_child(const Node& n, F f) const {
         for (unsigned left = n.place.occupied(); left != 0; left &= left - 1) {
             const auto i = static_cast<unsigned>(std::countr_zero(left));
-            const NodeId id = S::child_id(n.place, i);
-            f(Node{tree_.children(n.place)[i], id, boxes_[id]});
+            f(this->node(this->tree_.children(n.place)[i], S::child_id(n.place, i)));
         }
     }
-
-private:
-    const S& tree_;
-    FoldedBoxes<S> boxes_;
 };
 
 /// A kd-tree or BSP tree. What an inner node holds itself is a leaf below it, whose id is the node's plus
-/// the number of nodes.
+/// the number of nodes; the place of a node says whether it is such a leaf.
 template <PlaneTree S>
-class PlaneHierarchy {
+class PlaneHierarchy : public FoldedHierarchy<S, bool> {
 public:
-    using BoxType = BoundsOf<S>;
-    using Node = BoxedNode<typename BoxType::Scalar, BoxType::dimension, bool>;  // whether it is what is held
+    using Base = FoldedHierarchy<S, bool>;
+    using typename Base::BoxType, typename Base::Node;
     static constexpr int width = HoldsInNodes<S> ? 3 : 2;
 
     template <class P>
-    PlaneHierarchy(const S& tree, const P& set) : tree_(tree), boxes_(tree, set), own_boxes_() {
+    PlaneHierarchy(const S& tree, const P& set) : Base(tree, set), own_boxes_() {
         if constexpr (HoldsInNodes<S>)
             for (NodeId n = 0; n < tree.node_count(); ++n) own_boxes_.push_back(box_around(set, tree.own(n)));
     }
     bool empty() const { return tree_.empty() || tree_.is_empty(0); }
-    Node root() const { return {false, 0, boxes_[0]}; }
+    Node root() const { return this->node(false, 0); }
     std::size_t node_count() const { return boxes_.size() + own_boxes_.size(); }
     bool is_leaf(const Node& n) const { return n.place || tree_.is_leaf(n.id); }
     Leaf leaf(const Node& n) const {
@@ -180,14 +166,13 @@ public:
     template <class F>
     void for_each_child(const Node& n, F f) const {
         for (const NodeId child : {tree_.low_child(n.id), tree_.high_child(n.id)})
-            if (!tree_.is_empty(child)) f(Node{false, child, boxes_[child]});
+            if (!tree_.is_empty(child)) f(this->node(false, child));
         if constexpr (HoldsInNodes<S>)
             f(Node{true, n.id + static_cast<NodeId>(boxes_.size()), own_boxes_[n.id]});
     }
 
 private:
-    const S& tree_;
-    FoldedBoxes<S> boxes_;
+    using Base::tree_, Base::boxes_;
     std::vector<BoxType> own_boxes_;
 };
 
