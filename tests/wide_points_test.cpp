@@ -2,6 +2,7 @@
 /// point at a time and in batches of any size, on trees of any width.
 #include "engine.h"
 
+#include <cmath>
 #include <cstring>
 
 #include <hedgerow/engine/wide_bvh.h>
@@ -73,6 +74,19 @@ void expect_lists(const Index& index, const Brute& brute, const Vec3f& p, std::s
     ASSERT_EQ(want, found) << "within " << within2;
 }
 
+/// Expects balls to contain as many points as brute force finds: about none, some, and all. On lattices many
+/// are at the radius itself.
+template <class Index, class Brute>
+void expect_counts(const Index& index, const Brute& brute, const Vec3f& p, float to_closest) {
+    const float extent = max_component(brute.bounds().extent());
+    for (const float radius :
+         {0.0f, to_closest, 2 * to_closest, 0.25f * extent, 0.5f * extent, extent, 3 * extent}) {
+        const Sphere<float, 3> ball{p, radius};
+        ASSERT_EQ(count_overlapping(brute, ball), count_overlapping(index, ball))
+            << "radius " << radius << " about " << p[0] << " " << p[1] << " " << p[2];
+    }
+}
+
 /// Expects a batch of k nearest to write what `nearest` finds, point by point.
 template <class Index>
 void expect_columns(const Index& index, const std::vector<Vec3f>& points, std::size_t k, float within2) {
@@ -119,6 +133,10 @@ void expect_brute_force(const char* name, const Set& set, std::size_t count) {
         for (std::size_t i = 0; i < points.size() && !testing::Test::HasFatalFailure(); i += 17) {
             const float enough = want[i].distance2 * (i % 2 == 0 ? 1.0f : 4.0f);
             expect_lists(index, brute, points[i], ks[i % 7], i % 3 == 0 ? enough : anywhere);
+        }
+        if constexpr (PointSet<ViewOf<Set>>) {
+            for (std::size_t i = 0; i < points.size() && !testing::Test::HasFatalFailure(); i += 5)
+                expect_counts(index, brute, points[i], std::sqrt(want[i].distance2));
         }
     });
 }

@@ -11,6 +11,7 @@
 #include "compiled.h"
 #if HWY_TARGET != HWY_SCALAR
 #include "closest-inl.h"
+#include "count-inl.h"
 #include "nearest-inl.h"
 #include "width-inl.h"
 
@@ -70,6 +71,16 @@ struct Keys {
     }
 };
 
+template <int W>
+struct CountInBall {
+    static std::size_t answer(const WidePoints& scene, const Sphere<float, 3>* ball) {
+        return count_in_ball<W>(scene, *ball);
+    }
+};
+std::size_t points_in_ball(const WidePoints& scene, const Sphere<float, 3>& ball) {
+    return by_width<CountInBall>(scene, &ball);
+}
+
 template <class Closest, class Keys, class Scene>
 inline constexpr PointKernels<Scene> kernels_of = {Closest::one, Closest::many, Keys::nearest,
                                                    Keys::nearest_of_many, Keys::within};
@@ -77,7 +88,7 @@ inline constexpr PointKernels<Scene> kernels_of = {Closest::one, Closest::many, 
 extern const AllPointKernels point_kernels;  // for kernels.cpp
 const AllPointKernels point_kernels{
     kernels_of<Closest<ClosestTriangle>, Keys<KeysOfTriangles, WideScene>, WideScene>,
-    kernels_of<Closest<ClosestOfCloud>, Keys<KeysOfCloud, WidePoints>, WidePoints>};
+    kernels_of<Closest<ClosestOfCloud>, Keys<KeysOfCloud, WidePoints>, WidePoints>, points_in_ball};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

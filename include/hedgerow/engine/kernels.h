@@ -98,6 +98,8 @@ struct PointKernels {
 struct AllPointKernels {
     PointKernels<WideScene> triangles;
     PointKernels<WidePoints> points;
+    /// The number of points in a solid ball, whose center and radius are within `largest_coordinate`.
+    std::size_t (*points_in_ball)(const WidePoints&, const Sphere<float, 3>&);
 };
 
 /// The kernels of one instruction set.

@@ -1,5 +1,6 @@
 /// The engine's specialisations of Kernel (walks/kernel.h) for points: the kernels answer closest points, k
-/// nearest and all within a distance, of float triangles and points in a WideBvh in space.
+/// nearest and all within a distance, of float triangles and points in a WideBvh in space, and how many
+/// points are in a ball.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +9,10 @@
 
 #include <hedgerow/engine/near_keys.h>
 #include <hedgerow/engine/ray_kernels.h>
+#include <hedgerow/geometry/ball.h>
 #include <hedgerow/queries/closest_point.h>
 #include <hedgerow/queries/nearest.h>
+#include <hedgerow/queries/overlap_count.h>
 #include <hedgerow/queries/within.h>
 
 namespace hedgerow {
@@ -34,10 +37,11 @@ public:
 protected:
     const auto& kernels() const {
         if constexpr (TrianglesForKernels<I>)
-            return kernels_->points->triangles;
+            return all().triangles;
         else
-            return kernels_->points->points;
+            return all().points;
     }
+    const AllPointKernels& all() const { return *kernels_->points; }
     static auto scene(const I& index) {
         if constexpr (TrianglesForKernels<I>)
             return kernel_scene(index, {}, {});
@@ -45,6 +49,10 @@ protected:
             return WidePoints{index.structure().tree(), index.packed().data()};
     }
     // Squared distances of farther points may overflow; NaN is no nearer to anything. Kernels are exact.
+    static bool takes(const Vec<float, 3>& point) {  // without a branch
+        constexpr float most = largest_coordinate<float>;
+        return (std::abs(point[0]) <= most) & (std::abs(point[1]) <= most) & (std::abs(point[2]) <= most);
+    }
     static bool takes(const Vec<float, 3>& point, const NearOptions<float>& options) {
         return takes(point) && options.factor == 1;
     }
@@ -81,10 +89,6 @@ protected:
     }
 
 private:
-    static bool takes(const Vec<float, 3>& point) {  // without a branch
-        constexpr float most = largest_coordinate<float>;
-        return (std::abs(point[0]) <= most) & (std::abs(point[1]) <= most) & (std::abs(point[2]) <= most);
-    }
     const WideKernels* kernels_ = wide_kernels();
 };
 
@@ -171,6 +175,16 @@ private:
     static std::vector<NearKey>& kept_by_thread() {
         static thread_local std::vector<NearKey> kept;
         return kept;
+    }
+};
+
+template <class Set, detail::CloudForKernels I>
+struct Kernel<OverlapCount<Set, Sphere<float, 3>>, I> : detail::PointKernel<I> {
+    std::size_t answer(const I& index, const Sphere<float, 3>& ball) const {
+        if (!this->takes(ball.center) || !(ball.radius >= 0 && ball.radius <= largest_coordinate<float>))
+            [[unlikely]]
+            return this->template answer_of_walk<OverlapCount<Set, Sphere<float, 3>>>(index, ball);
+        return this->all().points_in_ball(this->scene(index), ball);
     }
 };
 
