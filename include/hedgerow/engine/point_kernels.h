@@ -50,8 +50,8 @@ protected:
     }
     // Squared distances of farther points may overflow; NaN is no nearer to anything. Kernels are exact.
     static bool takes(const Vec<float, 3>& point) {  // without a branch
-        constexpr float most = largest_coordinate<float>;
-        return (std::abs(point[0]) <= most) & (std::abs(point[1]) <= most) & (std::abs(point[2]) <= most);
+        const auto fits = [](float x) { return unsigned(std::abs(x) <= largest_coordinate<float>); };
+        return (fits(point[0]) & fits(point[1]) & fits(point[2])) != 0;
     }
     static bool takes(const Vec<float, 3>& point, const NearOptions<float>& options) {
         return takes(point) && options.factor == 1;
