@@ -74,11 +74,11 @@ public:
         V limit = hn::Set(f, limit_.distance2());
         for (int at = 0; at < 8; at += lanes) {
             const TriangleDistances<F> distances(f, shared.blocks[leaf], at, all_lanes(f, p_));
-            const V most = distances.least_most(f);
+            const V upper = distances.least_most(f);
             if constexpr (alone) {
-                if (hn::GetLane(most) < hn::GetLane(limit)) limit = most;
+                if (hn::GetLane(upper) < hn::GetLane(limit)) limit = upper;
             } else {
-                limit = hn::Min(limit, most);
+                limit = hn::Min(limit, upper);
             }
             const auto near = distances.within(limit);
             keep(hn::BitCast(i, distances.least()), hn::RebindMask(i, near), least_);
