@@ -1,5 +1,5 @@
 /// The kernels of rays, compiled for each instruction set: Highway's foreach_target includes this file once
-/// for each. The table of each instruction set, with the kernels of point_kernels.cpp.
+/// for each. The table of each instruction set, with the kernels of the other sources.
 #if HEDGEROW_HAS_HIGHWAY
 #include "targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -52,6 +52,7 @@ inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, a
 
 extern const AllPointKernels point_kernels;   // in point_kernels.cpp
 extern const ElementKernels element_kernels;  // in near_element_kernels.cpp
+extern const WindingKernel winding_kernel;    // in winding_kernels.cpp
 
 inline constexpr WideKernels kernels {
 #if HWY_TARGET == HWY_AVX3
@@ -64,7 +65,8 @@ inline constexpr WideKernels kernels {
     "neon", 4,
 #endif
         ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>, &point_kernels,
-        &element_kernels
+        &element_kernels,
+        &winding_kernel
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -5,10 +5,11 @@
 #include <optional>
 
 #include <hedgerow/ask/points.h>
+#include <hedgerow/engine/kernels.h>
+#include <hedgerow/engine/winding_expansion.h>
 #include <hedgerow/geometry/closing_angle.h>
 #include <hedgerow/primitives/pseudonormals.h>
 #include <hedgerow/queries/signed_crossings.h>
-#include <hedgerow/queries/winding_expansion.h>
 
 namespace hedgerow {
 
@@ -51,21 +52,38 @@ class ExpandedIndex {
 public:
     using Scalar = typename I::Scalar;
     using Tree = WideBvh<Scalar, 3>;
+    using Parts = WindingTriangles<typename I::Primitives>;
 
     ExpandedIndex(const I& index, Executor& executor)
-        : index_(&index), own_(own_tree(index, executor)), expansion_(tree(), index.primitives()) {}
+        : index_(&index), own_(own_tree(index, executor)), own_blocks_(own_blocks(index, executor)) {
+        const auto parts_of = [&](double scale) { return Parts(index.primitives(), scale); };
+        expansion_ = WindingExpansion<Scalar>(tree().tree(), parts_of, executor);
+    }
 
     template <class Count>
     double winding_number(const Vec3d& point, double error, Count& count) const {
-        return expansion_.winding_number(tree(), index_->primitives(), point, error, count);
+        if constexpr (for_kernels && std::same_as<std::remove_const_t<Count>, NoVisits>)
+            if (const WideKernels* const kernels = wide_kernels();
+                kernels != nullptr && !tree().tree().empty())
+                return (*kernels->winding_number)({tree().tree(), blocks(), expansion_.rows()},
+                                                  expansion_.query(tree().tree(), point, error));
+        return expansion_.winding_number(tree().tree(), Parts(index_->primitives(), expansion_.scale()),
+                                         point, error, count);
     }
-    std::size_t bytes() const { return expansion_.bytes() + own_.bytes(); }
+    std::size_t bytes() const { return expansion_.bytes() + own_.bytes() + own_blocks_.bytes(); }
 
 private:
     static constexpr bool has_tree = std::same_as<typename I::Structure, Tree>;
+    static constexpr bool for_kernels = std::same_as<typename I::Primitives, TriangleMeshView<float>>;
 
     static Tree own_tree(const I& index, Executor& executor) {
         return has_tree ? Tree() : Tree::build(index.primitives(), {}, executor);
+    }
+    TriangleBlocks<float> own_blocks(const I& index, Executor& executor) const {
+        if constexpr (for_kernels && !has_tree)
+            return own_.pack(index.primitives(), executor);
+        else
+            return {};
     }
     const Tree& tree() const {
         if constexpr (has_tree)
@@ -73,10 +91,17 @@ private:
         else
             return own_;
     }
+    const TriangleBlock<float>* blocks() const {
+        if constexpr (has_tree)
+            return index_->packed().data();
+        else
+            return own_blocks_.data();
+    }
 
     const I* index_;
     Tree own_;
-    WindingExpansion<Tree> expansion_;
+    TriangleBlocks<float> own_blocks_;
+    WindingExpansion<Scalar> expansion_;
 };
 struct NoExpansion {
     static std::size_t bytes() { return 0; }

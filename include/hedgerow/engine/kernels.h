@@ -15,6 +15,7 @@
 #include <hedgerow/engine/point_blocks.h>
 #include <hedgerow/engine/triangle_blocks.h>
 #include <hedgerow/engine/wide_tree.h>
+#include <hedgerow/engine/winding_walk.h>
 #include <hedgerow/probes/point_batch.h>
 #include <hedgerow/probes/ray_array.h>
 #include <hedgerow/queries/point_query.h>
@@ -102,6 +103,14 @@ struct AllPointKernels {
     std::size_t (*points_in_ball)(const WidePoints&, const Sphere<float, 3>&);
 };
 
+/// Triangles and their clusters, of which winding numbers are expanded (winding_expansion.h).
+struct WideExpansion {
+    const WideTree<float, 3>& tree;
+    const TriangleBlock<float>* blocks;
+    const double* rows;  // WindingRow
+};
+using WindingKernel = double (*)(const WideExpansion&, const WindingQuery&);
+
 /// The kernels of one instruction set.
 struct WideKernels {
     std::string_view instruction_set;
@@ -111,6 +120,7 @@ struct WideKernels {
     RayKernels<bool> any;
     const AllPointKernels* points;
     const ElementKernels* elements;
+    const WindingKernel* winding_number;
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses them: those that the
