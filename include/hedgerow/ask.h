@@ -3,6 +3,7 @@
 
 #include <hedgerow/ask/hausdorff.h>
 #include <hedgerow/ask/insides.h>
+#include <hedgerow/ask/oriented_points.h>
 #include <hedgerow/ask/pairs.h>
 #include <hedgerow/ask/points.h>
 #include <hedgerow/ask/rays.h>

@@ -227,8 +227,10 @@ public:
         sum -= sum_of(errors);
         return opened;
     }
-    HWY_NOINLINE void add_leaf(std::uint32_t block, std::uint32_t count) {
+    HWY_NOINLINE double add_leaf(std::uint32_t block, std::uint32_t count) {
+        if (all_.blocks == nullptr) return all_.leaves.add(all_.leaves.sum, block, count);
         angles_.add(all_.blocks[block], static_cast<int>(count));
+        return count * HalfAngles::rounding;
     }
     HWY_NOINLINE double total(std::size_t rows) const {
         V sums[parts];

@@ -5,8 +5,7 @@
 #include <optional>
 
 #include <hedgerow/ask/points.h>
-#include <hedgerow/engine/kernels.h>
-#include <hedgerow/engine/winding_expansion.h>
+#include <hedgerow/engine/expanded_index.h>
 #include <hedgerow/geometry/closing_angle.h>
 #include <hedgerow/primitives/pseudonormals.h>
 #include <hedgerow/queries/signed_crossings.h>
@@ -46,69 +45,30 @@ struct SignedDistance {
 };
 
 namespace detail {
-/// The expansion of an index over the tree of a WideBvh: that of the index, or of one that is built.
 template <class I>
-class ExpandedIndex {
-public:
-    using Scalar = typename I::Scalar;
-    using Tree = WideBvh<Scalar, 3>;
-    using Parts = WindingTriangles<typename I::Primitives>;
+void expect_all_held(const I& index) {
+    std::vector<bool> held(index.size());
+    std::size_t count = 0;
+    for (const PrimitiveId id : index.structure().items())
+        if (id != no_primitive && !held[id]) held[id] = true, ++count;
+    if (count < held.size())
+        throw InputError("a solid is made of all primitives of a set, but the index holds " +
+                         std::to_string(count) + " of " + std::to_string(held.size()) +
+                         ": build an index of those that it is to have");
+}
+inline void expect_possible_error(double error) {
+    if (!(error >= 1e-9 && error <= 1))
+        throw UsageError("winding numbers can be promised to be within an error of 1e-9 to 1, not " +
+                         std::to_string(error));
+}
 
-    ExpandedIndex(const I& index, Executor& executor)
-        : index_(&index), own_(own_tree(index, executor)), own_blocks_(own_blocks(index, executor)) {
-        const auto parts_of = [&](double scale) { return Parts(index.primitives(), scale); };
-        expansion_ = WindingExpansion<Scalar>(tree().tree(), parts_of, executor);
-    }
-
-    template <class Count>
-    double winding_number(const Vec3d& point, double error, Count& count) const {
-        if constexpr (for_kernels && std::same_as<std::remove_const_t<Count>, NoVisits>)
-            if (const WideKernels* const kernels = wide_kernels();
-                kernels != nullptr && !tree().tree().empty())
-                return (*kernels->winding_number)({tree().tree(), blocks(), expansion_.rows()},
-                                                  expansion_.query(tree().tree(), point, error));
-        return expansion_.winding_number(tree().tree(), Parts(index_->primitives(), expansion_.scale()),
-                                         point, error, count);
-    }
-    std::size_t bytes() const { return expansion_.bytes() + own_.bytes() + own_blocks_.bytes(); }
-
-private:
-    static constexpr bool has_tree = std::same_as<typename I::Structure, Tree>;
-    static constexpr bool for_kernels = std::same_as<typename I::Primitives, TriangleMeshView<float>>;
-
-    static Tree own_tree(const I& index, Executor& executor) {
-        return has_tree ? Tree() : Tree::build(index.primitives(), {}, executor);
-    }
-    TriangleBlocks<float> own_blocks(const I& index, Executor& executor) const {
-        if constexpr (for_kernels && !has_tree)
-            return own_.pack(index.primitives(), executor);
-        else
-            return {};
-    }
-    const Tree& tree() const {
-        if constexpr (has_tree)
-            return index_->structure();
-        else
-            return own_;
-    }
-    const TriangleBlock<float>* blocks() const {
-        if constexpr (has_tree)
-            return index_->packed().data();
-        else
-            return own_blocks_.data();
-    }
-
-    const I* index_;
-    Tree own_;
-    TriangleBlocks<float> own_blocks_;
-    WindingExpansion<Scalar> expansion_;
-};
 struct NoExpansion {
     static std::size_t bytes() { return 0; }
 };
 template <class I>
-using ExpansionOf = typename std::conditional_t<I::dimension == 3, std::type_identity<ExpandedIndex<I>>,
-                                                std::type_identity<NoExpansion>>::type;
+using ExpansionOf = typename std::conditional_t<
+    I::dimension == 3, std::type_identity<ExpandedIndex<I, WindingTriangles<typename I::Primitives>>>,
+    std::type_identity<NoExpansion>>::type;
 
 /// Fans of triangles that close a surface with few open edges, in an index of their own. Mesh and caps
 /// together have whole winding numbers. A point that sees the caps under less than half of all directions is
@@ -210,7 +170,7 @@ public:
         : index_(&index), options_(options) {
         expect_possible(options);
         in_ieee_mode([&] {
-            expect_all_held();
+            detail::expect_all_held(index);
             IeeeExecutor executor(threads.over(index.size()));
             for (std::size_t i = 0; i < index.size(); ++i) bounds_.expand(index.primitives().bounds(i));
             boundary_ = boundary_of(index.primitives(), executor);
@@ -221,7 +181,9 @@ public:
             if (by() == SideBy::pseudonormal)
                 pseudonormals_ = Pseudonormals<Scalar, dimension>(index.primitives(), executor);
             if constexpr (dimension == 3)
-                if (by() == SideBy::expansion) expansion_.emplace(index, executor);
+                if (by() == SideBy::expansion)
+                    expansion_.emplace(
+                        index, [this](double scale) { return parts(scale); }, executor);
         });
     }
     explicit Solid(I&&, const SolidOptions& = {}, Threads = {}) = delete;
@@ -254,7 +216,8 @@ public:
         return in_ieee_mode([&] {
             if constexpr (dimension == 3)
                 if (by() == SideBy::expansion)
-                    return expansion_->winding_number(Vec3d(point), options_.error, count);
+                    return expansion_->winding_number(parts(expansion_->scale()), Vec3d(point),
+                                                      options_.error, count);
             const auto ray = way_out(point);
             const auto found = crossings(*index_, point, ray, count, true);
             return static_cast<double>(found.winding) + closing_.missing(ray);
@@ -299,16 +262,6 @@ private:
     using Closing = std::conditional_t<dimension == 3, BoundingLoops, OpenEnds>;
     using Expanded = detail::ExpansionOf<I>;
 
-    void expect_all_held() const {
-        std::vector<bool> held(index_->size());
-        std::size_t count = 0;
-        for (const PrimitiveId id : index_->structure().items())
-            if (id != no_primitive && !held[id]) held[id] = true, ++count;
-        if (count < held.size())
-            throw InputError("a solid is made of all primitives of a set, but the index holds " +
-                             std::to_string(count) + " of " + std::to_string(held.size()) +
-                             ": build an index of those that it is to have");
-    }
     static Closing closing_of(const Boundary<Scalar, dimension>& boundary) {
         if constexpr (dimension == 3) {
             std::vector<std::array<Vec3d, 2>> edges;
@@ -374,10 +327,11 @@ private:
         return d;
     }
 
+    auto parts(double scale) const requires(dimension == 3) {
+        return WindingTriangles<typename I::Primitives>(index_->primitives(), scale);
+    }
     static void expect_possible(const SolidOptions& options) {
-        if (!(options.error >= 1e-9 && options.error <= 1))
-            throw UsageError("winding numbers can be promised to be within an error of 1e-9 to 1, not " +
-                             std::to_string(options.error));
+        detail::expect_possible_error(options.error);
         if (dimension == 2 && options.by == SideBy::expansion)
             throw UsageError("expansions are of triangles in space: choose crossings for segments");
     }
@@ -394,8 +348,8 @@ private:
 
 namespace detail {
 /// Calls answer(part) for parts of a batch, which together are all of its points.
-template <class I, class Answer>
-void ask_solid_in_parts(const Solid<I>& solid, const Strided<PointOf<I>>& points, Threads threads,
+template <class S, class Answer>
+void ask_solid_in_parts(const S& solid, const Strided<typename S::Point>& points, Threads threads,
                         Answer answer) {
     IeeeExecutor executor(threads.over(points.size()));
     for_each_part(points, solid.bounds(), solid.index().bytes(), executor, answer);

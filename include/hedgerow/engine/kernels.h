@@ -103,12 +103,21 @@ struct AllPointKernels {
     std::size_t (*points_in_ball)(const WidePoints&, const Sphere<float, 3>&);
 };
 
-/// Triangles and their clusters, of which winding numbers are expanded (winding_expansion.h).
+/// The exact terms of other primitives than triangles of float, behind one plain call: adds those of a leaf,
+/// and returns a bound of their roundings.
+struct WindingLeaves {
+    void* sum = nullptr;
+    double (*add)(void* sum, std::uint32_t block, std::uint32_t count) = nullptr;
+};
+/// Clusters of which winding numbers are expanded (winding_expansion.h). `blocks` is null where `leaves` adds
+/// the exact terms.
 struct WideExpansion {
     const WideTree<float, 3>& tree;
-    const TriangleBlock<float>* blocks;
     const double* rows;  // WindingRow
+    const TriangleBlock<float>* blocks;
+    WindingLeaves leaves = {};
 };
+/// The winding number, without the terms that `leaves` added.
 using WindingKernel = double (*)(const WideExpansion&, const WindingQuery&);
 
 /// The kernels of one instruction set.

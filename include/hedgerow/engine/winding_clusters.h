@@ -5,16 +5,11 @@
 #include <vector>
 
 #include <hedgerow/engine/wide_tree.h>
+#include <hedgerow/engine/winding_parts.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/queries/winding_terms.h>
 
 namespace hedgerow {
-
-/// The area of a primitive, and its middle.
-struct WindingMass {
-    double area;
-    Vec3d middle;
-};
 
 namespace detail {
 

@@ -1,81 +1,28 @@
 /// Winding numbers within a promised error, by multipole expansions of the clusters of a wide BVH.
 #pragma once
 
-#include <hedgerow/base/strided.h>
+#include <hedgerow/engine/kernels.h>
 #include <hedgerow/engine/winding_clusters.h>
-#include <hedgerow/engine/winding_walk.h>
-#include <hedgerow/queries/half_angles.h>
 
 namespace hedgerow {
 
-/// Triangles as parts of a winding number. Positions are multiplied by `scale`, a power of two.
-template <class Set>
-class WindingTriangles {
-public:
-    WindingTriangles(const Set& set, double scale) : set_(&set), scale_(scale) {}
-
-    WindingMass mass(PrimitiveId id) const {
-        const auto t = corners(id);
-        return {length(normal(t)), (t[0] + t[1] + t[2]) / 3.0};
-    }
-    /// The distance of the farthest place from a center.
-    double reach(PrimitiveId id, const Vec3d& center) const {
-        const auto t = corners(id);
-        return std::sqrt(std::max({length2(t[0] - center), length2(t[1] - center), length2(t[2] - center)}));
-    }
-    /// ∫(|y|/reach)⁸
-    double eighth(PrimitiveId id, const Vec3d& center, double reach) const {
-        const auto t = corners(id);
-        return product(length(normal(t)), WindingMoments::mean_of_eighth_power(offsets(t, center, reach)));
-    }
-    void add_moments(PrimitiveId id, const Vec3d& center, double reach, WindingMoments& moments) const {
-        const auto t = corners(id);
-        moments.add_triangle(offsets(t, center, reach), normal(t));
-    }
-
-    /// The exact terms of triangles about a point.
-    class Sum {
-    public:
-        Sum(const WindingTriangles& all, const Vec3d& point, double scale)
-            : set_(all.set_), point_(point), scale_(scale) {}
-
-        void add(int place, PrimitiveId id) {
-            const auto t = set_->corners(id);
-            angles_.add(place, {Vec3d(t[0]), Vec3d(t[1]), Vec3d(t[2])}, point_, scale_);
-        }
-        double turns() const { return angles_.turns(); }
-
-    private:
-        const Set* set_;
-        Vec3d point_;
-        double scale_;
-        HalfAngles angles_;
-    };
-
-private:
-    using Corners = std::array<Vec3d, 3>;
-
-    Corners corners(PrimitiveId id) const {
-        const auto t = set_->corners(id);
-        return {Vec3d(t[0]) * scale_, Vec3d(t[1]) * scale_, Vec3d(t[2]) * scale_};
-    }
-    static Vec3d normal(const Corners& t) { return cross(t[1] - t[0], t[2] - t[0]) * 0.5; }
-    static Corners offsets(const Corners& t, const Vec3d& center, double reach) {
-        return {(t[0] - center) / reach, (t[1] - center) / reach, (t[2] - center) / reach};
-    }
-
-    const Set* set_;
-    double scale_;
-};
-
 namespace detail {
+
+/// Adds the exact terms of a leaf, and returns a bound of their roundings.
+template <class Sum, std::floating_point T>
+double add_exactly(Sum& sum, const WideTree<T, 3>& tree, std::uint32_t block, std::uint32_t count) {
+    double roundings = 0;
+    for (std::uint32_t i = 0; i < count; ++i)
+        roundings += sum.add(static_cast<int>(i), tree.items[wide_leaf_size * block + i]);
+    return roundings;
+}
 
 /// Computes terms without vector instructions: for all parts, and with the bits of the kernels.
 template <std::floating_point T, class Parts>
 class PlainWindings {
 public:
     PlainWindings(const WideTree<T, 3>& tree, const double* rows, const WindingQuery& query,
-                  typename Parts::Sum exact)
+                  typename Parts::Sum& exact)
         : tree_(&tree),
           rows_(rows),
           terms_(query.terms),
@@ -113,9 +60,8 @@ public:
         if (opened != 0) sum -= sum_of(removed);
         return opened;
     }
-    void add_leaf(std::uint32_t block, std::uint32_t count) {
-        for (std::uint32_t i = 0; i < count; ++i)
-            exact_.add(static_cast<int>(i), tree_->items[wide_leaf_size * block + i]);
+    double add_leaf(std::uint32_t block, std::uint32_t count) {
+        return add_exactly(exact_, *tree_, block, count);
     }
     double total(std::size_t rows) const {
         double sums[most_wide] = {};
@@ -140,7 +86,7 @@ private:
     const double* rows_;
     WindingTerms terms_;
     Vec3d x_;
-    typename Parts::Sum exact_;
+    typename Parts::Sum& exact_;
     int width_;
 };
 
@@ -169,16 +115,35 @@ public:
           box_{Vec3d(tree.bounds.low) * scale_, Vec3d(tree.bounds.high) * scale_},
           rows_(detail::winding_rows(tree, parts_of(scale_), executor)) {}
 
-    /// The winding number of the parts about a finite point, which errs by at most `error`.
+    /// The power of two that brings the greatest coordinate to about 1.
+    double scale() const { return scale_; }
+    std::size_t bytes() const { return rows_.bytes(); }
+
+    /// The winding number of the parts about a finite point, which errs by at most `error`. `blocks` are
+    /// those of the tree if the parts are triangles of float, else null.
     template <class Parts, class Count>
-    double winding_number(const Tree& tree, const Parts& parts, const Vec3d& point, double error,
-                          Count& count) const {
+    double winding_number(const Tree& tree, const Parts& parts, const TriangleBlock<float>* blocks,
+                          const Vec3d& point, double error, Count& count) const {
         if (tree.empty()) return 0;
         const WindingQuery query = this->query(tree, point, error);
-        detail::PlainWindings<T, Parts> machine(tree, rows(), query,
-                                                typename Parts::Sum(parts, point, query.to_unit));
+        typename Parts::Sum exact(parts, point, query.to_unit);
+        if constexpr (std::same_as<T, float> && std::same_as<std::remove_const_t<Count>, NoVisits>)
+            if (const WideKernels* const kernels = wide_kernels(); kernels != nullptr) {
+                const WindingKernel answer = *kernels->winding_number;
+                if (blocks != nullptr) return answer({tree, rows(), blocks}, query);
+                auto add = [&](std::uint32_t block, std::uint32_t primitives) {
+                    return detail::add_exactly(exact, tree, block, primitives);
+                };
+                const WindingLeaves leaves{&add, [](void* f, std::uint32_t block, std::uint32_t primitives) {
+                                               return (*static_cast<decltype(add)*>(f))(block, primitives);
+                                           }};
+                return answer({tree, rows(), nullptr, leaves}, query) + exact.turns();
+            }
+        detail::PlainWindings<T, Parts> machine(tree, rows(), query, exact);
         return machine.total(sum_windings(tree, machine, error, query.terms, count));
     }
+
+private:
     WindingQuery query(const Tree& tree, const Vec3d& point, double error) const {
         // Farther than 2⁵⁰⁰ of the clusters' units every point sees next to nothing, and squares overflow.
         const auto bounded = [](double x) { return std::clamp(x, -0x1p500, 0x1p500); };
@@ -187,11 +152,8 @@ public:
         return {point, scaled, to_unit, error,
                 winding_terms_of_thread(tree.nodes.size(), tree.nodes.width())};
     }
-    double scale() const { return scale_; }
     const double* rows() const { return rows_.data()->numbers; }
-    std::size_t bytes() const { return rows_.bytes(); }
 
-private:
     double scale_ = 1;
     Box3d box_;
     Stored<detail::WindingLine> rows_;

@@ -46,8 +46,6 @@ struct WindingThresholds {
     static constexpr double last = 0x1p-44;
     /// The share of the error that bounds may sum up to in double.
     static constexpr double sum = 1 - 0x1p-20;
-    /// Roundings of the exact term of a primitive, in whole turns.
-    static constexpr double primitive = 0x1p-45;
 };
 
 /// Opens all clusters with bounds above a threshold, which sinks until the sum of the other bounds is within
@@ -57,7 +55,7 @@ struct WindingThresholds {
 /// The machine computes and keeps the terms. `expand(node, row, threshold, sum)` writes the terms of the
 /// node's children, `open(row, threshold, sum)` looks at a row again; each takes back the terms with bounds
 /// above the threshold, returns them as bits, and adds to `sum` the change of the row's bounds.
-/// `add_leaf(block, count)` adds exact terms.
+/// `add_leaf(block, count)` adds exact terms and returns a bound of their roundings.
 template <std::floating_point T, class Machine, class Count>
 std::size_t sum_windings(const WideTree<T, 3>& tree, Machine& machine, double error,
                          const WindingTerms& terms, Count& count) {
@@ -78,8 +76,7 @@ std::size_t sum_windings(const WideTree<T, 3>& tree, Machine& machine, double er
             const NodeRef r = stack[--depth];
             if (r.leaf()) {
                 count.leaf(r.count, r.place());
-                machine.add_leaf(r.first / wide_leaf_size, r.count);
-                left -= r.count * Share::primitive;
+                left -= machine.add_leaf(r.first / wide_leaf_size, r.count);
             } else {
                 count.node(r.place());
                 terms.nodes[rows] = r.first;

@@ -21,6 +21,8 @@ struct HalfAngle {
 class HalfAngles {
 public:
     static constexpr int count = 8;
+    /// A bound of what the roundings of a triangle change the sum by, in whole turns.
+    static constexpr double rounding = 0x1p-45;
 
     /// Adds the angle of a triangle to sum i. `scale` brings offsets from x to about 1, and is a power of
     /// two.
