@@ -65,8 +65,7 @@ inline constexpr WideKernels kernels {
     "neon", 4,
 #endif
         ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>, &point_kernels,
-        &element_kernels,
-        &winding_kernel
+        &element_kernels, &winding_kernel
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE
