@@ -41,15 +41,17 @@ TEST(Measure, CountsWhatIsVisited) {
         EXPECT_EQ(s.items, index->item_count());
         EXPECT_EQ(s.depth, index->depth());
         EXPECT_EQ(s.builds, 1);
-        ASSERT_EQ(s.queries.size(), 13u);
+        ASSERT_EQ(s.queries.size(), 24u) << "9 of rays, 4 of points, 8 of regions, 3 of insides";
         for (const auto& q : s.queries) {
             EXPECT_EQ(q.asked, 64u) << q.kind;
             EXPECT_GT(q.seconds, 0) << q.kind;
             EXPECT_GE(q.spread, 0);
             if (s.structure == "brute-force") {
                 EXPECT_EQ(q.nodes, 0);
-                EXPECT_EQ(q.leaves, 1);
-                EXPECT_EQ(q.primitives, static_cast<double>(mesh.size()));
+                // A signed distance takes a search for the closest point, and one for the side.
+                const double searches = q.ask == "signed-distance" ? 2 : 1;
+                EXPECT_EQ(q.leaves, searches) << q.kind;
+                EXPECT_EQ(q.primitives, searches * static_cast<double>(mesh.size())) << q.kind;
             } else {
                 EXPECT_GT(q.nodes, 0) << q.kind;
                 EXPECT_LT(q.primitives, static_cast<double>(mesh.size()) / 2) << q.kind;
@@ -151,10 +153,10 @@ TEST(Measure, TakesEveryKindOfPrimitives) {
         EXPECT_EQ(c.structures.size(), 2u);
         return c.structures.at(0).queries.size();
     };
-    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 13u);
-    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 13u);
-    EXPECT_EQ(kinds(points<float>(200), "octree"), 4u) << "rays pass between points";
-    EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 4u);
+    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 20u) << "no features, no insides";
+    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 24u);
+    EXPECT_EQ(kinds(points<float>(200), "octree"), 11u) << "rays pass between points";
+    EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 11u);
 }
 TEST(Measure, AsksWhatIsSlowLess) {
     MeasureOptions o = quick_options();

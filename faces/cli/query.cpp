@@ -1,13 +1,16 @@
 /// hedgerow query: answers rows of queries from a file, in chunks.
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/spelling.h>
+#include <hedgerow/io/index_file.h>
 
 #include "row_query.h"
 
@@ -39,12 +42,27 @@ std::vector<Column> answer_columns() {
     return list.all;
 }
 
+/// Questions of points that take the options of a NearOptions beside the points.
+template <class Question, class T, int D>
+concept TakesNearOptions = requires(const AnyIndex<T, D>& index, std::span<const Vec<T, D>> given,
+                                    std::span<typename Question::Answer> found) {
+    Question::ask_all(index, given, found, {}, NearOptions<T>());
+};
+
+/// An index, and the solid that is made of it where a question is asked of that.
+template <std::floating_point T, int D>
+struct Answering {
+    const AnyIndex<T, D>& index;
+    std::unique_ptr<const AnySolid<T, D>> solid;
+};
+
 /// Puts a question to an index for each of `count` rows.
 template <class Question, std::floating_point T, int D>
-void answer_piece(const AnyIndex<T, D>& index, const RowOptions& options, const T* numbers,
-                  std::uint64_t first, std::size_t count, AnsweredRows& answers) {
+void answer_piece(const Answering<T, D>& by, const RowOptions& options, const T* numbers, std::uint64_t first,
+                  std::size_t count, AnsweredRows& answers) {
     using Given = typename Question::Given;
     using Answer = typename Question::Answer;
+    const AnyIndex<T, D>& index = by.index;
     if constexpr (is_list<Answer>) {
         answer_by_lists<Given, typename Answer::value_type>(
             options, numbers, first, count, answers,
@@ -52,52 +70,111 @@ void answer_piece(const AnyIndex<T, D>& index, const RowOptions& options, const 
             [&](const auto& item, Record& record) { list_item_columns(index, item, record); });
     } else {
         answer_by_rows<Given>(
-            options, numbers, first, count, answers, Answer(),
+            options, numbers, first, count, answers, no_answer<Question>(),
             [&](std::span<const Given> given, std::span<Answer> found) {
-                if constexpr (AsksMany<Question>) {
+                if constexpr (AsksSolid<Question>)
+                    Question::ask_solid(*by.solid, given, found);
+                else if constexpr (TakesNearOptions<Question, T, D>)
+                    Question::ask_all(index, given, found, {}, options.near<T>());
+                else if constexpr (AsksMany<Question>)
                     Question::ask_all(index, given, found);
-                } else {
-                    Visits nobodys;
-                    for (std::size_t i = 0; i < count; ++i) Question::ask(index, given[i], found[i], nobodys);
-                }
+                else
+                    for (std::size_t i = 0; i < count; ++i) Question::ask(index, given[i], found[i]);
             },
             [](const Answer& answer, Record& record) { list_answer<Question>(answer, record); });
     }
 }
 
+SolidOptions solid_options(const QueryArguments& a) {
+    constexpr std::pair<std::string_view, SideBy> ways[] = {{"crossings", SideBy::crossings},
+                                                            {"parity", SideBy::parity},
+                                                            {"pseudonormal", SideBy::pseudonormal},
+                                                            {"expansion", SideBy::expansion}};
+    SolidOptions options{.error = a.error};
+    for (const auto& [name, by] : ways)
+        if (a.by == name) options.by = by;
+    return options;
+}
+
 template <class Question, std::floating_point T, int D>
 int query(const QueryArguments& a, RowReader<T>& in, const AnyIndex<T, D>& index, QueryReport report) {
-    const RowOptions options{a.count, a.radius};
+    const RowOptions options{a.count, a.radius >= 0 ? a.radius : std::numeric_limits<double>::infinity(),
+                             a.factor};
     const std::size_t columns = RowsOf<typename Question::Given>::columns().size();
     report.primitives = index.size();
+    Answering<T, D> by{index, nullptr};
+    if constexpr (AsksSolid<Question>) {
+        ProgressLine line("looking for open edges", a.quiet);
+        WatchedExecutor watched(default_executor(), line.progress());
+        const double start = now();
+        by.solid = index.make_solid(solid_options(a), watched);
+        report.build_seconds += now() - start;
+    }
     return answer_all<T>(
         a, in, {columns, answer_columns<Question>(), is_list<typename Question::Answer>},
         [&](const T* numbers, std::uint64_t first, std::size_t count, AnsweredRows& answers) {
-            answer_piece<Question>(index, options, numbers, first, count, answers);
+            answer_piece<Question>(by, options, numbers, first, count, answers);
         },
         report);
+}
+
+/// Whether a question tells where on its primitive a closest point is.
+template <class Question>
+concept TellsFeatures = requires {
+    requires Question::tells_features;
+};
+
+/// Throws UsageError for options that a question lacks, and for those that it does not take.
+template <class Question, std::floating_point T, int D>
+void check_options(const QueryArguments& a) {
+    using Rows = RowsOf<typename Question::Given>;
+    constexpr bool near = TakesNearOptions<Question, T, D> || Rows::takes_count;
+    if (Rows::takes_count && a.count == 0)
+        throw UsageError(a.kind + " needs --count: how many neighbours, at least 1");
+    if (Rows::takes_radius && a.radius < 0)
+        throw UsageError(a.kind + " needs --radius: a distance, at least 0");
+    if (!Rows::takes_count && a.count != 0) throw UsageError(a.kind + " takes no --count");
+    if (!Rows::takes_radius && !near && a.radius >= 0) throw UsageError(a.kind + " takes no --radius");
+    if (!near && a.factor != 1) throw UsageError(a.kind + " takes no --factor");
+    if (!AsksSolid<Question> && !a.by.empty()) throw UsageError(a.kind + " takes no --by");
+    if (Question::name == AskWindingNumber<T, D>::name && (a.by == "parity" || a.by == "pseudonormal"))
+        throw UsageError("winding numbers are told by crossings or expansion, not by " + a.by);
+}
+
+/// Whether a question has the name and is of the variant that the options choose. --feature chooses the
+/// question that tells features. Of two questions of a name, of boxes and of balls, --radius chooses that of
+/// balls.
+template <class Question, std::floating_point T, int D>
+bool is_asked(const QueryArguments& a) {
+    if (Question::name != a.kind || TellsFeatures<Question> != a.feature) return false;
+    const bool by_radius = a.radius >= 0;
+    if (RowsOf<typename Question::Given>::takes_radius == by_radius) return true;
+    bool other = false;
+    for_each_question<T, D>([&]<class Other>(Other) {
+        other = other || (Other::name == a.kind && RowsOf<typename Other::Given>::takes_radius == by_radius);
+    });
+    return !other;
 }
 
 /// Opens the rows, lets `make_index` build or load an index, and queries it.
 template <class P, class F>
 int query_set(const QueryArguments& a, F make_index) {
     using T = typename P::Scalar;
-    int code = 2;
-    for_each_question<T, P::dimension>([&]<class Question>(Question) {
-        if (Question::name != a.kind) return;
+    constexpr int D = P::dimension;
+    std::optional<int> code;
+    for_each_question<T, D>([&]<class Question>(Question) {
+        if (!is_asked<Question, T, D>(a)) return;
+        check_options<Question, T, D>(a);
         if constexpr (!answered_by<Question, P>) {
-            throw InputError(a.scene +
-                             ": rays pass between points. Ask for what is near them, or name a mesh");
+            if constexpr (AsksFacets<Question>)
+                throw InputError(a.scene + ": " + a.kind + (a.feature ? " with --feature" : "") +
+                                 " is asked of triangles, or of segments in the plane. Name such a scene");
+            else
+                throw InputError(a.scene +
+                                 ": rays pass between points. Ask for what is near them, or name a mesh");
         } else {
-            using Rows = RowsOf<typename Question::Given>;
-            if (Rows::takes_count && a.count == 0)
-                throw UsageError(a.kind + " needs --count: how many neighbours, at least 1");
-            if (Rows::takes_radius && a.radius < 0)
-                throw UsageError(a.kind + " needs --radius: a distance, at least 0");
-            if (!Rows::takes_count && a.count != 0) throw UsageError(a.kind + " takes no --count");
-            if (!Rows::takes_radius && a.radius >= 0) throw UsageError(a.kind + " takes no --radius");
-            const auto in =
-                open_rows<T>(a.from, row_format(a.from, a.format), Rows::columns(), {{}, &interrupted});
+            const auto in = open_rows<T>(a.from, row_format(a.from, a.format),
+                                         RowsOf<typename Question::Given>::columns(), {{}, &interrupted});
             QueryReport report;
             const double start = now();
             const auto index = make_index(report);
@@ -105,7 +182,8 @@ int query_set(const QueryArguments& a, F make_index) {
             code = query<Question>(a, *in, *index, report);
         }
     });
-    return code;
+    if (!code) throw UsageError(a.kind + " takes no --feature");
+    return *code;
 }
 template <class P>
 int query_set(const QueryArguments& a, const P& primitives) {
@@ -123,8 +201,6 @@ int query_saved(const QueryArguments& a) {
 
 std::vector<std::string_view> kind_names() {
     auto names = question_names<TriangleMesh<float>>();
-    for (const EngineKind& kind : region_kinds()) names.push_back(kind.name);
-    for (const EngineKind& kind : inside_kinds()) names.push_back(kind.name);
     for (const PairKind& kind : pair_kinds()) names.push_back(kind.name);
     return names;
 }
@@ -140,11 +216,11 @@ std::string kinds_help() {
         if (!in.defaults.empty()) reads += "]";
         std::string writes;
         for (const Column& c : answer_columns<Question>()) writes += (writes.empty() ? "" : " ") + c.name;
-        text += fmt::format("  {:19} {}\n  {:19}   -> {}\n", Question::name, reads, "", writes);
+        std::string name(Question::name);
+        if (RowsOf<typename Question::Given>::takes_radius) name += " --radius";
+        if (TellsFeatures<Question>) name += " --feature";
+        text += fmt::format("  {:19} {}\n  {:19}   -> {}\n", name, reads, "", writes);
     });
-    for (const auto kinds : {region_kinds(), inside_kinds()})
-        for (const EngineKind& kind : kinds)
-            text += fmt::format("  {:19} {}\n  {:19}   -> {}\n", kind.name, kind.reads, "", kind.writes);
     for (const PairKind& kind : pair_kinds()) text += fmt::format("  {:19} {}\n", kind.name, kind.meaning);
     return text + "\n";
 }
@@ -197,7 +273,17 @@ Run add_query(CLI::App& verb) {
     verb.add_option("--format", a->format, "of --from: npy, csv or json; needed for a pipe");
     verb.add_option("--output-format", a->output_format, "of -o: npy, csv or json; needed for a pipe");
     verb.add_option("-k,--count", a->count, "nearest: how many neighbours");
-    verb.add_option("--radius", a->radius, "within, balls, pairs-within: the distance, not squared");
+    verb.add_option(
+        "--radius", a->radius,
+        "the distance, not squared. within and pairs-within need it; closest-point and nearest find "
+        "nothing beyond it; overlap, contained, count and any-overlap are asked of balls");
+    verb.add_option("--factor", a->factor,
+                    "closest-point, nearest: how many times as far away as the exact answer one may be")
+        ->capture_default_str();
+    verb.add_flag(
+        "--feature", a->feature,
+        "closest-point: also whether the point is on the face (0), an edge (1) or a vertex (2), its "
+        "weights and the normal");
     verb.add_option(
             "--by", a->by,
             "side, signed-distance: how insides are told, crossings (default), parity, pseudonormal or "
@@ -223,6 +309,8 @@ Run add_query(CLI::App& verb) {
                                          suggestion(a->kind, names), fmt::join(names, ", ")));
         if (verb.count("--radius") > 0 && a->radius < 0)
             throw UsageError(fmt::format("--radius {}: a distance is at least 0", a->radius));
+        if (!(a->factor >= 1))
+            throw UsageError(fmt::format("--factor {}: a factor is at least 1", a->factor));
         if (verb.count("--count") > 0 && a->count == 0) throw UsageError("--count 0: ask for at least 1");
         row_format(a->output, a->output_format);
         if (a->output != "-") check_writable(a->output);
@@ -230,24 +318,21 @@ Run add_query(CLI::App& verb) {
         const auto is_one_of = [&](const auto& kinds) {
             return std::any_of(kinds.begin(), kinds.end(), [&](const auto& k) { return k.name == a->kind; });
         };
-        const bool of_inside = is_one_of(inside_kinds()), of_region = is_one_of(region_kinds());
-        if (!of_inside && !a->by.empty()) throw UsageError(a->kind + " takes no --by");
         if (verb.count("--error") > 0 && a->by != "expansion")
             throw UsageError("--error is the promise of --by expansion: ask for both");
         if (verb.count("--tolerance") > 0 && a->kind != "hausdorff")
             throw UsageError(a->kind + " takes no --tolerance");
-        if (is_one_of(pair_kinds())) return query_pairs(*a);
+        if (is_one_of(pair_kinds())) {
+            if (!a->by.empty()) throw UsageError(a->kind + " takes no --by");
+            if (a->factor != 1) throw UsageError(a->kind + " takes no --factor");
+            if (a->feature) throw UsageError(a->kind + " takes no --feature");
+            return query_pairs(*a);
+        }
         if (!a->with.empty()) throw UsageError(a->kind + " is asked of one scene: leave out --with");
         if (a->from.empty()) throw UsageError(a->kind + " needs --from: the file of rows, or - for a pipe");
         row_format(a->from, a->format);
         if (a->from != "-" && !std::filesystem::exists(a->from))
             throw InputError(a->from + ": there is no such file. Check the path");
-        if (of_inside || of_region) {
-            if (a->structure != "wide")
-                throw UsageError(a->kind + " is answered by the engine: leave out --structure");
-            if (a->count != 0) throw UsageError(a->kind + " takes no --count");
-            return of_inside ? query_inside(*a) : query_region(*a);
-        }
         return in_precision(*a, [&]<class T>(T) {
             if (names_index_file(a->scene) && a->structure == "wide") return query_saved<T>(*a);
             return std::visit([&](const auto& set) { return query_set(*a, set); }, load<T>(*a));

@@ -15,7 +15,8 @@ namespace hedgerow::cli {
 struct QueryArguments : Common {
     std::string kind, from, with, format, output_format, structure = "wide", by;
     std::uint64_t count = 0;
-    double radius = -1, error = 1e-3, tolerance = 1e-3;
+    double radius = -1, factor = 1, error = 1e-3, tolerance = 1e-3;
+    bool feature = false;
     unsigned threads = 0;
 };
 
@@ -32,17 +33,6 @@ struct QueryReport {
 };
 /// Prints the report, and returns the exit code.
 int print_report(const QueryArguments& a, const QueryReport& report);
-
-/// Kinds of queries of rows that the engine alone answers, and the columns of each in space.
-struct EngineKind {
-    std::string_view name, reads, writes;
-};
-/// What lies in boxes and balls. Returns the exit code, as the other queries do.
-std::span<const EngineKind> region_kinds();
-int query_region(const QueryArguments& a);
-/// Whether points are inside of a surface.
-std::span<const EngineKind> inside_kinds();
-int query_inside(const QueryArguments& a);
 
 /// The kinds of queries between two scenes, or a scene and itself, and what each answers.
 struct PairKind {

@@ -114,12 +114,6 @@ void timed(const QueryArguments& a, QueryReport& report, F ask) {
     report.seconds = now() - start;
 }
 
-/// The squared radius, rounded as `within` has it.
-template <class T>
-T squared_radius(const QueryArguments& a) {
-    return RowsOf<Ball<T, 2>>::of(std::array<T, 2>().data(), {.radius = a.radius}).radius2;
-}
-
 [[noreturn]] void refuse(const QueryArguments& a, const std::string& scenes, const char* wanted) {
     throw InputError(fmt::format("{}: {} is asked of {}. Name such scenes", scenes, a.kind, wanted));
 }
@@ -138,7 +132,7 @@ int query_self(const QueryArguments& a, const A& set) {
             std::conditional_t<points, std::vector<PairWithin<T>>, std::vector<ElementPair>> pairs;
             timed(a, report, [&](Executor& executor) {
                 if constexpr (points)
-                    pairs_within(index, {.radius2 = squared_radius<T>(a)}, pairs, executor);
+                    pairs_within(index, RowOptions{.radius = a.radius}.near<T>(), pairs, executor);
                 else
                     self_intersections(index, pairs, executor);
             });
@@ -196,7 +190,7 @@ int query_two(const QueryArguments& a, const A& set, const B& with) {
                 return answer(
                     [&](const auto& one, const auto& other, Executor& executor) {
                         std::vector<PairWithin<T>> found;
-                        pairs_within(one, other, {.radius2 = squared_radius<T>(a)}, found, executor);
+                        pairs_within(one, other, RowOptions{.radius = a.radius}.near<T>(), found, executor);
                         return found;
                     },
                     pairs);

@@ -14,7 +14,6 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/columns.h>
-#include <hedgerow/io/index_file.h>
 
 #include "query.h"
 #include "row_stream.h"
@@ -115,46 +114,6 @@ void answer_by_rows(const RowOptions& options, const T* numbers, std::uint64_t f
         append_record(answers.records, [&](Record& record) { list(usable ? found[i] : none, record); });
     }
     answers.rows = count;
-}
-
-/// Calls f.operator()<P>(make_index) for the scene's set P of primitives. `make_index(report)` builds or
-/// loads the engine's index of it. Returns the result of f.
-template <class F>
-int on_engine(const QueryArguments& a, F f) {
-    return in_precision(a, [&]<class T>(T) {
-        if (names_index_file(a.scene))
-            return f.template operator()<TriangleMesh<T>>([&](QueryReport& report) {
-                ProgressLine line("loading " + a.scene, a.quiet, "bytes");
-                WatchedExecutor watched(default_executor(), line.progress());
-                report.loaded = true;
-                return load_index<T>(a.scene, {}, watched);
-            });
-        return std::visit(
-            [&]<class P>(const P& set) {
-                return f.template operator()<P>([&](QueryReport&) {
-                    ProgressLine line("building wide", a.quiet);
-                    WatchedExecutor watched(default_executor(), line.progress());
-                    return build<WideBvh>(set, {}, watched);
-                });
-            },
-            load<T>(a));
-    });
-}
-
-/// Answers rows of Given on the engine. `start(index)` prepares what is asked, once, and returns what
-/// answers a piece: a function of (numbers, first, count, answers), which may refer to the index.
-template <class Given, class P, class Make, class Start>
-int answer_on_engine(const QueryArguments& a, Make make_index, std::vector<Column> written, bool lists,
-                     Start start) {
-    using T = typename P::Scalar;
-    const InputColumns columns = RowsOf<Given>::columns();
-    const auto in = open_rows<T>(a.from, row_format(a.from, a.format), columns, {{}, &interrupted});
-    QueryReport report;
-    const double began = now();
-    const auto index = make_index(report);
-    const auto answer = start(index);
-    report.build_seconds = now() - began, report.primitives = index.size();
-    return answer_all<T>(a, *in, {columns.size(), std::move(written), lists}, answer, report);
 }
 
 }  // namespace hedgerow::cli

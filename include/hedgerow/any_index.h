@@ -3,15 +3,19 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <hedgerow/any_solid.h>
 #include <hedgerow/ask.h>
 #include <hedgerow/base/option.h>
+#include <hedgerow/geometry/any_region.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
+#include <hedgerow/surface.h>
 #include <hedgerow/trace.h>
 #include <hedgerow/walks/virtual_query.h>
 
@@ -19,8 +23,8 @@ namespace hedgerow {
 
 /// An index of any structure. A batch of closest or any hits or closest points costs one virtual call, inside
 /// which the structure is known at compile time. So does each list of the engine (`all_hits`, `nearest`,
-/// `within`, `overlapping`) whose visits are not counted. All other queries share one walk a probe, in which
-/// each candidate costs a virtual call. Const use is thread-safe.
+/// `within`, and all that boxes and balls are asked) whose visits are not counted. All other queries share
+/// one walk a probe, in which each candidate costs a virtual call. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
@@ -36,6 +40,8 @@ public:
     virtual std::size_t leaf_count() const = 0;
     virtual std::size_t item_count() const = 0;
     virtual int depth() const = 0;
+    /// Whether the structure holds each primitive once.
+    virtual bool exclusive() const = 0;
     /// What is wrong with the structure; empty if nothing is.
     virtual std::string validate() const = 0;
 
@@ -80,28 +86,61 @@ public:
         if (visits == nullptr) return all_hits_uncounted(ray, hits);
         return answer<AllHits<AnyIndex>>(*visits, ray, hits);
     }
-    /// Writes the closest point for each of `points`, false where there is no primitive. With `visits`, adds
-    /// to one count a point, and no kernel answers.
+    /// Writes the closest point for each of `points`, false where there is no primitive within the options'
+    /// distance. With `visits`, adds to one count a point, and no kernel answers.
     void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
-                        std::span<Visits> visits = {}) const {
-        if (visits.empty()) return closest_points_uncounted(points, found);
+                        std::span<Visits> visits = {}, const NearOptions<T>& options = {}) const {
+        if (visits.empty()) return closest_points_uncounted(points, found, options);
         for (std::size_t i = 0; i < points.size(); ++i)
-            found[i] = answer<ClosestPoint<AnyIndex>>(visits[i], points[i], NearOptions<T>());
+            found[i] = answer<ClosestPoint<AnyIndex>>(visits[i], points[i], options);
     }
     std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
-                        Visits* visits = nullptr) const {
-        if (visits == nullptr) return nearest_uncounted(point, k, found);
-        return answer<Nearest<AnyIndex>>(*visits, point, k, NearOptions<T>(), found);
+                        Visits* visits = nullptr, const NearOptions<T>& options = {}) const {
+        if (visits == nullptr) return nearest_uncounted(point, k, options, found);
+        return answer<Nearest<AnyIndex>>(*visits, point, k, options, found);
     }
     std::size_t within(const Vec<T, D>& point, const NearOptions<T>& options, std::vector<Near<T, D>>& found,
                        Visits* visits = nullptr) const {
         if (visits == nullptr) return within_uncounted(point, options, found);
         return answer<Within<AnyIndex>>(*visits, point, options, found);
     }
-    std::size_t overlapping(const Box<T, D>& box, std::vector<PrimitiveId>& found,
+    /// The questions of ask/regions.h, of any region: a box, a ball, another shape of geometry/ or a type of
+    /// yours. Other shapes than boxes share one walk; on the engine balls have one of their own.
+    template <RegionFor<AnyIndex> R>
+    std::size_t overlapping(const R& region, std::vector<PrimitiveId>& found,
                             Visits* visits = nullptr) const {
-        if (visits == nullptr) return overlapping_uncounted(box, found);
-        return answer<Overlapping<AnyIndex>>(*visits, box, found);
+        return list(region, found, Finds::overlapping, visits);
+    }
+    template <RegionFor<AnyIndex> R>
+    std::size_t contained(const R& region, std::vector<PrimitiveId>& found, Visits* visits = nullptr) const {
+        return list(region, found, Finds::contained, visits);
+    }
+    template <RegionFor<AnyIndex> R>
+    std::size_t count_overlapping(const R& region, Visits* visits = nullptr) const {
+        if constexpr (has_walk<R>)
+            if (visits == nullptr) return count_uncounted(region);
+        return count(region, visits);
+    }
+    template <RegionFor<AnyIndex> R>
+    bool any_overlapping(const R& region, Visits* visits = nullptr) const {
+        if constexpr (has_walk<R>)
+            if (visits == nullptr) return any_uncounted(region);
+        return answer_region<AnyOverlap>(region, visits);
+    }
+
+    /// Whether the primitives are triangles in space or segments in the plane: these have features, and may
+    /// be the surface of a solid. `feature`, `solid` and `make_solid` throw InputError for other primitives.
+    virtual bool has_facets() const = 0;
+    /// Where on its primitive the closest point is that a question of `point` found (surface.h).
+    virtual FeatureOfNear<T, D> feature(const Vec<T, D>& point, const Near<T, D>& near) const = 0;
+    /// The solid whose surface the primitives are, in O(n). Throws as the constructor of Solid does.
+    virtual std::unique_ptr<const AnySolid<T, D>> make_solid(const SolidOptions& options = {},
+                                                             Threads threads = {}) const = 0;
+    /// The solid with the default options. It is made at the first call, and kept until the index changes.
+    const AnySolid<T, D>& solid() const {
+        const std::lock_guard lock(making_solid_);
+        if (!solid_) solid_ = make_solid();
+        return *solid_;
     }
 
     /// Calls a function for the structure's cells, parents before their children (walks/outline.h).
@@ -129,29 +168,74 @@ public:
     virtual double refit(Threads threads = {}) = 0;
 
 protected:
+    /// To be called where the primitives change.
+    void forget_solid() { solid_.reset(); }
     virtual KernelUse closest_hits_uncounted(const RayArray<T, D>& rays, std::span<Hit<T>> hits) const = 0;
     virtual KernelUse any_hits_uncounted(const RayArray<T, D>& rays, std::span<bool> hits) const = 0;
-    virtual void closest_points_uncounted(std::span<const Vec<T, D>> points,
-                                          std::span<Near<T, D>> found) const = 0;
+    virtual void closest_points_uncounted(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
+                                          const NearOptions<T>& options) const = 0;
     virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const {
         return answer<AllHits<AnyIndex>>(no_visits, ray, hits);
     }
     virtual std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k,
+                                          const NearOptions<T>& options,
                                           std::vector<Near<T, D>>& found) const {
-        return answer<Nearest<AnyIndex>>(no_visits, point, k, NearOptions<T>(), found);
+        return answer<Nearest<AnyIndex>>(no_visits, point, k, options, found);
     }
     virtual std::size_t within_uncounted(const Vec<T, D>& point, const NearOptions<T>& options,
                                          std::vector<Near<T, D>>& found) const {
         return answer<Within<AnyIndex>>(no_visits, point, options, found);
     }
-    virtual std::size_t overlapping_uncounted(const Box<T, D>& box, std::vector<PrimitiveId>& found) const {
-        return answer<Overlapping<AnyIndex>>(no_visits, box, found);
+    virtual std::size_t list_uncounted(const Box<T, D>& region, std::vector<PrimitiveId>& found,
+                                       Finds finds) const {
+        return answer_region<Overlapping>(region, nullptr, found, finds);
+    }
+    virtual std::size_t list_uncounted(const Sphere<T, D>& region, std::vector<PrimitiveId>& found,
+                                       Finds finds) const {
+        return answer_region<Overlapping>(region, nullptr, found, finds);
+    }
+    virtual std::size_t count_uncounted(const Box<T, D>& region) const { return count(region, nullptr); }
+    virtual std::size_t count_uncounted(const Sphere<T, D>& region) const { return count(region, nullptr); }
+    virtual bool any_uncounted(const Box<T, D>& region) const {
+        return answer_region<AnyOverlap>(region, nullptr);
+    }
+    virtual bool any_uncounted(const Sphere<T, D>& region) const {
+        return answer_region<AnyOverlap>(region, nullptr);
     }
     virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
     virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
+    virtual void walk(VirtualQuery<RegionProbe<AnyRegion<T, D>>>& query, Visits& count) const = 0;
 
 private:
+    mutable std::mutex making_solid_;
+    mutable std::unique_ptr<const AnySolid<T, D>> solid_;
+
+    /// Shapes that the engine has walks of its own for.
+    template <class R>
+    static constexpr bool has_walk = std::same_as<R, Box<T, D>> || std::same_as<R, Sphere<T, D>>;
+
+    template <template <class, class> class Q, class R, class... Arguments>
+    auto answer_region(const R& region, Visits* visits, Arguments&&... arguments) const {
+        if constexpr (!std::same_as<R, Box<T, D>> && !std::same_as<R, AnyRegion<T, D>>)
+            return answer_region<Q>(AnyRegion<T, D>(region), visits, arguments...);
+        else
+            return visits != nullptr ? answer<Q<AnyIndex, R>>(*visits, region, arguments...)
+                                     : answer<Q<AnyIndex, R>>(no_visits, region, arguments...);
+    }
+    template <class R>
+    std::size_t list(const R& region, std::vector<PrimitiveId>& found, Finds finds, Visits* visits) const {
+        if constexpr (has_walk<R>)
+            if (visits == nullptr) return list_uncounted(region, found, finds);
+        return answer_region<Overlapping>(region, visits, found, finds);
+    }
+    template <class R>
+    std::size_t count(const R& region, Visits* visits) const {
+        if (exclusive()) return answer_region<OverlapCount>(region, visits);
+        // The memory is the thread's own.
+        static thread_local std::vector<PrimitiveId> found;
+        return answer_region<Overlapping>(region, visits, found, Finds::overlapping);
+    }
     /// Walks. The count is a Visits or a NoVisits, or for rays also a TraceLog.
     template <class Probe, class Count>
     void walk_and_count(VirtualQuery<Probe>& query, Count& count) const {

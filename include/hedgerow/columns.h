@@ -19,8 +19,16 @@ namespace hedgerow {
 struct RowOptions {
     /// How many neighbours to find, at least 1.
     std::size_t count = 0;
-    /// Not squared, at least 0.
-    double radius = 0;
+    /// Not squared, at least 0; infinite for no limit.
+    double radius = std::numeric_limits<double>::infinity();
+    /// How many times as far away as the exact answer an answer may be, at least 1 (NearOptions).
+    double factor = 1;
+
+    /// The options of a question of a point. The radius is rounded to T; NearOptions squares it.
+    template <std::floating_point T>
+    NearOptions<T> near() const {
+        return {.radius = rounded_to<T>(radius), .factor = rounded_to<T>(factor)};
+    }
 };
 
 namespace detail {
@@ -90,16 +98,14 @@ template <std::floating_point T, int D>
 struct RowsOf<Neighbours<T, D>> : detail::PointRows<T, D> {
     static constexpr bool takes_count = true, takes_radius = false;
     static Neighbours<T, D> of(const T* row, const RowOptions& o) {
-        return {detail::vec_at<D>(row), o.count};
+        return {detail::vec_at<D>(row), o.count, o.near<T>()};
     }
 };
 template <std::floating_point T, int D>
 struct RowsOf<Ball<T, D>> : detail::PointRows<T, D> {
     static constexpr bool takes_count = false, takes_radius = true;
     static Ball<T, D> of(const T* row, const RowOptions& o) {
-        const double squared = product(o.radius, o.radius);
-        const bool fits = squared <= static_cast<double>(std::numeric_limits<T>::max());
-        return {detail::vec_at<D>(row), fits ? rounded_to<T>(squared) : std::numeric_limits<T>::max()};
+        return {detail::vec_at<D>(row), o.near<T>().max_distance2()};
     }
 };
 /// A solid ball, as a region.
@@ -145,6 +151,32 @@ void list_columns(const Near<T, D>& near, F& f) {
     constexpr std::string_view axes[] = {"x", "y", "z"};
     f("primitive", near.primitive), f("distance", distance_of(near));
     for (int k = 0; k < D; ++k) f(axes[k], near.point[k]);
+}
+
+/// The feature is 0 for a face, 1 for an edge, 2 for a vertex, and -128 where nothing was found. The weights
+/// are those of the corners in their order.
+template <std::floating_point T, int D, class F>
+void list_columns(const NearAndFeature<T, D>& answer, F& f) {
+    constexpr std::string_view weights[] = {"weight_a", "weight_b", "weight_c"}, axes[] = {"nx", "ny", "nz"};
+    constexpr std::int8_t none = std::numeric_limits<std::int8_t>::min();
+    const auto& [near, where] = answer;
+    list_columns(near, f);
+    f("feature", near ? static_cast<std::int8_t>(where.feature) : none);
+    f("number", near ? static_cast<std::int8_t>(where.number) : none);
+    for (std::size_t k = 0; k < D; ++k) f(weights[k], where.weights[k]);
+    for (int k = 0; k < D; ++k) f(axes[k], where.normal[k]);
+}
+
+/// The answer to a row that can have none: what stands for nothing found, NaN for a number that every
+/// point has, and -128 for a sign.
+template <class Question>
+typename Question::Answer no_answer() {
+    if constexpr (std::is_floating_point_v<typename Question::Answer>)
+        return std::numeric_limits<typename Question::Answer>::quiet_NaN();
+    else if constexpr (std::is_same_v<typename Question::Answer, std::int8_t>)
+        return std::numeric_limits<std::int8_t>::min();
+    else
+        return {};
 }
 
 /// Calls f(name, number) for each column of an answer to a question. An answer that is a number or a truth

@@ -2,6 +2,7 @@
 /// through it, so a question in the table is measured on every structure and compared with brute force.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -20,12 +21,15 @@ template <std::floating_point T, int D>
 struct Neighbours {
     Vec<T, D> point;
     std::size_t k;
+    NearOptions<T> options = {};
 };
 
 /// A question: its name; the words for it in a sentence; what is given to it, and what it answers, in memory
 /// that the next answer may use again. A question has either `ask`, which asks an index once, or `ask_all`,
 /// which asks many times in one call. Visits are added to those given; an `ask` without them is faster on the
 /// engine. `column` names an answer that is a number or a truth value; columns.h has the columns of others.
+/// `of_facets` says that only triangles in space and segments in the plane answer. What is asked of the solid
+/// of an index has `ask_solid` too. Questions of one name differ by what is given to them or what they tell.
 template <std::floating_point T, int D>
 struct AskClosestHit {
     static constexpr std::string_view name = "closest-hit", words = "closest hit";
@@ -64,8 +68,43 @@ struct AskClosestPoint {
     using Given = Vec<T, D>;
     using Answer = Near<T, D>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
-                        std::span<Visits> visits = {}) {
-        index.closest_points(points, found, visits);
+                        std::span<Visits> visits = {}, const NearOptions<T>& options = {}) {
+        index.closest_points(points, found, visits, options);
+    }
+};
+/// A closest point, and where on its triangle or segment it is.
+template <std::floating_point T, int D>
+struct NearAndFeature {
+    Near<T, D> near;
+    FeatureOfNear<T, D> where;
+
+    explicit operator bool() const { return static_cast<bool>(near); }
+    /// NaN, in the normal of a triangle without area, equals itself.
+    friend bool operator==(const NearAndFeature& a, const NearAndFeature& b) {
+        const auto same = [](T x, T y) { return x == y || (x != x && y != y); };
+        bool equal =
+            a.near == b.near && a.where.feature == b.where.feature && a.where.number == b.where.number;
+        for (int k = 0; k < D; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            equal = equal && same(a.where.weights[i], b.where.weights[i]) &&
+                    same(a.where.normal[k], b.where.normal[k]);
+        }
+        return equal;
+    }
+};
+template <std::floating_point T, int D>
+struct AskFeature {
+    static constexpr std::string_view name = "closest-point", words = "closest point with its feature";
+    static constexpr bool of_facets = true, tells_features = true;
+    using Given = Vec<T, D>;
+    using Answer = NearAndFeature<T, D>;
+    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
+                        std::span<Visits> visits = {}, const NearOptions<T>& options = {}) {
+        static thread_local std::vector<Near<T, D>> near;
+        near.resize(points.size());
+        index.closest_points(points, near, visits, options);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[i] = {near[i], near[i] ? index.feature(points[i], near[i]) : FeatureOfNear<T, D>()};
     }
 };
 template <std::floating_point T, int D>
@@ -74,10 +113,10 @@ struct AskNearest {
     using Given = Neighbours<T, D>;
     using Answer = std::vector<Near<T, D>>;
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found, Visits& visits) {
-        index.nearest(given.point, given.k, found, &visits);
+        index.nearest(given.point, given.k, found, &visits, given.options);
     }
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found) {
-        index.nearest(given.point, given.k, found);
+        index.nearest(given.point, given.k, found, nullptr, given.options);
     }
 };
 template <std::floating_point T, int D>
@@ -92,16 +131,119 @@ struct AskWithin {
         index.within(ball.center, {.radius2 = ball.radius2}, found);
     }
 };
+
+// The questions of a region: of a box, and by the same names of a solid ball.
+
+namespace detail {
+template <class R>
+inline constexpr bool is_ball = false;
 template <std::floating_point T, int D>
+inline constexpr bool is_ball<Sphere<T, D>> = true;
+}  // namespace detail
+
+template <Region R>
 struct AskOverlap {
-    static constexpr std::string_view name = "overlap", words = "box overlap";
-    using Given = Box<T, D>;
+    static constexpr std::string_view name = "overlap",
+                                      words = detail::is_ball<R> ? "ball overlap" : "box overlap";
+    using Given = R;
     using Answer = std::vector<PrimitiveId>;
-    static void ask(const AnyIndex<T, D>& index, const Given& box, Answer& found, Visits& visits) {
-        index.overlapping(box, found, &visits);
+    using Asked = AnyIndex<typename R::Scalar, R::dimension>;
+    static void ask(const Asked& index, const R& region, Answer& found, Visits& visits) {
+        index.overlapping(region, found, &visits);
     }
-    static void ask(const AnyIndex<T, D>& index, const Given& box, Answer& found) {
-        index.overlapping(box, found);
+    static void ask(const Asked& index, const R& region, Answer& found) { index.overlapping(region, found); }
+};
+template <Region R>
+struct AskContained {
+    static constexpr std::string_view name = "contained", words = detail::is_ball<R> ? "contained in a ball"
+                                                                                     : "contained in a box";
+    using Given = R;
+    using Answer = std::vector<PrimitiveId>;
+    using Asked = AnyIndex<typename R::Scalar, R::dimension>;
+    static void ask(const Asked& index, const R& region, Answer& found, Visits& visits) {
+        index.contained(region, found, &visits);
+    }
+    static void ask(const Asked& index, const R& region, Answer& found) { index.contained(region, found); }
+};
+template <Region R>
+struct AskCount {
+    static constexpr std::string_view name = "count", column = "count",
+                                      words = detail::is_ball<R> ? "count in a ball" : "count in a box";
+    using Given = R;
+    using Answer = std::uint64_t;
+    using Asked = AnyIndex<typename R::Scalar, R::dimension>;
+    static void ask(const Asked& index, const R& region, Answer& count, Visits& visits) {
+        count = index.count_overlapping(region, &visits);
+    }
+    static void ask(const Asked& index, const R& region, Answer& count) {
+        count = index.count_overlapping(region);
+    }
+};
+template <Region R>
+struct AskAnyOverlap {
+    static constexpr std::string_view name = "any-overlap", column = "overlaps",
+                                      words = detail::is_ball<R> ? "any in a ball" : "any in a box";
+    using Given = R;
+    using Answer = bool;
+    using Asked = AnyIndex<typename R::Scalar, R::dimension>;
+    static void ask(const Asked& index, const R& region, Answer& any, Visits& visits) {
+        any = index.any_overlapping(region, &visits);
+    }
+    static void ask(const Asked& index, const R& region, Answer& any) { any = index.any_overlapping(region); }
+};
+
+// The questions of the solid whose surface the primitives are.
+
+/// Answers a sign: -1 outside, 0 on the surface, 1 inside.
+template <std::floating_point T, int D>
+struct AskSide {
+    static constexpr std::string_view name = "side", words = "side of a surface", column = "side";
+    static constexpr bool of_facets = true;
+    using Given = Vec<T, D>;
+    using Answer = std::int8_t;
+    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
+                        std::span<Visits> visits = {}) {
+        ask_solid(index.solid(), points, found, visits);
+    }
+    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Given> points, std::span<Answer> found,
+                          std::span<Visits> visits = {}) {
+        static thread_local std::vector<Side> sides;
+        sides.resize(points.size());
+        solid.sides(points, sides, visits);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[i] = static_cast<Answer>(static_cast<int>(sides[i]) - static_cast<int>(Side::on));
+    }
+};
+template <std::floating_point T, int D>
+struct AskWindingNumber {
+    static constexpr std::string_view name = "winding-number", words = "winding number",
+                                      column = "winding_number";
+    static constexpr bool of_facets = true;
+    using Given = Vec<T, D>;
+    using Answer = double;
+    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
+                        std::span<Visits> visits = {}) {
+        ask_solid(index.solid(), points, found, visits);
+    }
+    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Given> points, std::span<Answer> found,
+                          std::span<Visits> visits = {}) {
+        solid.winding_numbers(points, found, visits);
+    }
+};
+template <std::floating_point T, int D>
+struct AskSignedDistance {
+    static constexpr std::string_view name = "signed-distance", words = "signed distance",
+                                      column = "distance";
+    static constexpr bool of_facets = true;
+    using Given = Vec<T, D>;
+    using Answer = T;
+    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
+                        std::span<Visits> visits = {}) {
+        ask_solid(index.solid(), points, found, visits);
+    }
+    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Given> points, std::span<Answer> found,
+                          std::span<Visits> visits = {}) {
+        solid.signed_distances(points, found, visits);
     }
 };
 
@@ -118,9 +260,20 @@ void for_each_question(F f) {
     f(AskAnyHit<T, D>());
     f(AskAllHits<T, D>());
     f(AskClosestPoint<T, D>());
+    f(AskFeature<T, D>());
     f(AskNearest<T, D>());
     f(AskWithin<T, D>());
-    f(AskOverlap<T, D>());
+    f(AskOverlap<Box<T, D>>());
+    f(AskContained<Box<T, D>>());
+    f(AskCount<Box<T, D>>());
+    f(AskAnyOverlap<Box<T, D>>());
+    f(AskOverlap<Sphere<T, D>>());
+    f(AskContained<Sphere<T, D>>());
+    f(AskCount<Sphere<T, D>>());
+    f(AskAnyOverlap<Sphere<T, D>>());
+    f(AskSide<T, D>());
+    f(AskWindingNumber<T, D>());
+    f(AskSignedDistance<T, D>());
 }
 
 namespace detail {
@@ -130,16 +283,36 @@ template <std::floating_point T, int D>
 inline constexpr bool is_ray<Ray<T, D>> = true;
 }  // namespace detail
 
-/// Whether sets of P answer a question: points answer no rays, which pass between them.
-template <class Question, class P>
-inline constexpr bool answered_by = !(detail::is_ray<typename Question::Given> && PointSet<ViewOf<P>>);
+template <class Question>
+concept AsksFacets = requires {
+    requires Question::of_facets;
+};
+/// A question of the solid of an index.
+template <class Question>
+concept AsksSolid = requires {
+    &Question::ask_solid;
+};
 
-/// The names of all questions that sets of P answer.
+/// Whether sets of P answer a question: points answer no rays, which pass between them, and only triangles in
+/// space and segments in the plane have features and insides.
+template <class Question, class P>
+inline constexpr bool answered_by = !(detail::is_ray<typename Question::Given> &&
+                                      PointSet<ViewOf<P>>)&&(!AsksFacets<Question> || FacetSet<ViewOf<P>>);
+/// Whether an index answers a question.
+template <class Question, std::floating_point T, int D>
+bool answers(const AnyIndex<T, D>& index) {
+    return (!detail::is_ray<typename Question::Given> || index.answers_rays()) &&
+           (!AsksFacets<Question> || index.has_facets());
+}
+
+/// The names of all questions that sets of P answer, each once.
 template <class P>
 std::vector<std::string_view> question_names() {
     std::vector<std::string_view> names;
     for_each_question<typename P::Scalar, P::dimension>([&]<class Question>(Question) {
-        if constexpr (answered_by<Question, P>) names.push_back(Question::name);
+        if constexpr (answered_by<Question, P>)
+            if (std::find(names.begin(), names.end(), Question::name) == names.end())
+                names.push_back(Question::name);
     });
     return names;
 }

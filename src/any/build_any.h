@@ -14,6 +14,57 @@ namespace hedgerow::detail {
     throw InputError("structure '" + structure + "' cannot " + wanted + ": " + instead);
 }
 
+/// A solid of an index. The engine alone has batches of its own: one more walk of each other structure would
+/// take the compiler longer.
+template <class S, class P>
+class SolidHolder final : public AnySolid<typename P::Scalar, P::dimension> {
+public:
+    using T = typename P::Scalar;
+    static constexpr int D = P::dimension;
+    using Any = AnySolid<T, D>;
+    using Points = std::span<const Vec<T, D>>;
+
+    SolidHolder(const Index<S, P>& index, const SolidOptions& options, Threads threads)
+        : solid_(index, options, threads) {}
+
+    bool closed() const override { return solid_.closed(); }
+    bool oriented() const override { return solid_.oriented(); }
+    SideBy by() const override { return solid_.by(); }
+    std::size_t bytes() const override { return solid_.bytes(); }
+
+protected:
+    Side side(const Vec<T, D>& point, Visits& visits) const override { return solid_.side(point, visits); }
+    double winding_number(const Vec<T, D>& point, Visits& visits) const override {
+        return solid_.winding_number(point, visits);
+    }
+    T signed_distance(const Vec<T, D>& point, Visits& visits) const override {
+        return solid_.signed_distance(point, visits).distance;
+    }
+    void sides_uncounted(Points points, std::span<Side> found) const override {
+        if constexpr (is_engine)
+            hedgerow::sides(solid_, points, found, serial_executor());
+        else
+            Any::sides_uncounted(points, found);
+    }
+    void winding_numbers_uncounted(Points points, std::span<double> found) const override {
+        if constexpr (is_engine)
+            hedgerow::winding_numbers(solid_, points, found, serial_executor());
+        else
+            Any::winding_numbers_uncounted(points, found);
+    }
+    void signed_distances_uncounted(Points points, std::span<T> found) const override {
+        if constexpr (is_engine)
+            hedgerow::signed_distances(solid_, points, found, serial_executor());
+        else
+            Any::signed_distances_uncounted(points, found);
+    }
+
+private:
+    static constexpr bool is_engine = std::same_as<S, WideBvh<T, D>>;
+
+    Solid<Index<S, P>> solid_;
+};
+
 template <class S, class P>
 class Holder final : public AnyIndex<typename P::Scalar, P::dimension> {
 public:
@@ -41,6 +92,7 @@ public:
             return index_.structure().items().size();
     }
     int depth() const override { return index_.structure().depth(); }
+    bool exclusive() const override { return index_.structure().exclusive(); }
     std::string validate() const override { return index_.validate(); }
 
     std::uint32_t id(PrimitiveId element) const override {
@@ -59,9 +111,9 @@ public:
         else
             refuse_rays();
     }
-    void closest_points_uncounted(std::span<const Vec<T, D>> points,
-                                  std::span<Near<T, D>> found) const override {
-        hedgerow::closest_points(index_, points, found, serial_executor());
+    void closest_points_uncounted(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
+                                  const NearOptions<T>& options) const override {
+        hedgerow::closest_points(index_, points, found, serial_executor(), options);
     }
     std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const override {
         if constexpr (is_engine)
@@ -69,12 +121,12 @@ public:
         else
             return Any::all_hits_uncounted(ray, hits);
     }
-    std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k,
+    std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearOptions<T>& options,
                                   std::vector<Near<T, D>>& found) const override {
         if constexpr (is_engine)
-            return hedgerow::nearest(index_, point, k, found);
+            return hedgerow::nearest(index_, point, k, found, options);
         else
-            return Any::nearest_uncounted(point, k, found);
+            return Any::nearest_uncounted(point, k, options, found);
     }
     std::size_t within_uncounted(const Vec<T, D>& point, const NearOptions<T>& options,
                                  std::vector<Near<T, D>>& found) const override {
@@ -83,12 +135,22 @@ public:
         else
             return Any::within_uncounted(point, options, found);
     }
-    std::size_t overlapping_uncounted(const Box<T, D>& box, std::vector<PrimitiveId>& found) const override {
-        if constexpr (is_engine)
-            return hedgerow::overlapping(index_, box, found);
-        else
-            return Any::overlapping_uncounted(box, found);
+    std::size_t list_uncounted(const Box<T, D>& region, std::vector<PrimitiveId>& found,
+                               Finds finds) const override {
+        return list_by<Box<T, D>>(region, found, finds);
     }
+    std::size_t list_uncounted(const Sphere<T, D>& region, std::vector<PrimitiveId>& found,
+                               Finds finds) const override {
+        return list_by<Sphere<T, D>>(region, found, finds);
+    }
+    std::size_t count_uncounted(const Box<T, D>& region) const override {
+        return count_by<Box<T, D>>(region);
+    }
+    std::size_t count_uncounted(const Sphere<T, D>& region) const override {
+        return count_by<Sphere<T, D>>(region);
+    }
+    bool any_uncounted(const Box<T, D>& region) const override { return any_by<Box<T, D>>(region); }
+    bool any_uncounted(const Sphere<T, D>& region) const override { return any_by<Sphere<T, D>>(region); }
     void walk(VirtualQuery<RayProbe<T, D>>& query, TraceLog<T, D>& log) const override {
         if constexpr (rays)
             index_.ask(query, log);
@@ -99,25 +161,46 @@ public:
         index_.ask(query, count);
     }
     void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const override { index_.ask(query, count); }
+    void walk(VirtualQuery<RegionProbe<AnyRegion<T, D>>>& query, Visits& count) const override {
+        index_.ask(query, count);
+    }
     void visit_outline(const OutlineLimits<D>& limits, CellVisitor<D> visit) const override {
         hedgerow::visit_outline(index_.structure(), limits, visit);
+    }
+
+    bool has_facets() const override { return facets; }
+    FeatureOfNear<T, D> feature(const Vec<T, D>& point, const Near<T, D>& near) const override {
+        if constexpr (facets)
+            return hedgerow::feature(index_, point, near);
+        else
+            refuse_without_facets();
+    }
+    std::unique_ptr<const AnySolid<T, D>> make_solid(const SolidOptions& options,
+                                                     Threads threads) const override {
+        if constexpr (facets)
+            return std::make_unique<const SolidHolder<S, P>>(index_, options, threads);
+        else
+            refuse_without_facets();
     }
 
     bool changes_one_by_one() const override { return one_by_one; }
     bool refittable() const override { return fits_again; }
     bool insert(PrimitiveId id) override {
+        Any::forget_solid();
         if constexpr (one_by_one)
             return index_.insert(index_.primitives(), id);
         else
             refuse("insert " + std::to_string(id));
     }
     bool erase(PrimitiveId id) override {
+        Any::forget_solid();
         if constexpr (one_by_one)
             return index_.erase(index_.primitives(), id);
         else
             refuse("erase " + std::to_string(id));
     }
     double refit(Threads threads) override {
+        Any::forget_solid();
         if constexpr (fits_again) {
             return index_.refit(threads);
         } else {
@@ -128,12 +211,38 @@ public:
 
 private:
     static constexpr bool rays = AnswersProbe<S, RayProbe<T, D>>;
+    static constexpr bool facets = FacetSet<P>;
     /// Lists of the other structures share a walk: one for each would take the compiler minutes.
     static constexpr bool is_engine = std::same_as<S, WideBvh<T, D>>;
+    template <class R>
+    std::size_t list_by(const R& region, std::vector<PrimitiveId>& found, Finds finds) const {
+        if constexpr (is_engine)
+            return finds == Finds::contained ? hedgerow::contained(index_, region, found)
+                                             : hedgerow::overlapping(index_, region, found);
+        else
+            return Any::list_uncounted(region, found, finds);
+    }
+    template <class R>
+    std::size_t count_by(const R& region) const {
+        if constexpr (is_engine)
+            return hedgerow::count_overlapping(index_, region);
+        else
+            return Any::count_uncounted(region);
+    }
+    template <class R>
+    bool any_by(const R& region) const {
+        if constexpr (is_engine)
+            return hedgerow::any_overlapping(index_, region);
+        else
+            return Any::any_uncounted(region);
+    }
     static constexpr bool one_by_one = ChangesOneByOne<S, P>;
     static constexpr bool fits_again = Refittable<S, P>;
     [[noreturn]] void refuse_rays() const {
         hedgerow::detail::refuse(name_, "answer rays", "ask it for neighbours, or take another structure");
+    }
+    [[noreturn]] static void refuse_without_facets() {
+        throw InputError("features and insides are those of triangles in space or segments in the plane");
     }
     [[noreturn]] void refuse(const std::string& wanted) const {
         hedgerow::detail::refuse(name_, wanted, "build it again");

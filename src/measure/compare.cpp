@@ -132,6 +132,8 @@ private:
     /// visits. Throws Disagreement where an answer differs from the default structure's, and Cancelled.
     Trial trial(const Any& index, std::size_t i) {
         const Set& all = *questions_[i];
+        // The first query of a solid makes it.
+        if (all.size() > 0) all.thinned(all.size())->put_to(index);
         const std::size_t step = o_.rounds > 0 ? step_for(index, all) : 1;
         Trial t;
         // Trials with time for all queries share one set of them.

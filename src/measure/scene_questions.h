@@ -39,6 +39,7 @@ public:
         }
         for_each_question<T, D>([&]<class Question>(Question) {
             // Where there are no surfaces, there are no sets of rays, and so no queries by rays.
+            if (!answers<Question>(index_)) return;
             if (o_.asks.empty() || std::find(o_.asks.begin(), o_.asks.end(), Question::name) != o_.asks.end())
                 add<Question>(sets, found.questions);
         });
@@ -90,6 +91,8 @@ private:
             add_kind(std::to_string(neighbours) + " " + words, neighbourhoods());
         else if constexpr (std::same_as<Given, Ball<T, D>>)
             add_kind(words, balls());
+        else if constexpr (std::same_as<Given, Sphere<T, D>>)
+            add_kind(words, solid_balls());
         else
             add_kind(words, boxes());
     }
@@ -124,6 +127,11 @@ private:
     std::vector<Ball<T, D>> balls() const {
         std::vector<Ball<T, D>> all;
         for (std::size_t i = 0; i < o_.queries; ++i) all.push_back({middle(i), small() * small()});
+        return all;
+    }
+    std::vector<Sphere<T, D>> solid_balls() const {
+        std::vector<Sphere<T, D>> all;
+        for (std::size_t i = 0; i < o_.queries; ++i) all.push_back({middle(i), small()});
         return all;
     }
     std::vector<Box<T, D>> boxes() const {

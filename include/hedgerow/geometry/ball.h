@@ -23,6 +23,21 @@ int compare_distance(const Vec<double, D>& p, const Vec<double, D>& q, double a,
     for (int k = 0; k < D; ++k) sum.add(p[k], p[k]).subtract(2, p[k], q[k]).add(q[k], q[k]);
     return sum.subtract(a, a).subtract(b, b).subtract(product(2.0, sign), a, b).sign();
 }
+/// What the squared distance of a triangle or segment, rounded to T, is less than the exact one by at most: a
+/// share of it, and what is lost where it underflows.
+template <class T>
+inline constexpr double distances_round = std::is_same_v<T, float> ? 0x1p-20 : 0x1p-46;
+template <class T>
+inline constexpr double distances_underflow = static_cast<double>(4 * std::numeric_limits<T>::denorm_min());
+
+/// The distance from the center beyond which nothing overlaps the ball, as distances round.
+template <class T, int D>
+double reach(const Sphere<T, D>& ball) {
+    const double r = static_cast<double>(ball.radius);
+    // The root of the underflow, below 2^-73 and 2^-535.
+    constexpr double least = std::is_same_v<T, float> ? 0x1p-73 : 0x1p-535;
+    return r + product(r, distances_round<T>) + least;
+}
 /// Whether a shape has a point within the ball, by its distance from the center.
 template <class T, int D, class Shape>
 bool reaches(const Sphere<T, D>& ball, const Shape& shape) {
@@ -40,7 +55,6 @@ bool is_empty(const Sphere<T, D>& region) {
 /// have their farthest corner in the ball, by more than the roundings here.
 template <class T, class U, int D>
 Containment containment(const Sphere<T, D>& region, const Box<U, D>& box) {
-    constexpr double distances_round = std::is_same_v<T, float> ? 0x1p-20 : 0x1p-46;
     const Vec<double, D> c(region.center), low(box.low), high(box.high);
     const double r = static_cast<double>(region.radius), r2 = product(r, r);
     double least2 = 0, most2 = 0;
@@ -50,22 +64,22 @@ Containment containment(const Sphere<T, D>& region, const Box<U, D>& box) {
         const double far = std::max(std::abs(below), std::abs(above));
         least2 += product(out, out), most2 += product(far, far);
     }
-    const double step = static_cast<double>(4 * std::numeric_limits<T>::denorm_min());
-    if (least2 > r2 + product(r2, distances_round) + step) return Containment::outside;
+    if (least2 > r2 + product(r2, detail::distances_round<T>) + detail::distances_underflow<T>)
+        return Containment::outside;
     const bool inside = most2 < std::numeric_limits<double>::infinity() &&
                         most2 + product(most2, 0x1p-46) + detail::underflow <= r2;
     return inside ? Containment::inside : Containment::across;
 }
 template <class T, int D>
 Box<double, D> bounds_in(const Sphere<T, D>& region, const Box<double, D>& box, double margin) {
-    const Sphere<double, D> ball{Vec<double, D>(region.center), static_cast<double>(region.radius) + margin};
+    const Sphere<double, D> ball{Vec<double, D>(region.center), detail::reach(region) + margin};
     return intersection(ball.bounds(), box);
 }
 template <class T, int D>
 Extent extent(const Sphere<T, D>& region, const Vec<double, D>& normal) {
     const Vec<double, D> c(region.center);
     const double middle = dot(normal, c);
-    const double wide = product(length(normal), static_cast<double>(region.radius));
+    const double wide = product(length(normal), detail::reach(region));
     const double error = product(16 * unit_roundoff<double>, dot(abs(normal), abs(c)) + wide) + 0x1p-500;
     return {middle - wide - error, middle + wide + error};
 }

@@ -36,6 +36,13 @@ public:
         add(n.distance2), add(n.primitive), add(n.element);
         for (int k = 0; k < D; ++k) add(n.point[k]);
     }
+    template <class T, int D>
+    void add(const NearAndFeature<T, D>& n) {
+        add(n.near), add(std::uint64_t(n.where.feature)), add(std::uint64_t(n.where.number));
+        for (const T weight : n.where.weights) add(weight);
+        for (int k = 0; k < D; ++k) add(n.where.normal[k]);
+    }
+    void add(std::int8_t sign) { add(std::uint64_t(sign + 1)); }
     template <class E>
     void add(const std::vector<E>& all) {
         add(std::uint64_t(all.size()));

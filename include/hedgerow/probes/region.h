@@ -201,4 +201,16 @@ private:
 template <std::floating_point T, int D>
 using BoxProbe = RegionProbe<Box<T, D>>;
 
+/// Whether a volume lies in the region, so that all primitives in it do. Of volumes that are no boxes, the
+/// box around them decides.
+template <Region R, class V>
+bool takes_whole(const R& region, const V& volume) {
+    if constexpr (requires { region.contains(volume); })
+        return region.contains(volume);
+    else if constexpr (requires { containment(region, volume); })
+        return containment(region, volume) == Containment::inside;
+    else
+        return containment(region, box_around(volume)) == Containment::inside;
+}
+
 }  // namespace hedgerow

@@ -5,18 +5,6 @@
 
 namespace hedgerow {
 
-/// Whether a volume lies in the region, so that all primitives in it do. Of volumes that are no boxes, the
-/// box around them decides.
-template <Region R, class V>
-bool takes_whole(const R& region, const V& volume) {
-    if constexpr (requires { region.contains(volume); })
-        return region.contains(volume);
-    else if constexpr (requires { containment(region, volume); })
-        return containment(region, volume) == Containment::inside;
-    else
-        return containment(region, box_around(volume)) == Containment::inside;
-}
-
 /// `Set` names the primitives. A query of an empty region has limit −1, so that no walk begins.
 template <class Set, Region R>
 class RegionQuery {
@@ -33,10 +21,14 @@ public:
           limit_(is_empty(region) ? Scalar(-1) : std::numeric_limits<Scalar>::max()) {
         if constexpr (requires { index.structure().exclusive(); })
             takes_subtrees_ = !Instanced<Set> && index.structure().exclusive();
+        else if constexpr (requires { index.exclusive(); })
+            takes_subtrees_ = index.exclusive();
     }
 
     const Probe& probe() const { return probe_; }
     Scalar limit() const { return limit_; }
+    /// Whether subtrees in the region are taken whole: the index holds each primitive once.
+    bool takes_subtrees() const { return takes_subtrees_; }
 
 protected:
     /// Whether a subtree is taken whole: its volume lies in the region, and no primitive below it is anywhere

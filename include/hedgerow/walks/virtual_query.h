@@ -1,11 +1,47 @@
 /// A query behind virtual calls, so that a walk is compiled once for all queries of a probe.
 #pragma once
 
+#include <hedgerow/parallel/executor.h>
 #include <hedgerow/walks/query.h>
 
 namespace hedgerow {
 
+namespace detail {
+template <class Probe>
+inline constexpr bool is_region_probe = false;
+template <Region R>
+inline constexpr bool is_region_probe<RegionProbe<R>> = true;
+}  // namespace detail
+
+/// A node of any tree, as the `accept` of a query behind virtual calls sees it (WalkedNode).
+template <int D>
+class SubtreeRef {
+public:
+    using ForEachLeaf = FunctionRef<void(FunctionRef<void(const Leaf&)>)>;
+
+    SubtreeRef(NodeId id, const Box<double, D>& volume, FunctionRef<std::size_t()> count,
+               ForEachLeaf for_each_leaf)
+        : id_(id), volume_(volume), count_(count), for_each_leaf_(for_each_leaf) {}
+
+    NodeId id() const { return id_; }
+    /// The box around the node's volume.
+    const Box<double, D>& volume() const { return volume_; }
+    std::size_t count() const { return count_(); }
+    template <class F>
+    void for_each_leaf(F f) const {
+        for_each_leaf_(f);
+    }
+
+private:
+    NodeId id_;
+    Box<double, D> volume_;
+    FunctionRef<std::size_t()> count_;
+    ForEachLeaf for_each_leaf_;
+};
+
 /// What a walk sees of any query of probe P. The limit is stored here, so that only offers are virtual calls.
+/// A query of a region is also asked whether it takes a subtree, but only one that lies in the region: the
+/// walk itself tests that.
 template <class P>
 class VirtualQuery {
 public:
@@ -21,17 +57,44 @@ public:
     const Probe& probe() const { return probe_; }
     Scalar limit() const { return limit_; }
     virtual Flow offer(const CandidateOf<Probe>& candidate) = 0;
+    template <class Node>
+    Verdict accept(const Node& node) requires detail::is_region_probe<Probe> {
+        if constexpr (requires { node.volume(); }) {
+            if (!takes_subtrees_) return Verdict::open;
+            if (limit_ < 0) return Verdict::prune;
+            const auto& volume = node.volume();
+            if (!takes_whole(probe_.region(), volume)) return Verdict::open;
+            const auto count = [&] { return node.count(); };
+            const auto for_each_leaf = [&](FunctionRef<void(const Leaf&)> f) { node.for_each_leaf(f); };
+            return take({node.id(), wide_box(volume), count, for_each_leaf});
+        } else {
+            return Verdict::open;
+        }
+    }
 
 protected:
     /// The probe has to outlive the walk.
-    VirtualQuery(const Probe& probe, Scalar limit) : probe_(probe), limit_(limit) {}
+    VirtualQuery(const Probe& probe, Scalar limit, bool takes_subtrees)
+        : probe_(probe), limit_(limit), takes_subtrees_(takes_subtrees) {}
     ~VirtualQuery() = default;
+
+    /// What the query says of a subtree that lies in its region.
+    virtual Verdict take(const SubtreeRef<Probe::dimension>& node) = 0;
 
     void set_limit(Scalar limit) { limit_ = limit; }
 
 private:
+    template <class V>
+    static Box<double, Probe::dimension> wide_box(const V& volume) {
+        if constexpr (requires { box_around(volume); })
+            return box_around(volume);
+        else
+            return detail::in_double(volume);
+    }
+
     const Probe& probe_;
     Scalar limit_;
+    bool takes_subtrees_;
 };
 
 /// A query as a VirtualQuery. The query must outlive the VirtualQuery.
@@ -40,7 +103,8 @@ class Virtual final : public VirtualQuery<typename Q::Probe> {
 public:
     using Base = VirtualQuery<typename Q::Probe>;
 
-    explicit Virtual(Q& query) : Base(std::as_const(query).probe(), query.limit()), query_(query) {}
+    explicit Virtual(Q& query)
+        : Base(std::as_const(query).probe(), query.limit(), takes_subtrees_of(query)), query_(query) {}
 
     Flow offer(const CandidateOf<typename Q::Probe>& candidate) override {
         const Flow flow = query_.offer(candidate);
@@ -49,6 +113,22 @@ public:
     }
 
 private:
+    static bool takes_subtrees_of(const Q& query) {
+        if constexpr (requires { query.takes_subtrees(); })
+            return query.takes_subtrees();
+        else
+            return SubtreeQuery<Q>;
+    }
+    Verdict take(const SubtreeRef<Q::Probe::dimension>& node) override {
+        if constexpr (SubtreeQuery<Q>) {
+            const Verdict verdict = query_.accept(node);
+            Base::set_limit(query_.limit());
+            return verdict;
+        } else {
+            return Verdict::open;
+        }
+    }
+
     Q& query_;
 };
 
