@@ -107,8 +107,8 @@ TEST(BadIndexFile, OfAnotherKindIsRefused) {
     };
     EXPECT_EQ(load_index<float>(with([](auto&) {})).validate(), "") << "signed here, not changed";
     // Headers of other versions, byte orders, formats and scalars.
-    expect_refused(with([](auto& h) { h.version = 3; }),
-                   {"other.hedgerow", "version 3", "this is version 2", "save it again"});
+    expect_refused(with([](auto& h) { h.version = 4; }),
+                   {"other.hedgerow", "version 4", "this is version 3", "save it again"});
     expect_refused(with([](auto& h) { h.byte_order = 0x04030201; }),
                    {"other.hedgerow", "byte order", "save it again"});
     expect_refused(with([](auto& h) { h.magic[0] = 'H'; }), {"other.hedgerow", "no saved index"});
@@ -275,6 +275,101 @@ TEST(BadIndexFile, ThatIsNoneIsRefused) {
     expect_refused(folder.file("empty.hedgerow", ""), {"empty.hedgerow", "empty"});
     std::filesystem::create_directory(folder / "folder.hedgerow");
     expect_refused(folder / "folder.hedgerow", {"folder.hedgerow", "directory"});
+}
+
+// ---- Indexes of points
+
+PointCloud<float, 3> some_points() {
+    PointCloud<float, 3> cloud;
+    for (int i = 0; i < 40; ++i)
+        cloud.points.emplace_back(static_cast<float>(i % 7), static_cast<float>(i % 5),
+                                  static_cast<float>(i));
+    return cloud;
+}
+std::string small_file_of_points(const TempFolder& folder) {
+    save_index(folder / "points.hedgerow", build<WideBvh>(some_points(), options_of(4)));
+    return contents(folder / "points.hedgerow");
+}
+
+TEST(BadIndexFile, OfPointsWithAnyByteChangedOrCutIsRefused) {
+    const TempFolder folder;
+    const std::string whole = small_file_of_points(folder);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        std::string bad = whole;
+        bad[i] = static_cast<char>(bad[i] ^ 0x41);
+        const auto path = folder.file("bad.hedgerow", bad);
+        for (const auto& way : ways_to_load)
+            if (i < sizeof(detail::IndexHeader) || way.verify != Verify::header) {
+                ASSERT_THROW((load_point_index<float, 3>(path, way)), InputError) << "byte " << i;
+            }
+        const auto cut = folder.file("bad.hedgerow", whole.substr(0, i));
+        for (const auto& way : ways_to_load)
+            ASSERT_THROW((load_point_index<float, 3>(cut, way)), InputError) << i << " bytes";
+    }
+}
+
+TEST(BadIndexFile, OfPointsIsNoneOfTriangles) {
+    const TempFolder folder;
+    small_file(folder);
+    const std::string whole = small_file_of_points(folder);
+    const auto points = folder / "points.hedgerow";
+    for (const auto& way : ways_to_load) {
+        expect_input_error([&] { load_index<float>(points, way); }, {"points.hedgerow", "holds points"});
+        expect_input_error([&] { load_point_index<float, 3>(folder / "small.hedgerow", way); },
+                           {"small.hedgerow", "holds triangles"});
+        expect_input_error([&] { load_point_index<float, 2>(points, way); }, {"holds points in space"});
+        expect_input_error([&] { load_point_index<double, 3>(points, way); }, {"holds floats"});
+    }
+    const auto refused = [&](auto change) {
+        auto header = header_of(whole);
+        change(header);
+        const auto path = folder.file("bad.hedgerow", signed_file(header, whole, checked_part(whole)));
+        EXPECT_THROW((load_point_index<float, 3>(path)), InputError);
+        EXPECT_THROW(index_file_info(path), InputError);
+    };
+    refused([](auto& h) { h.kind = 2; });
+    refused([](auto& h) { h.kind = 0; });
+    refused([](auto& h) { h.dimension = 4; });
+    refused([](auto& h) { h.dimension = 0; });
+    refused([](auto& h) { h.triangles = 1; });
+    refused([](auto& h) { h.faces = 1; });
+    refused([](auto& h) { h.vertices = 0; });
+}
+
+TEST(BadIndexFile, OfPointsCraftedInThousandsDoesNoHarm) {
+    const TempFolder folder;
+    const std::string whole = small_file_of_points(folder);
+    const std::size_t checked = checked_part(whole);
+    std::mt19937_64 random(12);
+    int sound = 0;
+    for (int i = 0; i < 3000; ++i) {
+        std::string bad = whole;
+        const std::size_t within = i % 3 == 0 ? sizeof(detail::IndexHeader) : checked;
+        for (std::uint64_t n = 1 + random() % 3; n > 0; --n) {
+            const std::size_t at = random() % (within / 4) * 4;
+            std::uint32_t word;
+            std::memcpy(&word, bad.data() + at, sizeof word);
+            word = random() % 3 == 0 ? static_cast<std::uint32_t>(random())
+                                     : word + static_cast<std::uint32_t>(random() % 5) - 2;
+            std::memcpy(bad.data() + at, &word, sizeof word);
+        }
+        const auto header = header_of(bad);
+        const std::uint64_t asked = detail::layout_of(header).checksums;
+        const std::size_t size = asked < (1u << 20) ? static_cast<std::size_t>(asked) : checked;
+        const auto path = folder.file("bad.hedgerow", signed_file(header, bad, size));
+        try {
+            auto index = load_point_index<float, 3>(path);
+            EXPECT_EQ(index.validate(), "");
+            for (int k = 0; k < 20; ++k)
+                EXPECT_LT(closest_point(index, Vec3f::all(static_cast<float>(k))).element, index.size());
+            EXPECT_EQ(count_overlapping(index, index.bounds()), index.size());
+            index.refit();
+            ++sound;
+        } catch (const InputError&) {
+        }
+    }
+    EXPECT_GT(sound, 10) << "costs, and what is not used";
+    EXPECT_LT(sound, 1500);
 }
 
 /// Limits the size of files that this process writes, as if the disk were full, and removes the limit at its

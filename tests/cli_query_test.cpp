@@ -539,6 +539,29 @@ TEST_F(Query, SavedIndexesAreQueried) {
     EXPECT_TRUE(bytes_of(file("a.npy")) == bytes_of(file("b.npy")));
 }
 
+TEST_F(Query, SavedIndexesOfPointsAreQueried) {
+    write_rows<float>("3.npy", 100, 3), write_rows<float>("2.npy", 100, 2);
+    for (const auto& [scene, rows] : {std::pair<std::string, std::string>{"gen:points:300", "3.npy"},
+                                      {"gen:points2d:300", "2.npy"},
+                                      {"gen:points:300 --precision double", "3.npy"}}) {
+        expect_done("build " + scene + " --quiet -o " + file("p.hedgerow"));
+        const std::string rest = " --from " + file(rows) + " -o ";
+        for (const std::string kind : {"nearest -k 2 ", "closest-point ", "count --radius 0.2 "}) {
+            expect_done("query " + kind + scene + rest + file("a.npy"));
+            expect_done("query " + kind + file("p.hedgerow") + rest + file("b.npy"));
+            EXPECT_TRUE(bytes_of(file("a.npy")) == bytes_of(file("b.npy"))) << kind << scene;
+            expect_done("query " + kind + file("p.hedgerow") + " --structure kdtree" + rest + file("b.npy"));
+            EXPECT_TRUE(bytes_of(file("a.npy")) == bytes_of(file("b.npy"))) << kind << scene;
+        }
+    }
+    const auto built = run("build gen:points:300 -o " + file("p.hedgerow"));
+    EXPECT_NE(built.output.find("300 points (float)"), std::string::npos) << built.output;
+    EXPECT_NE(run("info " + file("p.hedgerow")).output.find("coincident_points"), std::string::npos);
+    expect_done("render " + file("p.hedgerow") + " --quiet --size 32x32 -o " + file("p.png"));
+    expect_bad("build gen:spheres:10 -o " + file("s.hedgerow"), "triangles or of points");
+    EXPECT_FALSE(fs::exists(file("s.hedgerow")));
+}
+
 TEST_F(Query, RowsThatAreNotFiniteHaveNoAnswerAndAreNamed) {
     write("p.csv", "0,0,9\n1,nan,0\n0,0,-9\ninf,0,0\n");
     auto r = run("query closest-point gen:cube --quiet --from " + file("p.csv") + " -o " + file("a.csv"));

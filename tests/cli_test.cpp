@@ -61,7 +61,7 @@ TEST_F(Cli, BadInputIsThreeAndNamed) {
         expect_bad("render " + file("bad.obj") + to, "bad.obj");
     }
     expect_bad("render gen:points2d" + to, "can be rendered");
-    expect_bad("build gen:points -o " + file("x.hedgerow"), "only an index of triangles");
+    expect_bad("build gen:spheres -o " + file("x.hedgerow"), "only an index of triangles");
 }
 
 TEST_F(Cli, AMeshWithoutAreaIsNeverHit) {
@@ -106,7 +106,7 @@ TEST_F(Cli, ASavedIndexIsDescribedAndRendered) {
         // `info` prints what the file has.
         const auto facts = run("info --json " + saved).output;
         for (const std::string fact :
-             {"\"kind\": \"triangles\"", "\"builder\": \"high\"", "\"width\": 4", "\"format_version\": 2"})
+             {"\"kind\": \"triangles\"", "\"builder\": \"high\"", "\"width\": 4", "\"format_version\": 3"})
             EXPECT_NE(facts.find(fact), std::string::npos) << fact << " in " << facts;
         EXPECT_NE(facts.find("\"precision\": \"" + std::string(precision)), std::string::npos) << facts;
         EXPECT_NE(facts.find("\"file_bytes\": " + std::to_string(bytes.size())), std::string::npos) << facts;

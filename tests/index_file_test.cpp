@@ -1,5 +1,6 @@
 /// Saved indexes: a loaded index answers with the same bits as the index that was saved.
 #include <hedgerow/io/scene_file.h>
+#include <hedgerow/scenes/random.h>
 
 #include "index_files.h"
 
@@ -218,7 +219,9 @@ TYPED_TEST(IndexFile, SaysWhatItHolds) {
     const auto path = this->folder / "index.hedgerow";
     save_index(path, index);
     const IndexFileInfo info = index_file_info(path);
-    EXPECT_EQ(info.version, 2);
+    EXPECT_EQ(info.version, 3);
+    EXPECT_FALSE(info.holds_points);
+    EXPECT_EQ(info.dimension, 3);
     EXPECT_EQ(info.scalar, sizeof(T) == 4 ? "float" : "double");
     EXPECT_EQ(info.options.width, 4);
     EXPECT_EQ(info.options.builder, WideBuilder::high);
@@ -232,6 +235,60 @@ TYPED_TEST(IndexFile, SaysWhatItHolds) {
     EXPECT_EQ(info.bounds.high, Vec3d(index.bounds().high));
     EXPECT_EQ(info.file_bytes, std::filesystem::file_size(path));
     EXPECT_NEAR(double(info.index_bytes), double(index.bytes()), 200);
+}
+
+template <class T, int D>
+void expect_points_round_trip(const TempFolder& folder, const PointCloud<T, D>& cloud,
+                              const WideOptions& options) {
+    const auto path = folder / "points.hedgerow", again = folder / "again.hedgerow";
+    const auto index = build<WideBvh>(cloud, options);
+    save_index(path, index);
+    for (const auto& way : ways_to_load) {
+        auto loaded = load_point_index<T, D>(path, way, default_executor());
+        EXPECT_EQ(loaded.validate(), "");
+        EXPECT_EQ(loaded.size(), cloud.size());
+        EXPECT_EQ(loaded.bounds(), index.bounds());
+        EXPECT_EQ(loaded.bytes(), index.bytes());
+        EXPECT_EQ(loaded.structure().depth(), index.structure().depth());
+        save_index(again, loaded);
+        ASSERT_EQ(contents(path), contents(again)) << "saved again";
+        matrix::Indexes<T, D> indexes;
+        indexes.push_back(any_index(index));
+        indexes.push_back(any_index(std::move(loaded)));
+        if (cloud.size() > 0) matrix::expect_equal_regions(indexes, 30);
+        if (testing::Test::HasFatalFailure()) return;
+    }
+    const IndexFileInfo info = index_file_info(path);
+    EXPECT_TRUE(info.holds_points);
+    EXPECT_EQ(info.dimension, D);
+    EXPECT_EQ(info.points, cloud.size());
+    EXPECT_EQ(info.triangles, 0u);
+    EXPECT_EQ(info.file_bytes, std::filesystem::file_size(path));
+    // The file is also a scene.
+    const auto scene = std::get<PointCloud<T, D>>(load_scene<T>(path));
+    EXPECT_TRUE(same_bits(scene.points, cloud.points));
+}
+template <class T, int D>
+void expect_points_round_trips(const TempFolder& folder) {
+    Random random(4, 0);
+    PointCloud<T, D> cloud;
+    expect_points_round_trip(folder, cloud, options_of(8));
+    for (const std::size_t size : {1, 9, 3000}) {
+        while (cloud.size() < size) {
+            cloud.points.emplace_back();
+            for (int k = 0; k < D; ++k) cloud.points.back()[k] = static_cast<T>(random.uniform() - 0.25);
+        }
+        for (const int width : wide_widths) expect_points_round_trip(folder, cloud, options_of(width));
+        for (const auto builder : wide_builders)
+            expect_points_round_trip(folder, cloud, options_of(8, builder));
+    }
+    cloud.points.assign(100, cloud.points[0]);
+    expect_points_round_trip(folder, cloud, options_of(16));
+}
+
+TYPED_TEST(IndexFile, OfPointsIsLoadedAsItWasSaved) {
+    expect_points_round_trips<TypeParam, 2>(this->folder);
+    expect_points_round_trips<TypeParam, 3>(this->folder);
 }
 
 }  // namespace

@@ -26,26 +26,34 @@ struct Seconds {
 
 void report(const BuildArguments& a, const Seconds& seconds) {
     const IndexFileInfo file = index_file_info(a.output);
-    const double bytes = double(file.index_bytes) / double(std::max<std::size_t>(1, file.triangles));
+    const char* const noun = file.holds_points ? "points" : "triangles";
+    const std::string each = file.holds_points ? "point" : "triangle";
+    const std::size_t count = file.holds_points ? file.points : file.triangles;
+    const double bytes = double(file.index_bytes) / double(std::max<std::size_t>(1, count));
     if (a.json) {
-        const nlohmann::ordered_json j = {
-            {"output", a.output},           {"triangles", file.triangles},  {"precision", file.scalar},
-            {"builder", a.builder},         {"width", file.options.width},  {"build_seconds", seconds.build},
-            {"save_seconds", seconds.save}, {"nodes", file.nodes},          {"leaves", file.leaves},
-            {"bytes_per_triangle", bytes},  {"file_bytes", file.file_bytes}};
+        const nlohmann::ordered_json j = {{"output", a.output},           {noun, count},
+                                          {"precision", file.scalar},     {"builder", a.builder},
+                                          {"width", file.options.width},  {"build_seconds", seconds.build},
+                                          {"save_seconds", seconds.save}, {"nodes", file.nodes},
+                                          {"leaves", file.leaves},        {"bytes_per_" + each, bytes},
+                                          {"file_bytes", file.file_bytes}};
         print_json(j);
     } else if (!a.quiet) {
-        fmt::print("{}: {} triangles ({}), built in {:.1f} ms, saved in {:.1f} ms\n", a.output,
-                   file.triangles, file.scalar, seconds.build * 1e3, seconds.save * 1e3);
-        fmt::print(
-            "{} nodes of {} children, {} leaves: {:.1f} bytes a triangle; the file, with its mesh: {} "
-            "bytes\n",
-            file.nodes, file.options.width, file.leaves, bytes, file.file_bytes);
+        fmt::print("{}: {} {} ({}), built in {:.1f} ms, saved in {:.1f} ms\n", a.output, count, noun,
+                   file.scalar, seconds.build * 1e3, seconds.save * 1e3);
+        fmt::print("{} nodes of {} children, {} leaves: {:.1f} bytes a {}; the file, with its {}: {} bytes\n",
+                   file.nodes, file.options.width, file.leaves, bytes, each,
+                   file.holds_points ? "points" : "mesh", file.file_bytes);
     }
 }
 
-template <class T>
-int build_and_save(const BuildArguments& a, const TriangleMesh<T>& mesh) {
+template <class P>
+inline constexpr bool can_be_saved = PointSet<ViewOf<P>> || requires(const P& set) {
+    set.triangles;
+};
+
+template <class P>
+int build_and_save(const BuildArguments& a, const P& set) requires can_be_saved<P> {
     WideOptions options;
     options.width = a.width;
     options.builder = a.builder == "fast"   ? WideBuilder::fast
@@ -57,7 +65,7 @@ int build_and_save(const BuildArguments& a, const TriangleMesh<T>& mesh) {
     const auto index = [&] {
         ProgressLine line("building the index", a.quiet);
         WatchedExecutor watched(default_executor(), line.progress());
-        return build<WideBvh>(mesh, options, watched);
+        return build<WideBvh>(set, options, watched);
     }();
     const double built = now();
     {
@@ -70,7 +78,8 @@ int build_and_save(const BuildArguments& a, const TriangleMesh<T>& mesh) {
 }
 template <class Other>
 int build_and_save(const BuildArguments& a, const Other&) {
-    throw InputError(a.scene + ": only an index of triangles can be saved. Name a mesh");
+    throw InputError(a.scene +
+                     ": only an index of triangles or of points can be saved. Name a mesh or a cloud");
 }
 
 }  // namespace

@@ -189,14 +189,27 @@ template <class P>
 int query_set(const QueryArguments& a, const P& primitives) {
     return query_set<P>(a, [&](QueryReport&) { return build_shown(a, a.structure, primitives); });
 }
-template <class T>
-int query_saved(const QueryArguments& a) {
-    return query_set<TriangleMesh<T>>(a, [&](QueryReport& report) {
+/// Queries the index of a file, which `load` maps: load(options, executor).
+template <class P, class Load>
+int query_saved(const QueryArguments& a, Load load) {
+    return query_set<P>(a, [&](QueryReport& report) {
         ProgressLine line("loading " + a.scene, a.quiet, "bytes");
         WatchedExecutor watched(default_executor(), line.progress());
         report.loaded = true;
-        return any_index(load_index<T>(a.scene, {}, watched));
+        return any_index(load(LoadIndexOptions(), watched));
     });
+}
+template <class T>
+int query_saved(const QueryArguments& a) {
+    const IndexFileInfo info = index_file_info(a.scene);
+    if (!info.holds_points)
+        return query_saved<TriangleMesh<T>>(
+            a, [&](const auto& o, auto& threads) { return load_index<T>(a.scene, o, threads); });
+    if (info.dimension == 2)
+        return query_saved<PointCloud<T, 2>>(
+            a, [&](const auto& o, auto& threads) { return load_point_index<T, 2>(a.scene, o, threads); });
+    return query_saved<PointCloud<T, 3>>(
+        a, [&](const auto& o, auto& threads) { return load_point_index<T, 3>(a.scene, o, threads); });
 }
 
 std::vector<std::string_view> kind_names() {

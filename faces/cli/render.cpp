@@ -173,7 +173,8 @@ Run add_render(CLI::App& verb) {
         check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) {
-            if (saved && a->structure == "wide") return render_saved<T>(*a);
+            if (saved && a->structure == "wide" && !index_file_info(a->scene).holds_points)
+                return render_saved<T>(*a);
             return std::visit([&](const auto& set) { return render(*a, set); }, load<T>(*a));
         });
     };

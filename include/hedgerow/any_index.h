@@ -293,9 +293,11 @@ template <class P>
 auto build_any(std::string_view spec, const P& primitives, Threads threads = {}) {
     return detail::build_any_over(spec, view_of(primitives), threads.over(primitives.size()));
 }
-/// An AnyIndex from an existing index of triangles in a WideBvh, built or loaded (io/index_file.h). T is
-/// float or double.
+/// An AnyIndex from an existing index of triangles or points in a WideBvh, built or loaded (io/index_file.h).
+/// T is float or double.
 template <std::floating_point T>
 std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>> index);
+template <std::floating_point T, int D>
+std::unique_ptr<AnyIndex<T, D>> any_index(Index<WideBvh<T, D>, PointCloudView<T, D>> index);
 
 }  // namespace hedgerow

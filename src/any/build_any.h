@@ -298,9 +298,16 @@ std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<
     return std::make_unique<detail::Holder<WideBvh<T, 3>, TriangleMeshView<T>>>("wide", std::move(index));
 }
 
+template <std::floating_point T, int D>
+std::unique_ptr<AnyIndex<T, D>> any_index(Index<WideBvh<T, D>, PointCloudView<T, D>> index) {
+    return std::make_unique<detail::Holder<WideBvh<T, D>, PointCloudView<T, D>>>("wide", std::move(index));
+}
+
 /// Instantiates everything for one scalar.
 #define HEDGEROW_BUILD_ANY(T)                                                                                \
     template std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>>);           \
+    template std::unique_ptr<AnyIndex<T, 2>> any_index(Index<WideBvh<T, 2>, PointCloudView<T, 2>>);          \
+    template std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, PointCloudView<T, 3>>);          \
     template std::unique_ptr<AnyIndex<T, 3>> detail::build_any_over(std::string_view,                        \
                                                                     const TriangleMeshView<T>&, Executor&);  \
     template std::unique_ptr<AnyIndex<T, 3>> detail::build_any_over(std::string_view,                        \

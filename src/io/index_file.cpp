@@ -15,20 +15,22 @@ namespace detail {
 
 /// Access to the parts of an index, for saving and loading only.
 struct IndexParts {
-    template <class T>
-    static double built_cost(const MeshIndex<T>& index) {
+    template <class I>
+    static double built_cost(const I& index) {
         return index.structure_.built_cost_;
     }
-    template <class T>
-    static const TriangleBlocks<T>& blocks(const MeshIndex<T>& index) {
+    template <class I>
+    static const auto& blocks(const I& index) {
         return index.leaves_;
     }
-    template <class T>
-    static MeshIndex<T> together(TriangleMeshView<T> mesh, const IndexHeader& h, WideTree<T, 3> tree,
-                                 TriangleBlocks<T> blocks, std::shared_ptr<const void> owner) {
-        const std::size_t count = mesh.size();
-        return {std::move(mesh), WideBvh<T, 3>(h.options(), count, std::move(tree), h.built_cost),
-                std::move(blocks), std::move(owner)};
+    template <class View, class Blocks>
+    static auto together(View view, const IndexHeader& h,
+                         WideTree<typename View::Scalar, View::dimension> tree, Blocks blocks,
+                         std::shared_ptr<const void> owner) {
+        using S = WideBvh<typename View::Scalar, View::dimension>;
+        const std::size_t count = view.size();
+        return Index<S, View>(std::move(view), S(h.options(), count, std::move(tree), h.built_cost),
+                              std::move(blocks), std::move(owner));
     }
 };
 
@@ -36,24 +38,34 @@ namespace {
 
 // Saving.
 
-template <class T>
-IndexHeader header_of(const MeshIndex<T>& index) {
-    const WideBvh<T, 3>& structure = index.structure();
+template <class P>
+inline constexpr bool is_cloud = PointSet<P>;
+
+template <class I>
+IndexHeader header_of(const I& index) {
+    constexpr int D = I::dimension;
+    constexpr bool points = is_cloud<typename I::Primitives>;
+    const auto& structure = index.structure();
     const WideOptions& o = structure.options();
     IndexHeader h{};
     std::memcpy(h.magic, index_magic, sizeof h.magic);
     h.byte_order = IndexHeader::this_byte_order, h.version = IndexHeader::this_version;
-    h.scalar_bytes = sizeof(T);
+    h.scalar_bytes = sizeof(typename I::Scalar);
     h.builder = static_cast<std::uint32_t>(o.builder), h.width = static_cast<std::uint32_t>(o.width);
     h.max_leaf_size = o.max_leaf_size, h.reinsertion = static_cast<std::uint32_t>(o.reinsertion);
     h.depth = static_cast<std::uint32_t>(structure.depth());
+    h.kind = points ? IndexHeader::of_points : IndexHeader::of_triangles, h.dimension = D;
     h.traversal_cost = o.traversal_cost, h.intersection_cost = o.intersection_cost;
     h.built_cost = IndexParts::built_cost(index);
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < D; ++k)
         h.low[k] = double(index.bounds().low[k]), h.high[k] = double(index.bounds().high[k]);
     h.nodes = structure.tree().nodes.size(), h.leaves = structure.leaf_count();
-    h.triangles = index.size(), h.vertices = index.primitives().vertex_count();
-    h.faces = index.primitives().faces().size();
+    if constexpr (points) {
+        h.vertices = index.size();
+    } else {
+        h.triangles = index.size(), h.vertices = index.primitives().vertex_count();
+        h.faces = index.primitives().faces().size();
+    }
     h.checksum = checksum(&h, index_header_checked);
     return h;
 }
@@ -126,22 +138,29 @@ template <class E>
 Strided<E> strided(const FileBytes& file, std::uint64_t at, std::uint64_t count) {
     return {file.data + at, static_cast<std::size_t>(count)};
 }
-/// An index whose arrays are in the file itself.
-template <class T>
-MeshIndex<T> in_place(const IndexHeader& h, const IndexLayout& layout, const FileBytes& file) {
-    using Line = typename WideNodes<T, 3>::Line;
-    WideTree<T, 3> tree;
+/// An index whose arrays are in the file itself. `View` is that of its primitives.
+template <class View>
+auto in_place(const IndexHeader& h, const IndexLayout& layout, const FileBytes& file) {
+    using T = typename View::Scalar;
+    constexpr int D = View::dimension;
+    using Line = typename WideNodes<T, D>::Line;
+    WideTree<T, D> tree;
     const std::uint64_t lines = (layout.items - layout.nodes) / sizeof(Line);
     tree.nodes = {static_cast<int>(h.width), stored<Line>(file, layout.nodes, lines)};
     tree.items = stored<PrimitiveId>(file, layout.items, h.leaves * wide_leaf_size);
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < D; ++k)
         tree.bounds.low[k] = static_cast<T>(h.low[k]), tree.bounds.high[k] = static_cast<T>(h.high[k]);
     tree.depth = static_cast<int>(h.depth);
-    TriangleBlocks<T> blocks(stored<TriangleBlock<T>>(file, layout.blocks, h.leaves));
-    const TriangleMeshView<T> mesh(strided<Vec<T, 3>>(file, layout.vertices, h.vertices),
-                                   strided<TriangleIndices>(file, layout.triangles, h.triangles),
-                                   strided<std::uint32_t>(file, layout.faces, h.faces));
-    return IndexParts::together<T>(mesh, h, std::move(tree), std::move(blocks), file.owner);
+    const auto vertices = strided<Vec<T, D>>(file, layout.vertices, h.vertices);
+    if constexpr (is_cloud<View>) {
+        PointBlocks<T, D> blocks(stored<PointBlock<T, D>>(file, layout.blocks, h.leaves));
+        return IndexParts::together(View(vertices), h, std::move(tree), std::move(blocks), file.owner);
+    } else {
+        TriangleBlocks<T> blocks(stored<TriangleBlock<T>>(file, layout.blocks, h.leaves));
+        const View mesh(vertices, strided<TriangleIndices>(file, layout.triangles, h.triangles),
+                        strided<std::uint32_t>(file, layout.faces, h.faces));
+        return IndexParts::together(mesh, h, std::move(tree), std::move(blocks), file.owner);
+    }
 }
 
 /// Throws InputError unless every checksum holds.
@@ -178,12 +197,13 @@ void check_sums(const IndexLayout& layout, const FileBytes& file, const std::fil
                            " are damaged");
 }
 
-/// Whether the stored blocks are those that the mesh packs into.
-template <class T>
-bool blocks_match(const MeshIndex<T>& index, Executor& executor) {
+/// Whether the stored blocks are those that the primitives pack into.
+template <class I>
+bool blocks_match(const I& index, Executor& executor) {
     constexpr std::size_t at_once = 64, places = wide_leaf_size;
     const auto items = index.structure().items();
-    const TriangleBlock<T>* const blocks = IndexParts::blocks(index).data();
+    const auto* const blocks = IndexParts::blocks(index).data();
+    using Block = std::remove_cvref_t<decltype(*blocks)>;
     std::atomic<bool> match{true};
     executor.for_each_piece(items.size() / places, at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n; begin < end && match; begin += n) {
@@ -192,7 +212,7 @@ bool blocks_match(const MeshIndex<T>& index, Executor& executor) {
                 pack_blocks(index.primitives(), items.subspan(begin * places, n * places), serial_executor());
             for (std::size_t i = 0; i < n; ++i)
                 if (std::memcmp(static_cast<const void*>(packed.data() + i),  // compares NaN too
-                                static_cast<const void*>(blocks + begin + i), TriangleBlock<T>::used) != 0)
+                                static_cast<const void*>(blocks + begin + i), Block::used) != 0)
                     match = false;
         }
     });
@@ -200,37 +220,38 @@ bool blocks_match(const MeshIndex<T>& index, Executor& executor) {
 }
 
 /// Checks what a build guarantees, so that a file with right checksums and wrong contents does no harm.
-template <class T>
-void check_contents(const MeshIndex<T>& index, const std::filesystem::path& path, Executor& executor) {
-    Box<T, 3> bounds;
+template <class I>
+void check_contents(const I& index, const std::filesystem::path& path, Executor& executor) {
+    typename I::BoxType bounds;
     try {
         bounds = bounds_of(index.primitives(), executor);
     } catch (const InputError& error) {
         refuse_index(path, error.what());
     }
-    if (bounds != index.bounds()) refuse_index(path, "the header's bounds are not the mesh's");
+    constexpr bool points = is_cloud<typename I::Primitives>;
+    if (bounds != index.bounds())
+        refuse_index(path, std::string("the header's bounds are not the ") + (points ? "points'" : "mesh's"));
     if (const std::string fault = index.validate(); !fault.empty())
         refuse_index(path, "the tree is not sound: " + fault);
-    if (!blocks_match(index, executor)) refuse_index(path, "the leaves hold other triangles than the mesh");
+    if (!blocks_match(index, executor))
+        refuse_index(path, points ? "the leaves hold other points than the cloud"
+                                  : "the leaves hold other triangles than the mesh");
 }
 
-}  // namespace
-}  // namespace detail
-
-template <std::floating_point T>
-void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, const Progress& progress) {
-    const TriangleMeshView<T>& mesh = index.primitives();
-    const WideTree<T, 3>& tree = index.structure().tree();
-    const TriangleBlocks<T>& blocks = detail::IndexParts::blocks(index);
-    const auto header = detail::header_of(index);
-    using Nodes = WideNodes<T, 3>;
-    using Block = TriangleBlock<T>;
+template <class I>
+void save(const std::filesystem::path& path, const I& index, const Progress& progress) {
+    const auto& set = index.primitives();
+    const auto& tree = index.structure().tree();
+    const auto& blocks = IndexParts::blocks(index);
+    const auto header = header_of(index);
+    using Nodes = WideNodes<typename I::Scalar, I::dimension>;
+    using Block = std::remove_cvref_t<decltype(*blocks.data())>;
     const int width = index.structure().options().width;
 
     // Write the sections in the order of IndexLayout.
-    detail::OutputFile file(path, progress);
-    file.expect(detail::layout_of(header).checksums);
-    detail::SectionWriter out(file);
+    OutputFile file(path, progress);
+    file.expect(layout_of(header).checksums);
+    SectionWriter out(file);
     out.bytes(&header, sizeof header);
     out.align();
     out.records(tree.nodes.data(), tree.nodes.size(), Nodes::used_of(width), Nodes::stride_of(width));
@@ -239,35 +260,89 @@ void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, co
     out.align();
     out.records(blocks.data(), blocks.size(), Block::used, sizeof(Block));
     out.align();
-    out.values(mesh.vertex_count(), [&](std::size_t i) { return mesh.vertex(i); });
-    out.align();
-    out.values(mesh.size(), [&](std::size_t i) { return mesh.indices(i); });
-    out.align();
-    out.values(mesh.faces().size(), [&](std::size_t i) { return mesh.faces()[i]; });
-    out.align();
+    if constexpr (is_cloud<typename I::Primitives>) {
+        out.values(set.size(), [&](std::size_t i) { return set.point(i); });
+        out.align();
+    } else {
+        out.values(set.vertex_count(), [&](std::size_t i) { return set.vertex(i); });
+        out.align();
+        out.values(set.size(), [&](std::size_t i) { return set.indices(i); });
+        out.align();
+        out.values(set.faces().size(), [&](std::size_t i) { return set.faces()[i]; });
+        out.align();
+    }
     out.finish();
     file.commit();
 }
 
-template <std::floating_point T>
-MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOptions& options, Threads threads) {
-    const auto file = options.map ? detail::mapped_file(path) : detail::read_file(path);
-    const auto header = detail::checked_header(file.data, file.size, file.size, path);
-    if (header.scalar_bytes != sizeof(T)) {
-        const std::string held = header.holds_floats() ? "float" : "double";
+/// Throws InputError unless a file holds primitives of this view, in its scalar.
+template <class View>
+void expect_held(const IndexHeader& h, const std::filesystem::path& path) {
+    if (h.scalar_bytes != sizeof(typename View::Scalar)) {
+        const std::string held = h.holds_floats() ? "float" : "double";
         throw InputError(path.string() + ": holds " + held + "s. Load it as " + held);
     }
-    const auto layout = detail::layout_of(header);
-    Executor& executor = threads.over(header.triangles);
-    if (options.verify != Verify::header) detail::check_sums(layout, file, path, executor);
-    auto index = detail::in_place<T>(header, layout, file);
-    if (options.verify == Verify::contents) detail::check_contents(index, path, executor);
+    if (h.holds_points() && !is_cloud<View>)
+        throw InputError(path.string() +
+                         ": holds points, and triangles are asked for. Name an index of a mesh");
+    if (!h.holds_points() && is_cloud<View>)
+        throw InputError(path.string() +
+                         ": holds triangles, and points are asked for. Name an index of points");
+    if (static_cast<int>(h.dimension) != View::dimension)
+        throw InputError(path.string() + ": holds points in " + (h.dimension == 2 ? "the plane" : "space") +
+                         ". Load it as such");
+}
+
+template <class View>
+auto load(const std::filesystem::path& path, const LoadIndexOptions& options, Threads threads) {
+    const auto file = options.map ? mapped_file(path) : read_file(path);
+    const auto header = checked_header(file.data, file.size, file.size, path);
+    expect_held<View>(header, path);
+    const auto layout = layout_of(header);
+    Executor& executor = threads.over(header.primitives());
+    if (options.verify != Verify::header) check_sums(layout, file, path, executor);
+    auto index = in_place<View>(header, layout, file);
+    if (options.verify == Verify::contents) check_contents(index, path, executor);
     return index;
+}
+
+}  // namespace
+}  // namespace detail
+
+template <std::floating_point T>
+void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, const Progress& progress) {
+    detail::save(path, index, progress);
+}
+template <std::floating_point T, int D>
+void save_index(const std::filesystem::path& path, const PointIndex<T, D>& index, const Progress& progress) {
+    detail::save(path, index, progress);
+}
+template <std::floating_point T>
+MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOptions& options, Threads threads) {
+    return detail::load<TriangleMeshView<T>>(path, options, threads);
+}
+template <std::floating_point T, int D>
+PointIndex<T, D> load_point_index(const std::filesystem::path& path, const LoadIndexOptions& options,
+                                  Threads threads) {
+    return detail::load<PointCloudView<T, D>>(path, options, threads);
 }
 
 template void save_index(const std::filesystem::path&, const MeshIndex<float>&, const Progress&);
 template void save_index(const std::filesystem::path&, const MeshIndex<double>&, const Progress&);
 template MeshIndex<float> load_index(const std::filesystem::path&, const LoadIndexOptions&, Threads);
 template MeshIndex<double> load_index(const std::filesystem::path&, const LoadIndexOptions&, Threads);
+
+template void save_index(const std::filesystem::path&, const PointIndex<float, 2>&, const Progress&);
+template PointIndex<float, 2> load_point_index(const std::filesystem::path&, const LoadIndexOptions&,
+                                               Threads);
+template void save_index(const std::filesystem::path&, const PointIndex<float, 3>&, const Progress&);
+template PointIndex<float, 3> load_point_index(const std::filesystem::path&, const LoadIndexOptions&,
+                                               Threads);
+template void save_index(const std::filesystem::path&, const PointIndex<double, 2>&, const Progress&);
+template PointIndex<double, 2> load_point_index(const std::filesystem::path&, const LoadIndexOptions&,
+                                                Threads);
+template void save_index(const std::filesystem::path&, const PointIndex<double, 3>&, const Progress&);
+template PointIndex<double, 3> load_point_index(const std::filesystem::path&, const LoadIndexOptions&,
+                                                Threads);
 
 }  // namespace hedgerow

@@ -20,16 +20,19 @@ constexpr std::uint64_t most_leaves = std::uint64_t(1) << 28, most_triangles = s
 /// Whether the counts agree with each other as in every index, and are so small that no sum of sizes
 /// overflows.
 bool sound_counts(const IndexHeader& h) {
-    const bool empty = h.triangles == 0;
-    return h.triangles <= most_triangles && h.vertices <= most_vertices && h.leaves <= most_leaves &&
-           h.leaves <= h.triangles && h.leaves * wide_leaf_size >= h.triangles && h.nodes <= h.leaves &&
+    const std::uint64_t primitives = h.primitives();
+    const bool empty = primitives == 0, of_points = h.holds_points() && h.triangles == 0 && h.faces == 0;
+    return (of_points ? h.dimension == 2 || h.dimension == 3
+                      : h.kind == IndexHeader::of_triangles && h.dimension == 3) &&
+           primitives <= most_triangles && h.vertices <= most_vertices && h.leaves <= most_leaves &&
+           h.leaves <= primitives && h.leaves * wide_leaf_size >= primitives && h.nodes <= h.leaves &&
            (h.nodes == 0) == empty && (h.faces == 0 || h.faces == h.triangles) &&
            h.depth <= static_cast<std::uint32_t>(bvh_max_depth) && (h.depth == 0) == empty;
 }
 bool sound_box(const IndexHeader& h) {
     bool good = true;
     for (int k = 0; k < 3; ++k) good = good && h.low[k] <= h.high[k] && std::isfinite(h.high[k] - h.low[k]);
-    return good || h.triangles == 0;
+    return good || h.primitives() == 0;
 }
 /// Throws InputError unless the options are known and valid. The message names a field, and fields have the
 /// same names in IndexHeader and WideOptions.
@@ -41,6 +44,13 @@ void check_options(const IndexHeader& h, const std::filesystem::path& path) {
     } catch (const InputError& error) {
         refuse_index(path, std::string("the header's option ") + error.what());
     }
+}
+/// Bytes of a node and of a block of the leaves.
+template <class T>
+std::pair<std::uint64_t, std::uint64_t> sizes_of(const IndexHeader& h, int width) {
+    if (!h.holds_points()) return {WideNodes<T, 3>::stride_of(width), sizeof(TriangleBlock<T>)};
+    if (h.dimension == 3) return {WideNodes<T, 3>::stride_of(width), sizeof(PointBlock<T, 3>)};
+    return {WideNodes<T, 2>::stride_of(width), sizeof(PointBlock<T, 2>)};
 }
 /// Checks the kind, the byte order and the version of a file. This comes before the checksum, because the
 /// version decides where the checksum is.
@@ -78,9 +88,7 @@ WideOptions IndexHeader::options() const {
 IndexLayout layout_of(const IndexHeader& h) {
     const int width = static_cast<int>(h.width);
     const bool floats = h.holds_floats();
-    const std::uint64_t node =
-        floats ? WideNodes<float, 3>::stride_of(width) : WideNodes<double, 3>::stride_of(width);
-    const std::uint64_t block = floats ? sizeof(TriangleBlock<float>) : sizeof(TriangleBlock<double>);
+    const auto [node, block] = floats ? sizes_of<float>(h, width) : sizes_of<double>(h, width);
     std::uint64_t at = 0;
     const auto end_of = [&](std::uint64_t bytes) { return at = (at + bytes + 63) / 64 * 64; };
     IndexLayout layout{};
@@ -88,7 +96,7 @@ IndexLayout layout_of(const IndexHeader& h) {
     layout.items = end_of(h.nodes * node);
     layout.blocks = end_of(h.leaves * wide_leaf_size * sizeof(PrimitiveId));
     layout.vertices = end_of(h.leaves * block);
-    layout.triangles = end_of(h.vertices * 3 * h.scalar_bytes);
+    layout.triangles = end_of(h.vertices * h.dimension * h.scalar_bytes);
     layout.faces = end_of(h.triangles * sizeof(TriangleIndices));
     layout.checksums = end_of(h.faces * sizeof(std::uint32_t));
     layout.file_bytes = at + 8 * (checksum_pieces(at) + 1);
@@ -102,7 +110,7 @@ IndexHeader checked_header(const std::byte* start, std::size_t size, std::uint64
     std::memcpy(&h, start, known);
     check_kind(h, known, path);
     if (h.byte_order != IndexHeader::this_byte_order || h.checksum != checksum(&h, index_header_checked))
-        refuse_index(path, "the header (bytes 0 to 167) is damaged");
+        refuse_index(path, "the header (bytes 0 to 175) is damaged");
     if (h.scalar_bytes != sizeof(float) && h.scalar_bytes != sizeof(double))
         refuse_index(path, "the header names a scalar of " + std::to_string(h.scalar_bytes) + " bytes");
     check_options(h, path);
@@ -131,8 +139,11 @@ IndexFileInfo index_file_info(const std::filesystem::path& path) {
     return {.version = static_cast<int>(h.version),
             .scalar = h.holds_floats() ? "float" : "double",
             .options = h.options(),
+            .dimension = static_cast<int>(h.dimension),
+            .holds_points = h.holds_points(),
             .triangles = static_cast<std::size_t>(h.triangles),
-            .vertices = static_cast<std::size_t>(h.vertices),
+            .points = static_cast<std::size_t>(h.holds_points() ? h.vertices : 0),
+            .vertices = static_cast<std::size_t>(h.holds_points() ? 0 : h.vertices),
             .nodes = static_cast<std::size_t>(h.nodes),
             .leaves = static_cast<std::size_t>(h.leaves),
             .depth = static_cast<int>(h.depth),

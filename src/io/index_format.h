@@ -1,9 +1,9 @@
 /// The layout of a saved index in its file.
 ///
 ///   Header
-///   sections, each from a multiple of 64 bytes on: nodes, items, blocks, vertices, triangles, faces
-///   the checksum of every MiB of all that is before it, the header included
-///   the checksum of those checksums
+///   sections, each from a multiple of 64 bytes on: nodes, items, blocks, vertices, triangles, faces; an
+///   index of points has none of the last two, and its vertices are the points the checksum of every MiB of
+///   all that is before it, the header included the checksum of those checksums
 ///
 /// Numbers are in the byte order of the processor that saved the index. The places of sections and the length
 /// of the file follow from the header's counts and are not stored, so nothing can contradict them. Bytes
@@ -20,21 +20,26 @@
 namespace hedgerow::detail {
 
 struct IndexHeader {
-    static constexpr std::uint32_t this_version = 2, this_byte_order = 0x01020304;
+    static constexpr std::uint32_t this_version = 3, this_byte_order = 0x01020304;
 
     char magic[16];
     std::uint32_t byte_order, version, scalar_bytes;
     std::uint32_t builder, width, max_leaf_size, reinsertion, depth;
+    std::uint32_t kind, dimension;  // kind: of_triangles or of_points
     double traversal_cost, intersection_cost;
     double built_cost;  // of the tree before its first refit; negative: no refit yet
     double low[3], high[3];
-    std::uint64_t nodes, leaves, triangles, vertices, faces;
-    std::uint64_t checksum;  // of all fields before it
+    std::uint64_t nodes, leaves, triangles, vertices, faces;  // the vertices of a cloud are its points
+    std::uint64_t checksum;                                   // of all fields before it
+
+    static constexpr std::uint32_t of_triangles = 0, of_points = 1;
 
     bool holds_floats() const { return scalar_bytes == sizeof(float); }
+    bool holds_points() const { return kind == of_points; }
+    std::uint64_t primitives() const { return holds_points() ? vertices : triangles; }
     WideOptions options() const;
 };
-static_assert(sizeof(IndexHeader) == 168);
+static_assert(sizeof(IndexHeader) == 176);
 inline constexpr std::size_t index_header_checked = offsetof(IndexHeader, checksum);
 inline constexpr char index_magic[16] = "hedgerow index\n";
 

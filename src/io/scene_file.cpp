@@ -51,10 +51,22 @@ TriangleMesh<T> mesh_of(const TriangleMeshView<T>& view) {
     return mesh;
 }
 
+template <class T, int D>
+PointCloud<T, D> cloud_of(const PointCloudView<T, D>& view) {
+    PointCloud<T, D> cloud;
+    cloud.points.resize(view.size());
+    for (std::size_t i = 0; i < view.size(); ++i) cloud.points[i] = view.point(i);
+    return cloud;
+}
+
+/// The mesh or the points of a saved index.
 template <class T>
-TriangleMesh<T> load_mesh_of_index(const std::filesystem::path& path, const Progress& progress) {
+Scene<T> load_scene_of_index(const std::filesystem::path& path, const Progress& progress) {
     WatchedExecutor watched(serial_executor(), progress);
-    return mesh_of(load_index<T>(path, {}, watched).primitives());
+    const IndexFileInfo info = index_file_info(path);
+    if (!info.holds_points) return mesh_of(load_index<T>(path, {}, watched).primitives());
+    if (info.dimension == 2) return cloud_of(load_point_index<T, 2>(path, {}, watched).primitives());
+    return cloud_of(load_point_index<T, 3>(path, {}, watched).primitives());
 }
 
 }  // namespace
@@ -67,7 +79,7 @@ Scene<T> load_scene(const std::filesystem::path& path, const LoadOptions& option
         case Holds::points2d:
             return load_points<T, 2>(path, options, progress);
         case Holds::index:
-            return detail::within_memory(path, [&] { return load_mesh_of_index<T>(path, progress); });
+            return detail::within_memory(path, [&] { return load_scene_of_index<T>(path, progress); });
         case Holds::mesh:
             break;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <utility>
 
 #include <hedgerow/base/stored.h>
 #include <hedgerow/parallel/executor.h>
@@ -15,6 +16,8 @@ namespace hedgerow {
 template <std::floating_point T, int D>
 struct alignas(64) PointBlock {
     static constexpr int size = 8;
+    /// Bytes that hold data; padding follows.
+    static constexpr std::size_t used = size * (D * sizeof(T) + sizeof(PrimitiveId));
 
     T at[D][size];
     PrimitiveId id[size];
@@ -30,6 +33,7 @@ public:
     static constexpr int dimension = D;
 
     PointBlocks() = default;
+    explicit PointBlocks(Stored<Block> blocks) : blocks_(std::move(blocks)) {}
     explicit PointBlocks(std::size_t places) : blocks_((places + Block::size - 1) / Block::size) {}
 
     std::size_t size() const { return blocks_.size(); }

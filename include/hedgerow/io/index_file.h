@@ -1,4 +1,5 @@
-/// Saves indexes to files and loads them. Files are mapped: loading builds nothing and copies nothing.
+/// Saves indexes of triangles and of points to files, and loads them. Files are mapped: loading builds
+/// nothing and copies nothing.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +7,7 @@
 
 #include <hedgerow/mesh_index.h>
 #include <hedgerow/parallel/progress.h>
+#include <hedgerow/primitives/point_cloud.h>
 
 namespace hedgerow {
 
@@ -23,6 +25,10 @@ enum class Verify {
     contents
 };
 
+/// The index of points that `build(cloud)` returns.
+template <std::floating_point T, int D>
+using PointIndex = Index<WideBvh<T, D>, PointCloudView<T, D>>;
+
 struct LoadIndexOptions {
     Verify verify = Verify::contents;
     /// Whether the file is mapped. If not, or if the system cannot map, the file is read into memory of its
@@ -30,8 +36,8 @@ struct LoadIndexOptions {
     bool map = true;
 };
 
-/// Writes an index and its mesh. The file is complete in itself, and the same index gives the same bytes. The
-/// format uses this processor's byte order (docs/design/009-index-file.md).
+/// Writes an index and its mesh, or its points. The file is complete in itself, and the same index gives the
+/// same bytes. The format uses this processor's byte order (docs/design/009-index-file.md).
 ///
 /// The file is written under another name beside `path` and then renamed, so there is never half a file, and
 /// indexes that were loaded from an earlier one are not disturbed. T is float or double. O(n) time; 1 MiB of
@@ -39,6 +45,9 @@ struct LoadIndexOptions {
 /// written (the disk is full, say), and Cancelled if `progress` is cancelled.
 template <std::floating_point T>
 void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, const Progress& progress = {});
+template <std::floating_point T, int D>
+void save_index(const std::filesystem::path& path, const PointIndex<T, D>& index,
+                const Progress& progress = {});
 
 /// Loads an index that `save_index` wrote. It answers every query with the same bits as the saved index. It
 /// owns its mapping, so deleting or replacing the file is harmless. A `refit` changes the index's memory,
@@ -54,6 +63,11 @@ void save_index(const std::filesystem::path& path, const MeshIndex<T>& index, co
 template <std::floating_point T>
 MeshIndex<T> load_index(const std::filesystem::path& path, const LoadIndexOptions& options = {},
                         Threads threads = {});
+/// Loads an index of points as `load_index` does one of triangles. Either throws InputError for a file of the
+/// other kind or dimension. D is 2 or 3.
+template <std::floating_point T, int D>
+PointIndex<T, D> load_point_index(const std::filesystem::path& path, const LoadIndexOptions& options = {},
+                                  Threads threads = {});
 
 /// The contents of a file's header.
 struct IndexFileInfo {
@@ -62,7 +76,11 @@ struct IndexFileInfo {
     std::string_view scalar;
     /// The options of the build, with the width that was chosen.
     WideOptions options;
-    std::size_t triangles, vertices;
+    int dimension;
+    /// Whether the primitives are points. Else they are triangles.
+    bool holds_points;
+    /// Numbers of triangles and their vertices, or of points; 0 for what the file does not hold.
+    std::size_t triangles, points, vertices;
     /// Numbers of inner nodes and of leaves.
     std::size_t nodes, leaves;
     /// Number of levels, leaves included.
