@@ -243,7 +243,7 @@ TYPED_TEST(OrientedPointsOf, MayBeFewOrInOnePlace) {
     const std::vector<Vec<T, 3>> nothing;
     const auto empty = build(none);
     EXPECT_EQ(OrientedPoints(empty, nothing).winding_number({1, 2, 3}), 0);
-    for (const std::size_t count : {1, 20}) {
+    for (const std::size_t count : {std::size_t(1), std::size_t(20)}) {
         PointCloud<T, 3> cloud;
         cloud.points.assign(count, Vec<T, 3>(1, 2, 3));
         const std::vector<Vec<T, 3>> normals(count, Vec<T, 3>(0, 0, -2));
