@@ -35,6 +35,19 @@ struct Discs {
     bool overlaps(std::size_t i, const Box<T, 3>& box) const {
         return overlap(box, bounds(i)) && holds(i, clamped(centers[i], box));
     }
+    /// Other regions overlap a disc where they contain its center.
+    template <Region R>
+    bool overlaps(std::size_t i, const R& region) const {
+        return lies_in(centers[i], region);
+    }
+    template <Region R>
+    bool lies_within(std::size_t i, const R& region) const {
+        const Box<T, 3> box = bounds(i);
+        for (const T x : {box.low[0], box.high[0]})
+            for (const T y : {box.low[1], box.high[1]})
+                if (!lies_in(Vec<T, 3>(x, y, centers[i][2]), region)) return false;
+        return true;
+    }
 
 private:
     Vec<T, 3> from_axis(std::size_t i, const Vec<T, 3>& p) const {
