@@ -248,6 +248,20 @@ TEST(AnyIndexChanges, AreOfferedWhereTheStructureHasThem) {
     bvh->closest_points({&q, 1}, {&near, 1});
     EXPECT_EQ(near.element, 9u);
 
+    // A solid is made again of what has changed.
+    const auto mesh = teapot<float>(600);
+    const auto solid = build_any("octree", mesh), oracle = build_any("brute-force", mesh);
+    const std::vector<Vec3f> places(64, oracle->bounds().center());
+    std::vector<double> want(places.size()), got(places.size());
+    oracle->solid().winding_numbers(places, want);
+    for (int round = 0; round < 3; ++round) {
+        solid->solid().winding_numbers(places, got);
+        EXPECT_EQ(got, want);
+        for (PrimitiveId id = 0; id < mesh.size(); id += 2) EXPECT_TRUE(solid->erase(id));
+        EXPECT_THROW(solid->solid(), InputError) << "half of the surface is missing";
+        for (PrimitiveId id = 0; id < mesh.size(); id += 2) EXPECT_TRUE(solid->insert(id));
+    }
+
     // A grid does neither.
     const auto grid = build_any("grid", cloud);
     EXPECT_FALSE(grid->changes_one_by_one());
