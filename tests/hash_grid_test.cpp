@@ -64,6 +64,20 @@ TEST(HashGrid, SearchesEndHoweverFarPointsSpread) {
             nearest(oracle, p, 5, expected);
             EXPECT_EQ(found, expected);
         }
+    // Balls and cones are near far more cells than are occupied, most of which they miss.
+    std::vector<PrimitiveId> in_region, of_oracle;
+    const auto expect_same = [&](const auto& region) {
+        Visits count;
+        overlapping(index, region, in_region, count);
+        overlapping(oracle, region, of_oracle);
+        EXPECT_EQ(in_region, of_oracle);
+        EXPECT_LE(count.nodes, 2 * index.structure().leaf_count() + 1);
+    };
+    for (const float radius : {0.0f, 0.3f, 5.0f, 1e9f, 1e14f})
+        for (const Vec3f& p : {Vec3f(0, 0, 0), Vec3f(1e12f, -1e12f, 3)})
+            expect_same(Sphere<float, 3>{p, radius});
+    expect_same(Cone<float, 3>({0, 0, 0}, {1, 1, 1}, 0.01f));
+    expect_same(Cone<float, 3>({0.5f, 0.5f, 0.5f}, {1e3f, 1, 0}, 0.5f, 1e10f));
     // Query an infinite box and a thick slice.
     std::vector<PrimitiveId> inside, all;
     const float infinity = std::numeric_limits<float>::infinity();

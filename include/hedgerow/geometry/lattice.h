@@ -117,6 +117,13 @@ private:
     }
 };
 
+/// A lattice with so many cells that a sweep must not go through all that its region is near. After
+/// `most_skipped` cells that it would pass over, the sweep visits such cells too, and the visit may stop it.
+template <int D>
+struct VastLattice : Lattice<D> {
+    std::size_t most_skipped = 0;
+};
+
 /// Moves c to the next cell of the block from `first` to `last`, both included. Returns false after the last
 /// cell.
 template <class Cell>

@@ -135,8 +135,8 @@ public:
     }
 
     /// Visits the cells of the lattice that the region may overlap, each enlarged by its pad.
-    template <class Limit, class Visit>
-    void sweep(const Lattice<D>& lattice, Limit, Visit visit) const {
+    template <std::derived_from<Lattice<D>> Cells, class Limit, class Visit>
+    void sweep(const Cells& lattice, Limit, Visit visit) const {
         const auto margin = static_cast<double>(margin_);
         const Vec<double, D> pad = lattice.pad + Vec<double, D>::all(margin);
         typename Lattice<D>::Cell first{}, last{};
@@ -148,11 +148,17 @@ public:
             const auto i = static_cast<std::size_t>(a);
             first[i] = lattice.coordinate(whole.low[a], a), last[i] = lattice.coordinate(whole.high[a], a);
         }
+        [[maybe_unused]] std::size_t skipped = 0;
         for_each_cell(first, last, [&](const auto& cell) {
             if constexpr (!is_box) {
                 Box<double, D> box = lattice.bounds(cell);
                 box.low = box.low - pad, box.high = box.high + pad;
-                if (!meets(box)) return true;
+                if (!meets(box)) {
+                    if constexpr (!requires { lattice.most_skipped; })
+                        return true;
+                    else if (skipped++ < lattice.most_skipped)
+                        return true;
+                }
             }
             return visit(cell).flow == Flow::go_on;
         });

@@ -54,7 +54,7 @@ public:
         grid.bounds_ = bounds_of(set, executor);
         const std::size_t n = set.size();
         if (n == 0) return grid;
-        grid.lattice_ = lattice_over(grid.bounds_, n, options.cell);
+        static_cast<Lattice<D>&>(grid.lattice_) = lattice_over(grid.bounds_, n, options.cell);
         executor.expect(2 * n);
 
         // Number the cells in the order of their first point, and count the points of each.
@@ -65,6 +65,7 @@ public:
             ++grid.cells_[cell_of[i]].count;
         }
         grid.cells_.shrink();
+        grid.lattice_.most_skipped = grid.cells_.size();
 
         // Copy each point's id to the next place of its cell.
         std::uint32_t sum = 0;
@@ -189,7 +190,7 @@ private:
     }
 
     Box<T, D> bounds_;
-    Lattice<D> lattice_;
+    VastLattice<D> lattice_;
     CellTable<D> cells_;
     BareVector<PrimitiveId> items_;
 };
