@@ -1,6 +1,8 @@
 /// A region as a probe. It enters every volume that it may overlap, in no particular order.
 #pragma once
 
+#include <concepts>
+
 #include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/geometry/lattice.h>
 #include <hedgerow/geometry/region.h>
