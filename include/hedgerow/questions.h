@@ -194,54 +194,44 @@ struct AskAnyOverlap {
 
 // The questions of the solid whose surface the primitives are.
 
-/// Answers a sign: -1 outside, 0 on the surface, 1 inside.
-template <std::floating_point T, int D>
-struct AskSide {
-    static constexpr std::string_view name = "side", words = "side of a surface", column = "side";
+/// What these have in common. A Question has `ask_solid`, which asks a solid many times.
+template <class Question, std::floating_point T, int D, class A>
+struct AskOfSolid {
     static constexpr bool of_facets = true;
     using Given = Vec<T, D>;
-    using Answer = std::int8_t;
+    using Answer = A;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
                         std::span<Visits> visits = {}) {
-        ask_solid(index.solid(), points, found, visits);
+        Question::ask_solid(index.solid(), points, found, visits);
     }
-    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Given> points, std::span<Answer> found,
-                          std::span<Visits> visits = {}) {
+};
+/// Answers a sign: -1 outside, 0 on the surface, 1 inside.
+template <std::floating_point T, int D>
+struct AskSide : AskOfSolid<AskSide<T, D>, T, D, std::int8_t> {
+    static constexpr std::string_view name = "side", words = "side of a surface", column = "side";
+    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points,
+                          std::span<std::int8_t> found, std::span<Visits> visits = {}) {
         static thread_local std::vector<Side> sides;
         sides.resize(points.size());
         solid.sides(points, sides, visits);
         for (std::size_t i = 0; i < points.size(); ++i)
-            found[i] = static_cast<Answer>(static_cast<int>(sides[i]) - static_cast<int>(Side::on));
+            found[i] = static_cast<std::int8_t>(static_cast<int>(sides[i]) - static_cast<int>(Side::on));
     }
 };
 template <std::floating_point T, int D>
-struct AskWindingNumber {
+struct AskWindingNumber : AskOfSolid<AskWindingNumber<T, D>, T, D, double> {
     static constexpr std::string_view name = "winding-number", words = "winding number",
                                       column = "winding_number";
-    static constexpr bool of_facets = true;
-    using Given = Vec<T, D>;
-    using Answer = double;
-    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
-                        std::span<Visits> visits = {}) {
-        ask_solid(index.solid(), points, found, visits);
-    }
-    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Given> points, std::span<Answer> found,
-                          std::span<Visits> visits = {}) {
+    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points,
+                          std::span<double> found, std::span<Visits> visits = {}) {
         solid.winding_numbers(points, found, visits);
     }
 };
 template <std::floating_point T, int D>
-struct AskSignedDistance {
+struct AskSignedDistance : AskOfSolid<AskSignedDistance<T, D>, T, D, T> {
     static constexpr std::string_view name = "signed-distance", words = "signed distance",
                                       column = "distance";
-    static constexpr bool of_facets = true;
-    using Given = Vec<T, D>;
-    using Answer = T;
-    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
-                        std::span<Visits> visits = {}) {
-        ask_solid(index.solid(), points, found, visits);
-    }
-    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Given> points, std::span<Answer> found,
+    static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points, std::span<T> found,
                           std::span<Visits> visits = {}) {
         solid.signed_distances(points, found, visits);
     }

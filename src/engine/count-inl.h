@@ -17,7 +17,7 @@
 #include <hedgerow/structures/bvh/build_tree.h>
 
 #include "boxes-inl.h"
-#include "coordinates-inl.h"
+#include "distances-inl.h"
 #include "stack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -70,17 +70,12 @@ private:
 HWY_INLINE std::size_t count_of_block(const PointBlock<float, 3>& block, const Sphere<float, 3>& ball) {
     using Doubles = hn::CappedTag<double, 8>;
     constexpr Doubles d;
-    constexpr hn::Rebind<float, Doubles> part;
     constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
     const double radius = static_cast<double>(ball.radius);
     const auto radius2 = hn::Set(d, radius * radius);
     std::size_t count = 0;
     for (int from = 0; from < 8; from += lanes) {
-        const auto row = [&](int axis) __attribute__((always_inline)) {
-            return hn::PromoteTo(d, hn::Load(part, block.at[axis] + from));
-        };
-        const auto away = minus<Doubles>(all_lanes(d, Vec<double, 3>(ball.center)), {row(0), row(1), row(2)});
-        const auto distance2 = product(away, away);
+        const auto distance2 = distances2_in_double(d, block, from, Vec<double, 3>(ball.center));
         const auto error =
             hn::MulAdd(hn::Set(d, 0x1p-49), hn::Add(distance2, radius2), hn::Set(d, 0x1p-1000));
         const auto apart = hn::Abs(hn::Sub(distance2, radius2));

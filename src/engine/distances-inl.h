@@ -140,6 +140,17 @@ private:
     V least_, most_;
 };
 
+// The squared distances of the points of a block from `from` on, in the lanes of D, which are doubles.
+template <class D>
+HWY_INLINE hn::Vec<D> distances2_in_double(D d, const PointBlock<float, 3>& block, int from,
+                                           const Vec<double, 3>& p) {
+    constexpr hn::Rebind<float, D> part;
+    const auto row = [&](int axis) __attribute__((always_inline)) {
+        return hn::PromoteTo(d, hn::Load(part, block.at[axis] + from));
+    };
+    const auto away = minus<D>(all_lanes(d, p), {row(0), row(1), row(2)});
+    return product(away, away);
+}
 // The squared distances of the points of a block from `at` on, in the lanes of F: computed in double and
 // rounded once, as by `closest_point` (geometry/distance.h).
 template <class F>
@@ -147,11 +158,7 @@ HWY_INLINE hn::Vec<F> distances2_of(F f, const PointBlock<float, 3>& block, int 
     constexpr hn::CappedTag<double, static_cast<int>(hn::MaxLanes(f))> d;
     constexpr hn::Rebind<float, std::remove_const_t<decltype(d)>> part;
     const auto some = [&](int from) __attribute__((always_inline)) {
-        const auto row = [&](int axis) __attribute__((always_inline)) {
-            return hn::PromoteTo(d, hn::Load(part, block.at[axis] + from));
-        };
-        const auto away = minus<std::remove_const_t<decltype(d)>>(all_lanes(d, p), {row(0), row(1), row(2)});
-        return hn::DemoteTo(part, product(away, away));
+        return hn::DemoteTo(part, distances2_in_double(d, block, from, p));
     };
     if constexpr (hn::MaxLanes(d) == hn::MaxLanes(f))
         return some(at);

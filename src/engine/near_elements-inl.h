@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include "boxes-inl.h"
 #include "coordinates-inl.h"
 #include "near_elements.h"
 
@@ -49,11 +50,6 @@ private:
         const D d;
         return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, detail::least_product)), hn::Div(hn::Set(d, 1.0), x));
     }
-    static HWY_INLINE unsigned bits_of(hn::Mask<D> mask) {
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(D(), mask, bits);
-        return bits[0];
-    }
     // Returns the bits of slivers.
     static HWY_INLINE unsigned prepare(NearElements& near, int i) {
         const D d;
@@ -69,7 +65,7 @@ private:
         hn::Store(reciprocal(ac2), d, near.per_ac2 + i);
         hn::Store(reciprocal(product(bc, bc)), d, near.per_bc2 + i);
         hn::Store(reciprocal(area2), d, near.per_area2 + i);
-        return bits_of(hn::Not(plain));
+        return bits_of(d, hn::Not(plain));
     }
 
     static HWY_INLINE V part_of_edge(V x) { return hn::Min(hn::Max(x, hn::Zero(D())), hn::Set(D(), 1.0)); }
@@ -120,7 +116,7 @@ private:
         least = hn::MinOfLanes(d, least);
         unsigned nearest = 0;
         for (int i = 0; i < near.count; i += lanes)
-            nearest |= bits_of(hn::Eq(least, hn::Load(d, found.distance + i))) << i;
+            nearest |= bits_of(d, hn::Eq(least, hn::Load(d, found.distance + i))) << i;
         found.nearest = std::countr_zero(nearest);
     }
 };

@@ -127,18 +127,21 @@ public:
     // As pop_within, several places at once: no branch depends on how many children are out of reach. Slow
     // for children that were pushed just now, since a vector is not forwarded from several stores.
     HWY_INLINE std::uint32_t pop_lanes_within(float limit) requires(wanted == Wanted::near) {
-        if constexpr (below == 0) return pop_within(limit);
-        constexpr hn::CappedTag<std::int64_t, 8> d;
-        constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
-        const auto last = hn::Set(d, static_cast<std::int64_t>(waiting(limit, end)));
-        unsigned within;
-        do {
-            top_ -= lanes;
-            const auto* const from = reinterpret_cast<const std::int64_t*>(places_ + top_);
-            within = bits_of(d, hn::Not(hn::Gt(hn::LoadU(d, from), last)));
-        } while (within == 0);
-        top_ += static_cast<int>(std::bit_width(within)) - 1;
-        return static_cast<std::uint32_t>(places_[top_]);
+        if constexpr (below == 0) {
+            return pop_within(limit);
+        } else {
+            constexpr hn::CappedTag<std::int64_t, 8> d;
+            constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
+            const auto last = hn::Set(d, static_cast<std::int64_t>(waiting(limit, end)));
+            unsigned within;
+            do {
+                top_ -= lanes;
+                const auto* const from = reinterpret_cast<const std::int64_t*>(places_ + top_);
+                within = bits_of(d, hn::Not(hn::Gt(hn::LoadU(d, from), last)));
+            } while (within == 0);
+            top_ += static_cast<int>(std::bit_width(within)) - 1;
+            return static_cast<std::uint32_t>(places_[top_]);
+        }
     }
     HWY_INLINE void push(Place child) { places_[top_++] = child; }
     // Pushes the entered children: the nearest on top, or for any hit the last, which is the likeliest to

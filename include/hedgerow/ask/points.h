@@ -47,16 +47,25 @@ std::size_t within(const I& index, const PointOf<I>& point, const NearOptionsOf<
 }
 
 namespace detail {
+/// Answers questions Q by many(kernel), if there is a kernel in use. False if there is none, or it returns
+/// false.
+template <class Q, class I, class Many>
+bool answered_by_kernel(Many many) {
+    if constexpr (HasKernel<Q, I>) {
+        const Kernel<Q, I> kernel;
+        return kernel && in_ieee_mode([&] { return many(kernel); });
+    } else {
+        return false;
+    }
+}
 /// Answers a question Q of each of many points: by many(kernel, part), unless there is no kernel or it
 /// returns false; then by one(i).
 template <class Q, class S, class P, class Many, class One>
 void ask_in_parts(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
                   Threads threads, Many many, One one) {
     for_each_part(points, index.bounds(), index.bytes(), threads.over(points.size()), [&](const auto& part) {
-        if constexpr (HasKernel<Q, Index<S, P>>) {
-            const Kernel<Q, Index<S, P>> kernel;
-            if (kernel && in_ieee_mode([&] { return many(kernel, part); })) return;
-        }
+        if (answered_by_kernel<Q, Index<S, P>>([&](const auto& kernel) { return many(kernel, part); }))
+            return;
         for (std::size_t i = 0; i < part.size(); ++i) one(part.number(i));
     });
 }
@@ -139,13 +148,10 @@ std::size_t within(const Index<S, P>& index, const Strided<Vec<typename P::Scala
     using Part = PointBatch<typename P::Scalar, P::dimension>;
     const auto answer = [&](const Part& part, ListColumns<P>& to) {
         to.clear();
-        if constexpr (HasKernel<Within<P>, Index<S, P>>) {
-            const Kernel<Within<P>, Index<S, P>> kernel;
-            if (kernel && in_ieee_mode([&] {
-                    return kernel.answer_many(index, part, options, to.offsets, to.ids, to.distances2);
-                }))
-                return;
-        }
+        if (detail::answered_by_kernel<Within<P>, Index<S, P>>([&](const auto& kernel) {
+                return kernel.answer_many(index, part, options, to.offsets, to.ids, to.distances2);
+            }))
+            return;
         std::vector<Near<typename P::Scalar, P::dimension>> found;
         for (std::size_t i = 0; i < part.size(); ++i) {
             within(index, part[i], options, found);
