@@ -38,10 +38,10 @@ double disagreement(const std::vector<float>& ours, const std::vector<float>& th
 }
 
 /// Measures finding the k nearest to each point: the peer, the plain walk, one by one, and (for k = 1) in a
-/// batch.
+/// batch, also of an index of doubles if there is one.
 template <class I>
 void measure_queries(const I& index, const PointPeer* peer, const std::string& kind, std::size_t k,
-                     const std::vector<Vec3f>& points) {
+                     const std::vector<Vec3f>& points, const MeshIndex<double>* doubles = nullptr) {
     std::vector<float> ours(points.size()), theirs(points.size());
     std::vector<Near<float, 3>> found, all(points.size());
     Visits visits;
@@ -71,6 +71,20 @@ void measure_queries(const I& index, const PointPeer* peer, const std::string& k
             closest_points(index, Strided<Vec3f>(points), std::span(all), serial_executor());
             return points.size();
         });
+    std::vector<Vec3d> points_in_double;
+    for (const Vec3f& p : points) points_in_double.emplace_back(p);
+    std::vector<Near<double, 3>> found_in_double(points.size());
+    if (doubles != nullptr) {
+        contest.add("in double", [&] {
+            for (std::size_t i = 0; i < points.size(); ++i)
+                found_in_double[i] = closest_point(*doubles, points_in_double[i]);
+            return points.size();
+        });
+        contest.add("same, batch", [&] {
+            closest_points(*doubles, points_in_double, found_in_double, serial_executor());
+            return points.size();
+        });
+    }
     std::vector<PrimitiveId> ids(k * points.size());
     std::vector<float> distances2(k * points.size());
     contest.add("columns", [&] {
@@ -92,10 +106,14 @@ void measure_queries(const I& index, const PointPeer* peer, const std::string& k
 void measure_mesh(const std::string& name) {
     const TriangleMesh<float> mesh = scene(name);
     const MeshIndex<float> index = build(mesh, serial_executor());
+    TriangleMesh<double> in_double;
+    for (const Vec3f& v : mesh.vertices) in_double.vertices.emplace_back(v);
+    in_double.triangles = mesh.triangles;
+    const MeshIndex<double> doubles = build(in_double, serial_executor());
     const auto peer = cgal_points(mesh);
     std::printf("\nclosest points, %s: %zu triangles\n", name.c_str(), mesh.size());
-    measure_queries(index, peer.get(), "near", 1, near_points(mesh, index.bounds(), query_count));
-    measure_queries(index, peer.get(), "far", 1, far_points(index.bounds(), query_count / 4));
+    measure_queries(index, peer.get(), "near", 1, near_points(mesh, index.bounds(), query_count), &doubles);
+    measure_queries(index, peer.get(), "far", 1, far_points(index.bounds(), query_count / 4), &doubles);
 }
 
 /// Draws points of a kind: "uniform", "clustered" or "on a sphere".

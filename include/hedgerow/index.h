@@ -156,6 +156,11 @@ public:
         });
     }
 
+    /// Tests the primitives of one of the structure's leaves, as a walk does.
+    template <class Probe, class Query>
+    Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) const {
+        return leaves().test_leaf(probe, leaf, query);
+    }
     /// Runs any query of yours by a walk. `count` is a Visits, or NoVisits.
     template <Query Q, class Count>
     void ask(Q& query, Count& count) const {

@@ -65,9 +65,9 @@ struct Boxes {
     }
 };
 
-template <int W>
+template <int W, class T = float>
 HWY_INLINE const std::uint32_t* children_of(const std::byte* node) {
-    return reinterpret_cast<const std::uint32_t*>(node + 24 * W);
+    return reinterpret_cast<const std::uint32_t*>(node + 6 * sizeof(T) * W);
 }
 
 }  // namespace hedgerow::HWY_NAMESPACE

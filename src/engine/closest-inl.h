@@ -28,7 +28,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // The nearest primitive that has been tested, at first one behind all that are within the distance. Members
 // are set one by one: a copy of the whole would wait for the stores of its parts.
-HWY_INLINE void begin(Near<float, 3>& best, float max_distance2) {
+template <class T>
+HWY_INLINE void begin(Near<T, 3>& best, T max_distance2) {
     best.distance2 = max_distance2;
     best.primitive = best.element = no_primitive;
     best.point.data[0] = best.point.data[1] = best.point.data[2] = 0;
@@ -38,14 +39,16 @@ HWY_INLINE void begin(Near<float, 3>& best, float max_distance2) {
 // The closest of the triangles that leaves offer. Lanes only bound the distances: triangles that may be
 // closest wait, and are tested exactly when all leaves are seen, if they still may be. An exact test takes as
 // long as a leaf, and the first leaves have many triangles that later ones put out of reach.
+template <class S>
 class ClosestTriangle {
 public:
-    using Scene = WideScene;
+    using Scene = S;
+    using T = typename Scene::Scalar;
     // Keeps the nearer of what is tested.
     struct Best {
-        Near<float, 3>* best;
+        Near<T, 3>* best;
 
-        HWY_INLINE void take(std::uint32_t id, float distance2, const Vec<float, 3>& foot) const {
+        HWY_INLINE void take(std::uint32_t id, T distance2, const Vec<T, 3>& foot) const {
             if (distance2 > best->distance2 || (distance2 == best->distance2 && id > best->element)) return;
             best->distance2 = distance2;
             best->element = id;
@@ -53,44 +56,44 @@ public:
         }
     };
     struct Shared {
-        const TriangleBlock<float>* blocks;
-        ExactTests<Best> tests;
+        const TriangleBlock<T>* blocks;
+        ExactTests<T, Best> tests;
 
-        HWY_INLINE explicit Shared(const WideScene& scene) : blocks(scene.blocks), tests(scene.blocks) {}
+        HWY_INLINE explicit Shared(const Scene& scene) : blocks(scene.blocks), tests(scene.blocks) {}
         HWY_INLINE void end() { tests.flush(); }
     };
 
     ClosestTriangle() = default;
-    HWY_INLINE ClosestTriangle(const Vec<float, 3>& p, Near<float, 3>& best) : p_(p), best_(&best) {
+    HWY_INLINE ClosestTriangle(const Vec<T, 3>& p, Near<T, 3>& best) : p_(p), best_(&best) {
         limit_.set(best.distance2);
     }
 
-    HWY_INLINE const Vec<float, 3>& point() const { return p_; }
-    HWY_INLINE const Limit& limit() const { return limit_; }
+    HWY_INLINE const Vec<T, 3>& point() const { return p_; }
+    HWY_INLINE const Limit<T>& limit() const { return limit_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         if (count_ > most - 8) [[unlikely]]
             make_room(shared);
-        V limit = hn::Set(f, limit_.distance2());
+        V limit = hn::Set(d, limit_.distance2());
         for (int at = 0; at < 8; at += lanes) {
-            const TriangleDistances<F> distances(f, shared.blocks[leaf], at, all_lanes(f, p_));
-            const V upper = distances.least_most(f);
+            const TriangleDistances<D> distances(d, shared.blocks[leaf], at, all_lanes(d, p_));
+            const V upper = distances.least_most(d);
             if constexpr (alone) {
                 if (hn::GetLane(upper) < hn::GetLane(limit)) limit = upper;
             } else {
                 limit = hn::Min(limit, upper);
             }
-            const auto near = distances.within(limit);
-            keep(hn::BitCast(i, distances.least()), hn::RebindMask(i, near), least_);
-            keep(hn::Add(hn::Set(i, static_cast<std::int32_t>(8 * leaf) + at), hn::Iota(i, 0)),
-                 hn::RebindMask(i, near), place_);
-            count_ += static_cast<int>(hn::CountTrue(f, near));
+            const FloatBounds<D> bounds(distances, limit);
+            const auto near = hn::RebindMask(i, bounds.within);
+            keep(hn::BitCast(i, bounds.least), near, least_);
+            keep(hn::Add(hn::Set(i, static_cast<std::int32_t>(8 * leaf) + at), hn::Iota(i, 0)), near, place_);
+            count_ += static_cast<int>(hn::CountTrue(i, near));
         }
         limit_.set(hn::GetLane(limit));
     }
     // Hands what waits and may still be closest to the exact tests.
     HWY_INLINE void end(Shared& shared) {
-        const V limit = hn::Set(f, limit_.distance2());
+        const auto limit = hn::Set(f, limit_.as_float());
         for (int first = 0; first < count_; first += lanes) {
             const auto far = hn::Gt(hn::Load(f, reinterpret_cast<const float*>(least_ + first)), limit);
             unsigned near = ~bits_of(f, far) & ((1u << std::min(count_ - first, lanes)) - 1);
@@ -103,11 +106,12 @@ public:
 
 private:
     static constexpr int most = 64;
-    using F = Floats<8>;
-    using V = hn::Vec<F>;
-    static constexpr F f{};
-    static constexpr hn::RebindToSigned<F> i{};
-    static constexpr int lanes = static_cast<int>(hn::MaxLanes(f));
+    using D = hn::CappedTag<T, 8>;
+    using V = hn::Vec<D>;
+    static constexpr D d{};
+    static constexpr hn::Rebind<float, D> f{};
+    static constexpr hn::Rebind<std::int32_t, D> i{};
+    static constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
 
     // Appends the lanes of a mask to what waits.
     HWY_INLINE void keep(hn::Vec<decltype(i)> v, hn::Mask<decltype(i)> which, std::int32_t* all) {
@@ -119,9 +123,9 @@ private:
         if (best_->distance2 < limit_.distance2()) limit_.set(best_->distance2);
     }
 
-    Vec<float, 3> p_;
-    Near<float, 3>* best_ = nullptr;
-    Limit limit_;
+    Vec<T, 3> p_;
+    Near<T, 3>* best_ = nullptr;
+    Limit<T> limit_;
     int count_ = 0;
     // Triangles that wait: the bits of a lower bound of the squared distance, and the place among those of
     // all blocks.
@@ -146,7 +150,7 @@ public:
     }
 
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
-    HWY_INLINE const Limit& limit() const { return limit_; }
+    HWY_INLINE const Limit<float>& limit() const { return limit_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         const PointBlock<float, 3>& block = shared.blocks[leaf];
@@ -170,15 +174,16 @@ public:
 private:
     Vec<float, 3> p_;
     Near<float, 3>* best_ = nullptr;
-    Limit limit_;
+    Limit<float> limit_;
     NearKey key_ = 0;
     std::uint32_t place_ = 0;
 };
 
 // Makes what a search has found its answer, when all is tested.
-HWY_INLINE void finish(const WideScene& scene, Near<float, 3>& best) {
+template <class Scene, class T>
+HWY_INLINE void finish(const Scene& scene, Near<T, 3>& best) {
     if (best.element == no_primitive)
-        best.distance2 = std::numeric_limits<float>::infinity();
+        best.distance2 = std::numeric_limits<T>::infinity();
     else
         best.primitive = scene.faces.empty() ? best.element : scene.faces[best.element];
     best.instance = 0;
@@ -189,9 +194,9 @@ HWY_INLINE void finish(const WidePoints&, Near<float, 3>& best) {
     best.instance = 0;
 }
 
-template <int W, class Search>
-Near<float, 3> closest_one(const typename Search::Scene& scene, const Vec<float, 3>& p, float max_distance2) {
-    Near<float, 3> best;
+template <int W, class Search, class T>
+Near<T, 3> closest_one(const typename Search::Scene& scene, const Vec<T, 3>& p, T max_distance2) {
+    Near<T, 3> best;
     begin(best, max_distance2);
     typename Search::Shared shared(scene);
     Search search(p, best);
@@ -200,9 +205,9 @@ Near<float, 3> closest_one(const typename Search::Scene& scene, const Vec<float,
     finish(scene, best);
     return best;
 }
-template <int W, class Search>
-void closest_many(const typename Search::Scene& scene, const PointBatch<float, 3>& points,
-                  float max_distance2, Near<float, 3>* found) {
+template <int W, class Search, class T>
+void closest_many(const typename Search::Scene& scene, const PointBatch<T, 3>& points, T max_distance2,
+                  Near<T, 3>* found) {
     for (std::size_t i = 0; i < points.size(); ++i) begin(found[points.number(i)], max_distance2);
     if (!scene.tree.empty() && max_distance2 >= 0) {
         typename Search::Shared shared(scene);

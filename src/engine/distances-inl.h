@@ -25,28 +25,45 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // A point and the squared distance to which it looks. Boxes are entered at their squared distance, which is
 // that of PointProbe but for roundings.
-template <int W>
+template <int W, class T = float>
 class Reach {
 public:
-    using V = hn::Vec<Floats<W>>;
+    using F = Floats<W>;
 
-    HWY_INLINE Reach(const Vec<float, 3>& p, float limit2)
-        : p_(all_lanes(Floats<W>(), p)), limit2_(hn::Set(Floats<W>(), limit2)) {}
+    HWY_INLINE Reach(const Vec<T, 3>& p, float limit2) : p_(all_lanes(d, p)), limit2_(hn::Set(F(), limit2)) {}
 
-    HWY_INLINE hn::Mask<Floats<W>> enter(const std::byte* node, int part, V& distance2) const {
-        const auto outside = [&](std::size_t axis, V at) __attribute__((always_inline)) {
-            const V below = hn::Sub(row_of<W>(node, axis * 8 * W, part), at);
-            const V above = hn::Sub(at, row_of<W>(node, axis * 8 * W + 4 * W, part));
-            return hn::Max(hn::Max(below, above), hn::Zero(Floats<W>()));
-        };
-        const Coordinates<Floats<W>> d{outside(0, p_.x), outside(1, p_.y), outside(2, p_.z)};
-        distance2 = dot(d, d);
+    HWY_INLINE hn::Mask<F> enter(const std::byte* node, int part, hn::Vec<F>& distance2) const {
+        const T* const rows = reinterpret_cast<const T*>(node) + part * lanes;
+        if constexpr (std::is_same_v<T, float>)
+            distance2 = some(rows);
+        else if constexpr (some_lanes == lanes)
+            distance2 = hn::DemoteTo(F(), some(rows));
+        else
+            distance2 =
+                hn::Combine(F(), hn::DemoteTo(half, some(rows + some_lanes)), hn::DemoteTo(half, some(rows)));
         return hn::Le(distance2, limit2_);
     }
 
 private:
-    Coordinates<Floats<W>> p_;
-    V limit2_;
+    // A vector of floats takes one or two of doubles.
+    static constexpr int lanes = static_cast<int>(hn::MaxLanes(F()));
+    using D = hn::CappedTag<T, lanes>;
+    static constexpr D d{};
+    static constexpr int some_lanes = static_cast<int>(hn::MaxLanes(d));
+    static constexpr hn::Rebind<float, D> half{};
+
+    HWY_INLINE hn::Vec<D> some(const T* rows) const {
+        const auto outside = [&](int axis, auto at) __attribute__((always_inline)) {
+            const auto below = hn::Sub(hn::Load(d, rows + 2 * axis * W), at);
+            const auto above = hn::Sub(at, hn::Load(d, rows + (2 * axis + 1) * W));
+            return hn::Max(hn::Max(below, above), hn::Zero(d));
+        };
+        const Coordinates<D> away{outside(0, p_.x), outside(1, p_.y), outside(2, p_.z)};
+        return dot(away, away);
+    }
+
+    Coordinates<D> p_;
+    hn::Vec<F> limit2_;
 };
 
 // Bounds of the squared distances from a point to the triangles of a block, in the lanes of F.
@@ -58,15 +75,17 @@ private:
 //
 // Roundings: x = p − a, ab and ac have relative errors of ε a component, r of 5ε·(|x| + |ab| + |ac|), and so
 // have the products with r for each |r|. With S² = x² + ab² + ac² both bounds err by less than E = 32ε·S. To
-// spare roots they are squared: (d + E)² is at most (1 + 2^-16)·d² + (1 + 2^16)·E², whatever d is. What
-// underflows is less than 2^-120 of a squared distance. Where squares come near to overflow E is infinite;
-// bounds that are infinite or NaN exclude nothing.
+// spare roots they are squared: (d + E)² is at most (1 + η)·d² + (1 + 1/η)·E², whatever d is, where η is
+// 2^-16 for floats and 2^-32 for doubles. What underflows is less than 2^-120 (2^-960) of a squared distance.
+// Where squares of floats come near to overflow E is infinite; bounds that are infinite or NaN exclude
+// nothing.
 template <class F>
 class TriangleDistances {
 public:
     using V = hn::Vec<F>;
+    using T = hn::TFromD<F>;
 
-    HWY_INLINE TriangleDistances(F f, const TriangleBlock<float>& block, int at, const Coordinates<F>& p) {
+    HWY_INLINE TriangleDistances(F f, const TriangleBlock<T>& block, int at, const Coordinates<F>& p) {
         const auto corner = [&](int c) __attribute__((always_inline)) {
             const auto row = [&](int axis) __attribute__((always_inline)) {
                 return hn::Load(f, block.corner[axis][c] + at);
@@ -78,20 +97,20 @@ public:
         there_ = hn::Eq(a.x, a.x);
         const V abab = dot(ab, ab), acac = dot(ac, ac);
         // 16·S² overflows before any other square does.
-        const V scale = hn::Mul(hn::Set(f, 16.0f), hn::Add(hn::Add(abab, acac), dot(x, x)));
-        const V error = hn::MulAdd(hn::Set(f, 0x1.01p-26f), scale, hn::Set(f, 0x1p-120f));
+        const V scale = hn::Mul(hn::Set(f, 16), hn::Add(hn::Add(abab, acac), dot(x, x)));
+        const V error = hn::MulAdd(hn::Set(f, share_of_scale), scale, hn::Set(f, underflow));
         const auto [v, w] = foot(f, x, ab, ac, abab, acac);
         const Coordinates<F> r = minus(minus(x, v, ab), w, ac);
         const V length2 = dot(r, r), zero = hn::Zero(f);
-        most_ = hn::MulAdd(length2, hn::Set(f, 1 + 0x1p-16f), error);
+        most_ = hn::MulAdd(length2, hn::Set(f, 1 + eta), error);
         const V ahead = hn::Max(hn::Max(dot(r, ab), dot(r, ac)), zero);
         const V height = hn::Max(hn::Sub(dot(r, x), ahead), zero);
-        const V least = hn::Mul(height, hn::Div(height, hn::Max(length2, hn::Set(f, 0x1p-120f))));
-        least_ = hn::Mul(hn::Sub(least, error), hn::Set(f, 1 - 0x1.1p-16f));
+        const V least = hn::Mul(height, hn::Div(height, hn::Max(length2, hn::Set(f, underflow))));
+        least_ = hn::Mul(hn::Sub(least, error), hn::Set(f, 1 - T(0x1.1p0) * eta));
     }
     // The least of the upper bounds, in all lanes; infinite if there is none.
     HWY_INLINE V least_most(F f) const {
-        const V none = hn::Set(f, std::numeric_limits<float>::infinity());
+        const V none = hn::Set(f, std::numeric_limits<T>::infinity());
         return hn::MinOfLanes(f, hn::IfThenElse(there_, most_, none));
     }
     // The triangles that may be within a squared distance.
@@ -100,6 +119,11 @@ public:
     HWY_INLINE V least() const { return least_; }
 
 private:
+    static constexpr bool single = std::is_same_v<T, float>;
+    static constexpr T eta = single ? T(0x1p-16) : T(0x1p-32);
+    static constexpr T share_of_scale = single ? T(0x1.01p-26) : T(0x1.01p-68);  // (1 + 1/η)·(32ε)² / 16
+    static constexpr T underflow = single ? T(0x1p-120) : T(0x1p-960);
+
     struct Foot {
         V v, w;
     };
@@ -108,7 +132,7 @@ private:
     // section 5.1.5). In any case a point of the triangle: v and w are clamped.
     static HWY_INLINE Foot foot(F f, const Coordinates<F>& x, const Coordinates<F>& ab,
                                 const Coordinates<F>& ac, V abab, V acac) {
-        const V zero = hn::Zero(f), one = hn::Set(f, 1.0f);
+        const V zero = hn::Zero(f), one = hn::Set(f, 1);
         const V abac = dot(ab, ac), abx = dot(ab, x), acx = dot(ac, x);
         // The perpendicular's foot, as multiples of the determinant: negative v beyond the line through a and
         // c, negative w beyond that through a and b, and v + w > det beyond that through b and c.
@@ -138,6 +162,29 @@ private:
 
     hn::Mask<F> there_;
     V least_, most_;
+};
+
+// The lower bounds of TriangleDistances as floats, and which triangles may be within a squared distance. The
+// nearest float never puts two numbers in the wrong order.
+template <class D>
+struct FloatBounds {
+    using F = hn::Rebind<float, D>;
+
+    hn::Vec<F> least;
+    hn::Mask<F> within;
+
+    HWY_INLINE FloatBounds(const TriangleDistances<D>& distances,
+                           hn::Vec<D> distance2) requires(std::is_same_v<D, F>)
+        : least(distances.least()), within(distances.within(distance2)) {}
+    HWY_INLINE FloatBounds(const TriangleDistances<D>& distances,
+                           hn::Vec<D> distance2) requires(!std::is_same_v<D, F>) {
+        constexpr D d;
+        constexpr F f;
+        // What is not within has a NaN's place taken by infinity, which is within nothing.
+        const auto infinite = hn::Set(d, std::numeric_limits<double>::infinity());
+        least = hn::DemoteTo(f, hn::IfThenElse(distances.within(distance2), distances.least(), infinite));
+        within = hn::Not(hn::Eq(least, hn::Set(f, std::numeric_limits<float>::infinity())));
+    }
 };
 
 // The squared distances of the points of a block from `from` on, in the lanes of D, which are doubles.

@@ -17,8 +17,9 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Does what `closest_point` (geometry/distance.h) does for a triangle of floats, in the lanes of D, which are
-// doubles: the same operations in the same order, each rounded by itself. All choices are made by selection.
+// Does what `closest_point` (geometry/distance.h) does for a triangle that it does not scale, in the lanes of
+// D, which are doubles: the same operations in the same order, each rounded by itself. All choices are made
+// by selection.
 template <class D>
 class ExactFeet {
 public:

@@ -134,7 +134,7 @@ public:
         limit_.set(sink.distance2());
     }
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
-    HWY_INLINE const Limit& limit() const { return limit_; }
+    HWY_INLINE const Limit<float>& limit() const { return limit_; }
     HWY_INLINE const Sink& sink() const { return sink_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
@@ -148,7 +148,7 @@ public:
 private:
     Vec<float, 3> p_;
     Sink sink_;
-    Limit limit_;
+    Limit<float> limit_;
 };
 
 // The same of triangles: those whose bounds are within the limit are tested exactly.
@@ -165,7 +165,7 @@ public:
     };
     struct Shared {
         const TriangleBlock<float>* blocks;
-        ExactTests<Taker> tests;
+        ExactTests<float, Taker> tests;
 
         HWY_INLINE explicit Shared(const WideScene& scene) : blocks(scene.blocks), tests(scene.blocks) {}
     };
@@ -175,7 +175,7 @@ public:
         limit_.set(sink.distance2());
     }
     HWY_INLINE const Vec<float, 3>& point() const { return p_; }
-    HWY_INLINE const Limit& limit() const { return limit_; }
+    HWY_INLINE const Limit<float>& limit() const { return limit_; }
     HWY_INLINE const Sink& sink() const { return sink_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
@@ -197,7 +197,7 @@ public:
 private:
     Vec<float, 3> p_;
     Sink sink_;
-    Limit limit_;
+    Limit<float> limit_;
 };
 
 // The sink when a search for a point is over.

@@ -21,25 +21,37 @@ namespace hedgerow::HWY_NAMESPACE {
 template <class Search>
 struct Closest {
     using Scene = typename Search::Scene;
+    using T = typename Scene::Scalar;
 
     template <int W>
     struct Answer {
-        static Near<float, 3> answer(const Scene& scene, const Vec<float, 3>* p, float max_distance2) {
+        static Near<T, 3> answer(const Scene& scene, const Vec<T, 3>* p, T max_distance2) {
             return closest_one<W, Search>(scene, *p, max_distance2);
         }
-        static void answer(const Scene& scene, const PointBatch<float, 3>* points, float max_distance2,
-                           Near<float, 3>* found) {
+        static void answer(const Scene& scene, const PointBatch<T, 3>* points, T max_distance2,
+                           Near<T, 3>* found) {
             closest_many<W, Search>(scene, *points, max_distance2, found);
         }
     };
-    static Near<float, 3> one(const Scene& scene, const Vec<float, 3>& p, float max_distance2) {
+    static Near<T, 3> one(const Scene& scene, const Vec<T, 3>& p, T max_distance2) {
         return by_width<Answer>(scene, &p, max_distance2);
     }
-    static void many(const Scene& scene, const PointBatch<float, 3>& points, float max_distance2,
-                     Near<float, 3>* found) {
+    static void many(const Scene& scene, const PointBatch<T, 3>& points, T max_distance2, Near<T, 3>* found) {
         by_width<Answer>(scene, &points, max_distance2, found);
     }
 };
+
+template <int W>
+struct WalkToLeaves {
+    template <class T>
+    static void answer(const WideLeaves<T>& leaves, const Vec<T, 3>* p, T limit) {
+        walk_to_leaves<W>(leaves, *p, limit);
+    }
+};
+template <class T>
+void walk_by_width(const WideLeaves<T>& leaves, const Vec<T, 3>& p, T limit) {
+    by_width<WalkToLeaves>(leaves, &p, limit);
+}
 
 template <template <class> class Search, class Scene>
 struct Keys {
@@ -81,14 +93,20 @@ std::size_t points_in_ball(const WidePoints& scene, const Sphere<float, 3>& ball
     return by_width<CountInBall>(scene, &ball);
 }
 
-template <class Closest, class Keys, class Scene>
-inline constexpr PointKernels<Scene> kernels_of = {Closest::one, Closest::many, Keys::nearest,
-                                                   Keys::nearest_of_many, Keys::within};
+template <class Search>
+inline constexpr ClosestKernels<typename Search::Scene> closest_kernels = {Closest<Search>::one,
+                                                                           Closest<Search>::many};
+template <class Search, class Keys>
+inline constexpr PointKernels<typename Search::Scene> kernels_of = {closest_kernels<Search>, Keys::nearest,
+                                                                    Keys::nearest_of_many, Keys::within};
 
 extern const AllPointKernels point_kernels;  // for kernels.cpp
-const AllPointKernels point_kernels{
-    kernels_of<Closest<ClosestTriangle>, Keys<KeysOfTriangles, WideScene>, WideScene>,
-    kernels_of<Closest<ClosestOfCloud>, Keys<KeysOfCloud, WidePoints>, WidePoints>, points_in_ball};
+const AllPointKernels point_kernels{kernels_of<ClosestTriangle<WideScene>, Keys<KeysOfTriangles, WideScene>>,
+                                    kernels_of<ClosestOfCloud, Keys<KeysOfCloud, WidePoints>>,
+                                    closest_kernels<ClosestTriangle<WideDoubles>>,
+                                    walk_by_width<float>,
+                                    walk_by_width<double>,
+                                    points_in_ball};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

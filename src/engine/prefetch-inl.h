@@ -32,14 +32,16 @@ public:
         // Found by arithmetic, since a branch would have to be predicted.
         const std::uint32_t leaf = word >> 31;
         const char* const from = start_[leaf] + std::size_t(word & ~WideChild::leaf_bit) * step_[leaf];
-        // 28·W bytes of a node are its planes and children; a leaf's block is read whole.
-        constexpr int lines = std::max<int>(28 * W, sizeof(*std::declval<Scene>().blocks)) / 64;
+        // Of a node its planes and children are read; a leaf's block is read whole.
+        constexpr int lines =
+            std::max<int>((6 * sizeof(T) + 4) * W, sizeof(*std::declval<Scene>().blocks)) / 64;
         for (int line = 0; line < lines; ++line) __builtin_prefetch(from + 64 * line);
     }
 
 private:
+    using T = typename Scene::Scalar;
     const char* start_[2];  // of nodes and of leaves; step_: bytes from one to the next
-    std::size_t step_[2] = {WideNodes<float, 3>::stride_of(W), sizeof(*std::declval<Scene>().blocks)};
+    std::size_t step_[2] = {WideNodes<T, 3>::stride_of(W), sizeof(*std::declval<Scene>().blocks)};
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -25,24 +25,44 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The squared distance up to which a search looks, and that up to which its walk does.
+// The nearest float, or the largest.
+template <class T>
+HWY_INLINE float float_limit(T distance2) {
+    return static_cast<float>(std::min(distance2, T(std::numeric_limits<float>::max())));
+}
+
+// The squared distance up to which a search looks, and that up to which its walk does. The distances of boxes
+// are compared as floats; the nearest float never puts two numbers in the wrong order.
+template <class T>
 class Limit {
 public:
-    HWY_INLINE float distance2() const { return distance2_; }
+    HWY_INLINE T distance2() const { return distance2_; }
+    HWY_INLINE float as_float() const {
+        if constexpr (std::is_same_v<T, float>)
+            return distance2_;
+        else
+            return float_limit(distance2_);
+    }
     HWY_INLINE float of_boxes() const { return of_boxes_; }
-    HWY_INLINE void set(float distance2) {
+    HWY_INLINE void set(T distance2) {
         distance2_ = distance2;
-        of_boxes_ = std::min(limit_of_boxes(distance2), std::numeric_limits<float>::max());
+        of_boxes_ = float_limit(limit_of_boxes(distance2));
     }
 
 private:
-    float distance2_ = 0, of_boxes_ = 0;
+    T distance2_ = 0;
+    float of_boxes_ = 0;
 };
 
 // A search looks at the leaves that a walk brings it to. It has
 // - Scene and Shared: the tree and its leaves, and what all searches of a batch have in common;
-// - point(), and limit(), which is a Limit;
+// - point(), and limit(), which is a Limit, of the scene's Scalar;
 // - test(shared, leaf), which looks at the primitives of a leaf, and end(shared), when there are no more.
+
+template <int W, class Search>
+HWY_INLINE auto reach(const Search& search) {
+    return Reach<W, typename Search::Scene::Scalar>(search.point(), search.limit().of_boxes());
+}
 
 // A search as an asker (see `walk`).
 template <int W, class Search>
@@ -51,7 +71,7 @@ public:
     HWY_INLINE Searching(Search& search, typename Search::Shared& shared)
         : search_(search), shared_(shared) {}
 
-    HWY_INLINE Reach<W> slabs() const { return Reach<W>(search_.point(), search_.limit().of_boxes()); }
+    HWY_INLINE auto slabs() const { return reach<W>(search_); }
     HWY_INLINE bool test(std::uint32_t leaf) { return search_.template test<true>(shared_, leaf), false; }
     HWY_INLINE float limit() const { return search_.limit().of_boxes(); }
     HWY_INLINE bool found() const { return false; }
@@ -66,6 +86,34 @@ HWY_INLINE void search_through(const typename Search::Scene& scene, Search& sear
     if (!scene.tree.empty() && search.limit().distance2() >= 0)
         walk<W, Wanted::near>(scene.tree, Searching<W, Search>(search, shared));
     search.end(shared);
+}
+
+// A walk to leaves of any primitives, as an asker. A leaf takes longer than the sort of a node's children, so
+// they are opened in their order.
+template <int W, class T>
+class LeavesAsker {
+public:
+    HWY_INLINE LeavesAsker(const WideLeaves<T>& leaves, const Vec<T, 3>& p, T limit)
+        : leaves_(leaves), p_(p), limit_(limit) {}
+
+    HWY_INLINE auto slabs() const { return Reach<W, T>(p_, limit()); }
+    HWY_INLINE bool test(std::uint32_t leaf) {
+        const T before = limit_;
+        limit_ = leaves_.test(leaves_.asker, leaf);
+        return limit_ < before;
+    }
+    HWY_INLINE float limit() const { return float_limit(limit_); }
+    HWY_INLINE bool found() const { return false; }
+
+private:
+    const WideLeaves<T>& leaves_;
+    const Vec<T, 3> p_;
+    T limit_;
+};
+template <int W, class T>
+void walk_to_leaves(const WideLeaves<T>& leaves, const Vec<T, 3>& p, T limit) {
+    if (!leaves.tree.empty() && limit >= 0)
+        walk<W, Wanted::closest>(leaves.tree, LeavesAsker<W, T>(leaves, p, limit));
 }
 
 // Several searches in flight, which advance in turns: all that stand at a node look at its boxes, then all
@@ -106,6 +154,7 @@ public:
     }
 
 private:
+    using T = typename Search::Scene::Scalar;
     using Stack = WalkStack<W, Wanted::near>;
     struct Flight {
         typename Stack::Place places[Stack::room(bvh_max_depth + 1)];
@@ -136,15 +185,14 @@ private:
 
     HWY_INLINE void open(int i) {
         Flight& flight = flights_[i];
-        const std::byte* const node =
-            scene_.tree.nodes.data() + flight.word * WideNodes<float, 3>::stride_of(W);
-        const Boxes<W> boxes(node, Reach<W>(flight.search.point(), flight.limit()));
+        const std::byte* const node = scene_.tree.nodes.data() + flight.word * WideNodes<T, 3>::stride_of(W);
+        const Boxes<W> boxes(node, reach<W>(flight.search));
         const bool entered = boxes.bits() != 0;
         std::uint32_t word = 0;
         if constexpr (Boxes<W>::parts == 1)
-            word = flight.stack.push_others(boxes, children_of<W>(node));
+            word = flight.stack.push_others(boxes, children_of<W, T>(node));
         else if (entered)
-            word = flight.stack.push_others(boxes, children_of<W>(node));
+            word = flight.stack.push_others(boxes, children_of<W, T>(node));
         flight.word = word;
         prefetch_(word);
         const bool leaf = (word & WideChild::leaf_bit) != 0;

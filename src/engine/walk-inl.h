@@ -23,12 +23,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Goes down from a node to the next leaf, or to the end of the stack, whose word is returned. `next()` pops a
 // child.
-template <int W, Wanted wanted, class Slabs, class Next>
+template <int W, class T, Wanted wanted, class Slabs, class Next>
 HWY_INLINE std::uint32_t down(const std::byte* nodes, const Slabs& slabs, WalkStack<W, wanted>& stack,
                               std::uint32_t word, Next next) {
     while ((word & WideChild::leaf_bit) == 0) {
-        const std::byte* const node = nodes + word * WideNodes<float, 3>::stride_of(W);
-        const std::uint32_t* const children = children_of<W>(node);
+        const std::byte* const node = nodes + word * WideNodes<T, 3>::stride_of(W);
+        const std::uint32_t* const children = children_of<W, T>(node);
         __builtin_prefetch(children);
         const Boxes<W> boxes(node, slabs);
         const unsigned entered = boxes.bits(), others = entered & (entered - 1);
@@ -66,8 +66,8 @@ HWY_INLINE std::uint32_t down(const std::byte* nodes, const Slabs& slabs, WalkSt
 // - test(leaf): whether the leaf's primitives changed its answer;
 // - limit(): the distance beyond which nothing changes its answer;
 // - found(): whether it has an answer.
-template <int W, Wanted wanted, class Asker>
-HWY_INLINE bool walk(const WideTree<float, 3>& tree, Asker asker) {
+template <int W, Wanted wanted, class T, class Asker>
+HWY_INLINE bool walk(const WideTree<T, 3>& tree, Asker asker) {
     // The stack, with room for the deepest tree.
     using Stack = WalkStack<W, wanted>;
     typename Stack::Place places[Stack::room(bvh_max_depth + 1)];
@@ -81,7 +81,7 @@ HWY_INLINE bool walk(const WideTree<float, 3>& tree, Asker asker) {
     };
     std::uint32_t word = 0;
     while (true) {
-        word = down<W, wanted>(tree.nodes.data(), asker.slabs(), stack, word, next);
+        word = down<W, T>(tree.nodes.data(), asker.slabs(), stack, word, next);
         // A leaf, or the end of the stack.
         if (word == Stack::end) return asker.found();
         if (asker.test(word & ~WideChild::leaf_bit)) {

@@ -27,6 +27,8 @@ namespace hedgerow {
 /// report (empty if these are the positions). What it needs to know of the call: the filter of hits, and the
 /// number of the first ray in its batch.
 struct WideScene {
+    using Scalar = float;
+
     const WideTree<float, 3>& tree;
     const TriangleBlock<float>* blocks;
     Strided<std::uint32_t> faces;
@@ -68,22 +70,46 @@ struct RayKernels {
 
 /// What a kernel needs to know of an index of points: the tree, and the points of its leaves.
 struct WidePoints {
+    using Scalar = float;
+
     const WideTree<float, 3>& tree;
     const PointBlock<float, 3>* blocks;
+};
+/// What a kernel needs to know of an index of triangles of double.
+struct WideDoubles {
+    using Scalar = double;
+
+    const WideTree<double, 3>& tree;
+    const TriangleBlock<double>* blocks;
+    Strided<std::uint32_t> faces;
+};
+/// Leaves of any primitives, behind one plain call: `test` tests those of a leaf, and returns the squared
+/// distance beyond which no box can change the answer.
+template <std::floating_point T>
+struct WideLeaves {
+    using Scalar = T;
+
+    const WideTree<T, 3>& tree;
+    void* asker;
+    T (*test)(void* asker, std::uint32_t leaf);
 };
 
 /// Kernels insert into sorted lists; a walk has a heap, which is better for more than these.
 inline constexpr std::size_t most_nearest = 256;
 
-/// The kernels of points over leaves of one kind, where `Scene` is a WideScene or WidePoints. Distances are
-/// squared, and a maximum is included. No coordinate of a point may be NaN or beyond `largest_coordinate`.
-template <class Scene>
-struct PointKernels {
+/// The kernels of closest points over leaves of one kind, where `Scene` is a WideScene, WidePoints or
+/// WideDoubles. Distances are squared, and a maximum is included. No coordinate of a point may be NaN or
+/// beyond `largest_coordinate<float>`, nor any of the scene.
+template <class Scene, class T = typename Scene::Scalar>
+struct ClosestKernels {
     /// The closest point; false if there is none.
-    Near<float, 3> (*closest)(const Scene&, const Vec<float, 3>&, float max_distance2);
+    Near<T, 3> (*closest)(const Scene&, const Vec<T, 3>&, T max_distance2);
     /// Writes found[n] for point number n.
-    void (*closest_of_many)(const Scene&, const PointBatch<float, 3>&, float max_distance2,
-                            Near<float, 3>* found);
+    void (*closest_of_many)(const Scene&, const PointBatch<T, 3>&, T max_distance2, Near<T, 3>* found);
+};
+/// Those of several points too, of floats.
+template <class Scene>
+struct PointKernels : ClosestKernels<Scene> {
     /// Writes the k nearest to `keys`, ascending, for k up to `most_nearest`, for as many of which there must
     /// be room, aligned to 64 bytes. Returns how many there are.
     std::size_t (*nearest)(const Scene&, const Vec<float, 3>&, std::size_t k, float max_distance2,
@@ -99,6 +125,10 @@ struct PointKernels {
 struct AllPointKernels {
     PointKernels<WideScene> triangles;
     PointKernels<WidePoints> points;
+    ClosestKernels<WideDoubles> doubles;
+    /// Walks to the leaves of any primitives that a point's limit, a squared distance, lets it reach.
+    void (*walk)(const WideLeaves<float>&, const Vec<float, 3>&, float limit);
+    void (*walk_of_doubles)(const WideLeaves<double>&, const Vec<double, 3>&, double limit);
     /// The number of points in a solid ball, whose center and radius are within `largest_coordinate`.
     std::size_t (*points_in_ball)(const WidePoints&, const Sphere<float, 3>&);
 };

@@ -1,6 +1,7 @@
 /// The engine's specialisations of Kernel (walks/kernel.h) for points: the kernels answer closest points, k
-/// nearest and all within a distance, of float triangles and points in a WideBvh in space, and how many
-/// points are in a ball.
+/// nearest and all within a distance, of float triangles and points in a WideBvh in space, the closest points
+/// of triangles of double, and how many points are in a ball. Of any other primitives in a WideBvh in space
+/// they do the walk, and the leaves are tested as in any walk.
 #pragma once
 
 #include <algorithm>
@@ -27,37 +28,62 @@ concept CloudForKernels = requires(const I& index) {
 };
 template <class I>
 concept NearForKernels = TrianglesForKernels<I> || CloudForKernels<I>;
+template <class I>
+concept DoublesForKernels = requires(const I& index) {
+    { index.structure().tree() } -> std::same_as<const WideTree<double, 3>&>;
+    { index.packed() } -> std::same_as<const TriangleBlocks<double>&>;
+    { index.primitives().faces() } -> std::same_as<const Strided<std::uint32_t>&>;
+};
+/// Indexes of any primitives, over a tree that the kernels can walk.
+template <class I>
+concept WideForKernels = requires(const I& index) {
+    { index.structure().tree() } -> std::same_as<const WideTree<typename I::Primitives::Scalar, 3>&>;
+};
 
 /// The kernels of points over indexes I that are in use when the object is made.
-template <NearForKernels I>
+template <WideForKernels I>
 class PointKernel {
 public:
+    using T = typename I::Primitives::Scalar;
+
     explicit operator bool() const { return kernels_ != nullptr; }
 
 protected:
+    const AllPointKernels& all() const { return *kernels_->points; }
     const auto& kernels() const {
         if constexpr (TrianglesForKernels<I>)
             return all().triangles;
+        else if constexpr (DoublesForKernels<I>)
+            return all().doubles;
         else
             return all().points;
     }
-    const AllPointKernels& all() const { return *kernels_->points; }
     static auto scene(const I& index) {
         if constexpr (TrianglesForKernels<I>)
             return kernel_scene(index, {}, {});
+        else if constexpr (DoublesForKernels<I>)
+            return WideDoubles{index.structure().tree(), index.packed().data(), index.primitives().faces()};
         else
             return WidePoints{index.structure().tree(), index.packed().data()};
     }
-    // Squared distances of farther points may overflow; NaN is no nearer to anything. Kernels are exact.
-    static bool takes(const Vec<float, 3>& point) {  // without a branch
-        const auto fits = [](float x) { return unsigned(std::abs(x) <= largest_coordinate<float>); };
+    // Squared distances of farther points may overflow; NaN is no nearer to anything.
+    static bool takes(const Vec<T, 3>& point) {  // without a branch
+        const auto fits = [](T x) { return unsigned(std::abs(x) <= T(largest_coordinate<float>)); };
         return (fits(point[0]) & fits(point[1]) & fits(point[2])) != 0;
     }
-    static bool takes(const Vec<float, 3>& point, const NearOptions<float>& options) {
-        return takes(point) && options.factor == 1;
+    // Squared distances to boxes are compared as floats. Those in a small scene of doubles would all be the
+    // same, and those in a large one overflow.
+    static bool takes(const I& index) {
+        if constexpr (std::is_same_v<T, float>) return true;
+        const auto& bounds = index.bounds();
+        return takes(bounds.low) && takes(bounds.high) && max_component(bounds.extent()) > T(0x1p-40);
     }
-    static bool takes_all(const PointBatch<float, 3>& points, const NearOptions<float>& options) {
-        bool all = options.factor == 1;
+    // Kernels are exact.
+    static bool takes(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) {
+        return takes(point) && takes(index) && options.factor == 1;
+    }
+    static bool takes_all(const I& index, const PointBatch<T, 3>& points, const NearOptions<T>& options) {
+        bool all = takes(index) && options.factor == 1;
         for (std::size_t i = 0; i < points.size(); ++i) all &= takes(points[i]);
         return all;
     }
@@ -92,19 +118,100 @@ private:
     const WideKernels* kernels_ = wide_kernels();
 };
 
+/// Other primitives: the kernels walk, and leaves are tested as in any walk.
+template <class I>
+class OtherKernel : public PointKernel<I> {
+public:
+    /// The walk, or a kernel for each point, answers batches.
+    template <class... Arguments>
+    bool answer_many(const I&, Arguments&&...) const {
+        return false;
+    }
+
+protected:
+    using typename PointKernel<I>::T;
+
+    template <class Q, class... Arguments>
+    auto answer_of(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options,
+                   Arguments&&... arguments) const {
+        Q query(index, point, arguments...);
+        if (this->takes(index, point, options))
+            walk(index, query);
+        else
+            index.ask(query);
+        return query.answer();
+    }
+
+private:
+    template <class Q>
+    void walk(const I& index, Q& query) const {
+        using Asked = std::pair<const I&, Q&>;
+        Asked asked{index, query};
+        const auto test = [](void* asker, std::uint32_t leaf) {
+            auto& [of, asks] = *static_cast<Asked*>(asker);
+            const auto& items = of.structure().tree().items;
+            const std::uint32_t first = wide_leaf_size * leaf;
+            std::uint32_t count = 0;
+            while (count < wide_leaf_size && items[first + count] != no_primitive) ++count;
+            of.test_leaf(asks.probe(), {items.data(), first, count}, asks);
+            return asks.limit();
+        };
+        const WideLeaves<T> leaves{index.structure().tree(), &asked, test};
+        if constexpr (std::is_same_v<T, float>)
+            this->all().walk(leaves, query.probe().point(), query.limit());
+        else
+            this->all().walk_of_doubles(leaves, query.probe().point(), query.limit());
+    }
+};
+template <class I>
+concept ClosestForKernels = NearForKernels<I> || DoublesForKernels<I>;
+
 }  // namespace detail
 
-template <class Set, detail::NearForKernels I>
+template <class Set, class I>
+requires(detail::WideForKernels<I> && !detail::ClosestForKernels<I>)  //
+    struct Kernel<ClosestPoint<Set>, I> : detail::OtherKernel<I> {
+    using typename detail::PointKernel<I>::T;
+
+    auto answer(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
+        return this->template answer_of<ClosestPoint<Set>>(index, point, options, options);
+    }
+};
+template <class Set, class I>
+requires(detail::WideForKernels<I> && !detail::NearForKernels<I>)  //
+    struct Kernel<Nearest<Set>, I> : detail::OtherKernel<I> {
+    using typename detail::PointKernel<I>::T;
+
+    template <class Found>
+    std::size_t answer(const I& index, const Vec<T, 3>& point, std::size_t k, const NearOptions<T>& options,
+                       Found& found) const {
+        return this->template answer_of<Nearest<Set>>(index, point, options, k, options, found);
+    }
+};
+template <class Set, class I>
+requires(detail::WideForKernels<I> && !detail::NearForKernels<I>)  //
+    struct Kernel<Within<Set>, I> : detail::OtherKernel<I> {
+    using typename detail::PointKernel<I>::T;
+
+    template <class Found>
+    std::size_t answer(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options,
+                       Found& found) const {
+        return this->template answer_of<Within<Set>>(index, point, options, options, found);
+    }
+};
+
+template <class Set, detail::ClosestForKernels I>
 struct Kernel<ClosestPoint<Set>, I> : detail::PointKernel<I> {
-    Near<float, 3> answer(const I& index, const Vec<float, 3>& point,
-                          const NearOptions<float>& options) const {
-        if (!this->takes(point, options)) [[unlikely]]
+    using typename detail::PointKernel<I>::T;
+
+    Near<T, 3> answer(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
+        if (!this->takes(index, point, options)) [[unlikely]]
             return this->template answer_of_walk<ClosestPoint<Set>>(index, point, options);
         return this->kernels().closest(this->scene(index), point, options.max_distance2());
     }
-    bool answer_many(const I& index, const PointBatch<float, 3>& points, const NearOptions<float>& options,
-                     Near<float, 3>* found) const {
-        if (!this->takes_all(points, options)) return false;
+    bool answer_many(const I& index, const PointBatch<T, 3>& points, const NearOptions<T>& options,
+                     Near<T, 3>* found) const {
+        if (!this->takes_all(index, points, options)) return false;
         this->kernels().closest_of_many(this->scene(index), points, options.max_distance2(), found);
         return true;
     }
@@ -114,7 +221,7 @@ template <class Set, detail::NearForKernels I>
 struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
     std::size_t answer(const I& index, const Vec<float, 3>& point, std::size_t k,
                        const NearOptions<float>& options, std::vector<Near<float, 3>>& found) const {
-        if (k > most_nearest || !this->takes(point, options)) [[unlikely]]
+        if (k > most_nearest || !this->takes(index, point, options)) [[unlikely]]
             return this->template answer_of_walk<Nearest<Set>>(index, point, k, options, found);
         alignas(64) NearKey keys[most_nearest];
         const std::size_t count =
@@ -123,7 +230,7 @@ struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
     }
     bool answer_many(const I& index, const PointBatch<float, 3>& points, std::size_t k,
                      const NearOptions<float>& options, PrimitiveId* ids, float* distances2) const {
-        if (k > most_nearest || !this->takes_all(points, options)) return false;
+        if (k > most_nearest || !this->takes_all(index, points, options)) return false;
         this->kernels().nearest_of_many(this->scene(index), points, k, options.max_distance2(), ids,
                                         distances2);
         return true;
@@ -134,7 +241,7 @@ template <class Set, detail::NearForKernels I>
 struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
     std::size_t answer(const I& index, const Vec<float, 3>& point, const NearOptions<float>& options,
                        std::vector<Near<float, 3>>& found) const {
-        if (!this->takes(point, options)) [[unlikely]]
+        if (!this->takes(index, point, options)) [[unlikely]]
             return this->template answer_of_walk<Within<Set>>(index, point, options, found);
         return this->read(index, point, sorted_keys(index, point, options), found);
     }
@@ -143,7 +250,7 @@ struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
     bool answer_many(const I& index, const PointBatch<float, 3>& points, const NearOptions<float>& options,
                      std::vector<std::size_t>& offsets, std::vector<PrimitiveId>& ids,
                      std::vector<float>& distances2) const {
-        if (!this->takes_all(points, options)) return false;
+        if (!this->takes_all(index, points, options)) return false;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const auto keys = sorted_keys(index, points[i], options);
             const std::size_t first = ids.size();
