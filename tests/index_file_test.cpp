@@ -273,7 +273,7 @@ void expect_points_round_trips(const TempFolder& folder) {
     Random random(4, 0);
     PointCloud<T, D> cloud;
     expect_points_round_trip(folder, cloud, options_of(8));
-    for (const std::size_t size : {1, 9, 3000}) {
+    for (const std::size_t size : {1u, 9u, 3000u}) {
         while (cloud.size() < size) {
             cloud.points.emplace_back();
             for (int k = 0; k < D; ++k) cloud.points.back()[k] = static_cast<T>(random.uniform() - 0.25);

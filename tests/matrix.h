@@ -41,7 +41,7 @@ inline constexpr const char* structures[] = {
     "kdtree:builder=midpoint,leaf_size=1",
     "kdtree:mailbox=off,intersection_cost=100",
     "grid:resolution=3",
-    "grid:resolution=100,insert=box",
+    "grid:resolution=40,insert=box",
     "grid:heuristic=roots,mailbox=off,skip_empty=off",
     "two-level-grid:resolution=2,inner_density=10",
     "octree:leaf_size=1",

@@ -37,7 +37,8 @@ public:
         answers_[count_] = answer;
         if (++count_ == lanes) flush();
     }
-    // What fills the other lanes is left from earlier tests.
+    // What fills the other lanes is left from earlier tests, or if there is one test it fills all of them:
+    // then the edges are tried only if its foot needs them.
     HWY_NOINLINE void flush() {
         const Coordinates<Scalars> a = corner(0, 3), b = corner(1, 3), c = corner(2, 3), p = corner(9, 1);
         const ExactFeet<Doubles> feet(d, promoted(p), promoted(a), promoted(b), promoted(c));
@@ -71,7 +72,8 @@ private:
 
     HWY_INLINE Coordinates<Scalars> corner(int first_row, int step) const {
         const auto row = [&](int axis) __attribute__((always_inline)) {
-            return hn::Load(s, rows_[first_row + step * axis]);
+            const T* const all = rows_[first_row + step * axis];
+            return count_ == 1 ? hn::Set(s, *all) : hn::Load(s, all);
         };
         return {row(0), row(1), row(2)};
     }
