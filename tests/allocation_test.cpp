@@ -1,62 +1,12 @@
 /// Tests that queries allocate nothing, and that a build with a budget allocates no more than it says. This
 /// is a program of its own because it counts all its allocations. A sanitizer has an allocator of its own, so
 /// nothing is counted or tested there.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
-#include <malloc.h>
-
 #include <hedgerow/scenes/meshes.h>
 
 #include "contract.h"
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define HEDGEROW_SANITIZED 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define HEDGEROW_SANITIZED 1
-#endif
+#include "counted_memory.h"
 
 #ifndef HEDGEROW_SANITIZED
-static std::atomic<std::size_t> allocations{0}, live{0}, most_live{0};  // the latter two in bytes
-
-static void* counted(void* p) {
-    if (p == nullptr) throw std::bad_alloc();
-    ++allocations;
-    const std::size_t now = live += malloc_usable_size(p);
-    for (std::size_t most = most_live; now > most && !most_live.compare_exchange_weak(most, now);) {
-    }
-    return p;
-}
-static void freed(void* p) {
-    live -= malloc_usable_size(p);
-    std::free(p);
-}
-
-// Not inlined, because g++ would see a malloc without its free, or a free without its malloc, and warn.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    return counted(std::malloc(size > 0 ? size : 1));
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-    const auto a = static_cast<std::size_t>(alignment);
-    return counted(std::aligned_alloc(a, (size / a + 1) * a));
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept {
-    freed(p);
-}
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-    freed(p);
-}
-[[gnu::noinline]] void operator delete(void* p, std::align_val_t) noexcept {
-    freed(p);
-}
-[[gnu::noinline]] void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-    freed(p);
-}
-
 using namespace hedgerow;
 using namespace hedgerow::contract;
 
@@ -119,15 +69,6 @@ TYPED_TEST(Allocation, QueriesDoNone) {
         EXPECT_EQ(allocated_by(count_all), 0u);
         EXPECT_GT(sum + visits.primitives, 0u);
     });
-}
-
-/// The most bytes that were allocated at one time during f, beyond those allocated before.
-template <class F>
-std::size_t most_bytes_of(F f) {
-    const std::size_t before = live;
-    most_live = before;
-    f();
-    return most_live - before;
 }
 
 /// Builds with every builder and width over four kinds of meshes. Leaves of one triangle take the most

@@ -1,13 +1,17 @@
 /// hedgerow build: builds an index and saves it in a file.
-#include <filesystem>
+#include <optional>
+#include <type_traits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
+#include <hedgerow/io/scene_size.h>
 #include <hedgerow/io/writable.h>
+#include <hedgerow/predicted_memory.h>
 
+#include "memory.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -15,7 +19,7 @@ namespace hedgerow::cli {
 namespace {
 
 struct BuildArguments : Common {
-    std::string builder = "medium";
+    std::string structure = "wide", builder = "medium";
     int width = 0;
     unsigned threads = 0;
 };
@@ -47,13 +51,21 @@ void report(const BuildArguments& a, const Seconds& seconds) {
     }
 }
 
-template <class P>
-inline constexpr bool can_be_saved = PointSet<ViewOf<P>> || requires(const P& set) {
-    set.triangles;
-};
+/// Throws InputError for a kind of primitives whose index no file can hold, and MemoryShort if the scene and
+/// the build are predicted to need more memory than there is. Of the scene `loaded` bytes are in memory.
+void refuse_unsavable(const BuildArguments& a, const SceneSize& size, bool in_double, double loaded) {
+    if (size.kind != "triangles" && size.kind != "points")
+        throw InputError(a.scene + ": only an index of triangles or of points can be saved, and these are " +
+                         std::string(size.kind) + ". Name a mesh or a cloud");
+    const std::string engine = "wide:builder=" + a.builder;
+    const double build = predicted_memory(engine, size.kind, size.count, in_double).build_peak;
+    const double scene = size.bytes(in_double ? sizeof(double) : sizeof(float));
+    expect_memory(fmt::format("to build an index of {} {}", size.count, size.kind), build + scene - loaded,
+                  "build where there is more, or a part of the scene");
+}
 
 template <class P>
-int build_and_save(const BuildArguments& a, const P& set) requires can_be_saved<P> {
+int build_and_save(const BuildArguments& a, const P& set) {
     WideOptions options;
     options.width = a.width;
     options.builder = a.builder == "fast"   ? WideBuilder::fast
@@ -76,10 +88,23 @@ int build_and_save(const BuildArguments& a, const P& set) requires can_be_saved<
     report(a, seconds);
     return 0;
 }
-template <class Other>
-int build_and_save(const BuildArguments& a, const Other&) {
-    throw InputError(a.scene +
-                     ": only an index of triangles or of points can be saved. Name a mesh or a cloud");
+/// Refuses a scene, as soon as its size is known, or builds its index and saves it.
+template <class T>
+int load_and_build(const BuildArguments& a) {
+    constexpr bool in_double = std::is_same_v<T, double>;
+    const std::optional<SceneSize> size = known_size(a);
+    if (size) refuse_unsavable(a, *size, in_double, 0);
+    const Scene<T> scene = load<T>(a);
+    const SceneSize loaded = size_of(scene);
+    refuse_unsavable(a, loaded, in_double, loaded.bytes(sizeof(T)));
+    return std::visit(
+        [&]<class P>(const P& set) {
+            if constexpr (std::is_same_v<P, TriangleMesh<T>> || PointSet<ViewOf<P>>)
+                return build_and_save(a, set);
+            else
+                return 3;  // not reached: refused above
+        },
+        scene);
 }
 
 }  // namespace
@@ -88,6 +113,8 @@ Run add_build(CLI::App& verb) {
     auto a = std::make_shared<BuildArguments>();
     add_common(verb, *a, true);
     verb.get_option("--output")->description("the file to write: NAME.hedgerow");
+    verb.add_option("--structure", a->structure, "wide: a file holds no other structure")
+        ->capture_default_str();
     verb.add_option("--builder", a->builder, "fast, medium or high: time to build against time of queries")
         ->capture_default_str()
         ->check(CLI::IsMember({"fast", "medium", "high"}));
@@ -99,10 +126,12 @@ Run add_build(CLI::App& verb) {
     return [a] {
         if (!names_index_file(a->output))
             throw UsageError(a->output + ": a saved index is known by its ending; call it NAME.hedgerow");
+        if (a->structure != "wide")
+            throw UsageError(a->structure +
+                             ": a file holds 'wide' alone, with --builder and --width as its options; "
+                             "compare, draw and query build any structure at once");
         check_writable(a->output);
-        return in_precision(*a, [&]<class T>(T) {
-            return std::visit([&](const auto& set) { return build_and_save(*a, set); }, load<T>(*a));
-        });
+        return in_precision(*a, [&]<class T>(T) { return load_and_build<T>(*a); });
     };
 }
 

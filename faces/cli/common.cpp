@@ -16,6 +16,11 @@ std::string generated_name(const Common& c) {
     return c.scene.starts_with("gen:") ? parse_scene_spec(c.scene).name : std::string();
 }
 
+std::optional<SceneSize> known_size(const Common& c) {
+    if (c.scene.starts_with("gen:")) return size_of(parse_scene_spec(c.scene));
+    return size_in_header(c.scene);
+}
+
 void check_memory(const SceneSpec& spec) {
     for (const SceneInfo& info : scene_list()) {
         if (info.name != spec.name) continue;

@@ -1,6 +1,7 @@
 /// Code that the verbs share: options, loading and building with progress, results and files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/io/scene_file.h>
+#include <hedgerow/io/scene_size.h>
 #include <hedgerow/io/text_file.h>
 #include <hedgerow/io/writable.h>
 #include <hedgerow/parallel/watched_executor.h>
@@ -25,6 +27,10 @@ struct Common {
 
 /// The name of a generated scene: "cornell-box" for "gen:cornell-box:32". Empty for a file.
 std::string generated_name(const Common& c);
+
+/// The number of a scene's primitives before it is loaded or generated: of a file, if its header says so.
+/// Throws as parse_scene_spec and size_in_header do.
+std::optional<SceneSize> known_size(const Common& c);
 
 /// Throws MemoryShort if a generated scene is known to need more memory than there is.
 void check_memory(const SceneSpec& spec);

@@ -1,13 +1,16 @@
 /// hedgerow info: the contents of a scene, and its faults.
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
+#include <hedgerow/io/scene_size.h>
 #include <hedgerow/parallel/radix_sort.h>
 #include <hedgerow/parallel/sort.h>
+#include <hedgerow/predicted_memory.h>
 
 #include "check.h"
 #include "verbs.h"
@@ -137,34 +140,81 @@ ordered_json facts_of_index(const std::string& path) {
             {"file_bytes", file.file_bytes}};
 }
 
+struct InfoArguments : Common {
+    std::string structure = "wide";
+    bool check = false, memory = false;
+};
+
+/// What a structure over a scene will take in memory, as predicted from the number of primitives.
+ordered_json predicted(const InfoArguments& a, const SceneSize& size) {
+    const bool in_double = precision_of(a) == "double";
+    const PredictedMemory memory = predicted_memory(a.structure, size.kind, size.count, in_double);
+    const double scene = size.bytes(in_double ? sizeof(double) : sizeof(float));
+    const auto whole = [](double bytes) { return static_cast<std::uint64_t>(bytes); };
+    return {
+        {"structure", a.structure},
+        {"scene_bytes", whole(scene)},
+        {"predicted_index_bytes", whole(memory.index)},
+        {"predicted_bytes_each", memory.index / static_cast<double>(std::max<std::uint64_t>(1, size.count))},
+        {"predicted_build_peak", whole(scene + memory.build_peak)}};
+}
+
+void print_facts(const ordered_json& facts) {
+    for (const auto& [key, value] : facts.items()) fmt::print("{:22} {}\n", key, value.dump());
+}
+
+/// Prints what a scene and an index over it take, by the scene's name or its file's header. Returns false,
+/// and prints nothing, if neither says how many primitives there are.
+bool print_memory(const InfoArguments& a) {
+    const std::optional<SceneSize> size = known_size(a);
+    if (!size) return false;
+    ordered_json all = {
+        {"kind", size->kind}, {std::string(size->kind), size->count}, {"dimension", size->dimension}};
+    all.update(predicted(a, *size));
+    a.json ? print_json(all) : print_facts(all);
+    return true;
+}
+
+template <class T>
+int print_info(const InfoArguments& a) {
+    const Scene<T> scene = load<T>(a);
+    const auto* const mesh = std::get_if<TriangleMesh<T>>(&scene);
+    if (a.check && mesh == nullptr)
+        throw InputError(a.scene + " has no triangles, of which --check finds the faults");
+    ordered_json all = facts_of_scene(a, scene);
+    if (names_index_file(a.scene)) all.update(facts_of_index(a.scene));
+    all.update(predicted(a, size_of(scene)));
+    MeshFaults faults;
+    if (a.check) faults = faults_of(a, *mesh);
+    if (a.json) {
+        if (a.check) all["check"] = faults.facts;
+        print_json(all);
+    } else {
+        print_facts(all);
+        if (a.check) fmt::print("\n"), print_faults(faults);
+    }
+    return 0;
+}
+
 }  // namespace
 
 Run add_info(CLI::App& verb) {
-    auto c = std::make_shared<Common>();
-    auto check = std::make_shared<bool>(false);
-    add_common(verb, *c, false);
-    verb.add_flag("--check", *check,
+    auto a = std::make_shared<InfoArguments>();
+    add_common(verb, *a, false);
+    verb.add_flag("--check", a->check,
                   "look for the faults of a mesh: holes, edges and parts turned the wrong way, triangles "
                   "without area, twice or intersecting. The exit code is 0 with faults, too");
-    return [c, check] {
-        return in_precision(*c, [&]<class T>(T) {
-            const Scene<T> scene = load<T>(*c);
-            const auto* const mesh = std::get_if<TriangleMesh<T>>(&scene);
-            if (*check && mesh == nullptr)
-                throw InputError(c->scene + " has no triangles, of which --check finds the faults");
-            ordered_json all = facts_of_scene(*c, scene);
-            if (names_index_file(c->scene)) all.update(facts_of_index(c->scene));
-            MeshFaults faults;
-            if (*check) faults = faults_of(*c, *mesh);
-            if (c->json) {
-                if (*check) all["check"] = faults.facts;
-                print_json(all);
-            } else {
-                for (const auto& [key, value] : all.items()) fmt::print("{:22} {}\n", key, value.dump());
-                if (*check) fmt::print("\n"), print_faults(faults);
-            }
-            return 0;
-        });
+    verb.add_option("--structure", a->structure, "NAME[:OPTION=VALUE,...], whose memory is predicted")
+        ->capture_default_str();
+    verb.add_flag(
+        "--memory", a->memory,
+        "only predict the memory, without reading more of a PLY, NumPy, binary STL or .hedgerow file "
+        "than its header, or generating a scene");
+    return [a] {
+        if (a->check && a->memory) throw UsageError("--check reads the whole scene: leave out --memory");
+        predicted_memory(a->structure, "points", 0, false);  // refuse unknown structures before any work
+        if (a->memory && print_memory(*a)) return 0;
+        return in_precision(*a, [&]<class T>(T) { return print_info<T>(*a); });
     };
 }
 

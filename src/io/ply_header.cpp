@@ -115,6 +115,13 @@ const PlyElement* PlyHeader::find(std::string_view name) const {
     return nullptr;
 }
 
+bool PlyHeader::is_cloud() const {
+    const auto* const faces = find("face");
+    const auto* const vertices = find("vertex");
+    const bool points = vertices != nullptr && vertices->count > 0;
+    return points && (faces == nullptr || faces->count == 0) && find("tristrips") == nullptr;
+}
+
 PlyHeader read_ply_header(ByteSource& file) {
     return HeaderReader(file).read();
 }

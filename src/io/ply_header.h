@@ -31,6 +31,8 @@ struct PlyHeader {
     std::uint64_t lines = 0;
 
     const PlyElement* find(std::string_view name) const;
+    /// Whether the file has vertices, and nothing that connects them.
+    bool is_cloud() const;
 };
 
 PlyHeader read_ply_header(ByteSource& file);

@@ -25,11 +25,7 @@ Holds look_into(const std::filesystem::path& path) {
     if (format == ".ply") {
         detail::ByteSource file(path);
         const auto header = detail::read_ply_header(file);
-        const auto* const faces = header.find("face");
-        const auto* const vertices = header.find("vertex");
-        const bool cloud =
-            vertices != nullptr && vertices->count > 0 && (faces == nullptr || faces->count == 0);
-        return cloud && header.find("tristrips") == nullptr ? Holds::points : Holds::mesh;
+        return header.is_cloud() ? Holds::points : Holds::mesh;
     }
     if (format == ".npy") {
         detail::ByteSource file(path);
