@@ -82,10 +82,22 @@ private:
     /// The most bytes of answers that wait to be written, beyond those of the pieces at work.
     static constexpr std::size_t most_bytes = std::size_t(1) << 25;
 
+    /// The most bytes of strings that a chunk keeps for the next rows. New memory costs more than the copy of
+    /// the answers into it.
+    static constexpr std::size_t most_kept = std::size_t(1) << 23;
+
     struct Piece {
         AnsweredRows answers;
         std::string encoded;
         bool done = false;
+
+        /// Forgets the answers, and keeps memory for others if it is at most so many bytes.
+        void start_again(std::size_t most) {
+            std::string memory = std::move(encoded);
+            memory.clear();
+            *this = {};
+            if (memory.capacity() <= most) answers.records = std::move(memory);
+        }
     };
     struct Chunk {
         std::vector<T> numbers;
@@ -103,7 +115,6 @@ private:
     void read(Chunk& c) {
         c.first = read_;
         c.written = 0;
-        c.pieces.clear();
         try {
             if (fault_)
                 c.numbers.clear();
@@ -115,6 +126,7 @@ private:
         c.rows = c.numbers.size() / columns_;
         read_ += c.rows;
         c.pieces.resize((c.rows + cut_.piece - 1) / cut_.piece);
+        for (Piece& p : c.pieces) p.start_again(most_kept / c.pieces.size());
     }
     /// Answers the pieces that are not done, in order, until there are too many answers; but at least one.
     void answer(Chunk& c, Answer answer, const Progress& progress) {
@@ -142,7 +154,7 @@ private:
             done_ += std::min(cut_.piece, c.rows - c.written * cut_.piece);
             if (unusable_ == 0) first_unusable_ = p.answers.first_unusable;
             unusable_ += p.answers.unusable;
-            p.encoded = {};
+            if (p.encoded.capacity() > most_kept / c.pieces.size()) p.encoded = {};
         }
     }
 

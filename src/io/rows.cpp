@@ -93,6 +93,7 @@ public:
             find_columns(header);
         else
             find_fields(header);
+        as_in_memory_ = as_in_memory();
         rows_ = left_ = header.shape[0];
         detail::expect_npy_elements(file_, header);
     }
@@ -125,7 +126,27 @@ private:
         bool swapped;
     };
 
+    /// Whether rows begin with the numbers that are read, as they are in memory.
+    bool as_in_memory() const {
+        bool equal = !places_.empty();
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            const Place& p = places_[i];
+            equal = equal && p.offset == i * sizeof(T) && p.read == ReadColumn<T>(read_column<T, T>) &&
+                    !p.swapped;
+        }
+        return equal;
+    }
+    void copy(std::size_t first, std::size_t rows, std::vector<T>& numbers) const {
+        const std::size_t columns = wanted_.size(), given = places_.size();
+        for (std::size_t row = first; row < first + rows; ++row) {
+            T* const to = numbers.data() + row * columns;
+            std::memcpy(to, bytes_.data() + row * row_bytes_, given * sizeof(T));
+            for (std::size_t i = given; i < columns; ++i)
+                to[i] = static_cast<T>(wanted_.defaults[i - wanted_.required()]);
+        }
+    }
     void convert(std::size_t first, std::size_t rows, std::vector<T>& numbers) const {
+        if (as_in_memory_) return copy(first, rows, numbers);
         const std::size_t columns = wanted_.size();
         T* const to = numbers.data() + first * columns;
         const unsigned char* const from = bytes_.data() + first * row_bytes_;
@@ -178,6 +199,7 @@ private:
     detail::ByteSource file_;
     InputColumns wanted_;
     std::vector<Place> places_;
+    bool as_in_memory_ = false;
     std::size_t row_bytes_ = 0;
     std::uint64_t rows_ = 0, left_ = 0;
     std::vector<unsigned char> bytes_;
