@@ -119,4 +119,55 @@ TEST(Found, Round4711x4975) {
     EXPECT_TRUE(is_exact(shape, question));
 }
 
+/// Planes that have no point in common, though any three of those that meet the ball do.
+TEST(Found, ABallOverlapsNoRegionWithoutPoints) {
+    const std::vector<Sphere<double, 3>> shapes = {{{86, 86, 159}, 79}};
+    const RegionThrough<double, 3> question = {
+        RegionKind::frustum,
+        {92, 89, 159},
+        {0x1.3e23138b636eep+7, 0x1.5629df12a9c7bp+6, 0x1.3e23138b636edp+7},
+        {0x1.3e23138b636eep+7, 0x1.5629df12a9c7ap+6, 0x1.3e23138b636efp+7},
+        0};
+    EXPECT_TRUE(as_brute_force("grid", shapes, question));
+    with_region(question, [&](const auto& region) { EXPECT_FALSE(overlap(shapes[0], region)); });
+    // In the plane three lines have no point in common, though any two do.
+    const HalfSpace<float, 2> lines[] = {{{1, 0}, 0}, {{0, 1}, 0}, {{-1, -1}, -1}};
+    EXPECT_FALSE(overlap(Sphere<float, 2>{{0.25f, 0.25f}, 2}, Hull<float, 2>{lines}));
+    const HalfSpace<float, 2> through_a_point[] = {{{1, 0}, 0}, {{0, 1}, 0}, {{-1, -1}, 0}};
+    EXPECT_TRUE(overlap(Sphere<float, 2>{{0.25f, 0.25f}, 2}, Hull<float, 2>{through_a_point}));
+}
+
+/// The sides of an axis on which edges lie were told by roundings, of a triangle small beside its distance
+/// from the apex.
+TEST(Found, AThinConeFromFarAwayDoesNotMeetASmallTriangleFarFromItsAxis) {
+    const std::vector<Triangle<double, 3>> shapes = {
+        {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+        {{0, 0, 0}, {0, 1, 0}, {0, 0x1.0a140053ecp+38, 0}},
+        {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},
+    };
+    const RegionThrough<double, 3> question = {RegionKind::cone,
+                                               {-0x1.8902487123de2p+394, 0, -0x1.d31c2ba866bp+318},
+                                               {0, -0x1.235f750325a1p+421, 0},
+                                               {0, 0, 0},
+                                               0};
+    EXPECT_TRUE(as_brute_force("bvh:max_leaf_size=2", shapes, question));
+}
+
+/// A triangle without area in a plane with the axis of a cone: the sides of its edges are roundings.
+TEST(Found, AThinConeDoesNotMeetASegmentBesideItInAPlane) {
+    const std::vector<Triangle<double, 3>> shapes = {
+        {{-0x1.1a166f7ee197p-4, -0x1.b6051d05926a7p-1, -0x1.b6051d05926a6p-1},
+         {1, -0x1.4e92cae539e7cp+0, -0x1.b6051d05926a6p-1},
+         {-0x1.1a166f7ee197p-4, -0x1.b6051d05926a7p-1, -0x1.b6051d05926a6p-1}},
+    };
+    const RegionThrough<double, 3> question = {
+        RegionKind::cone,
+        {-0x1.1a166f7ee196p-4, -0x1.4e3ff5787bd3ep+0, -0x1.4e92cap+0},
+        {-0x1.1a166f7ee197p-4, -0x1.b6051d05926a7p-1, -0x1.b6051d05926a6p-1},
+        {0, -1, -0x1.b6p-1},
+        0};
+    EXPECT_TRUE(as_brute_force("grid", shapes, question));
+    with_region(question, [&](const auto& region) { EXPECT_FALSE(overlap(shapes[0], region)); });
+}
+
 }  // namespace

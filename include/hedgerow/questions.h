@@ -243,6 +243,15 @@ concept AsksMany = requires {
     &Question::ask_all;
 };
 
+/// Calls f with each question of a region of type R.
+template <Region R, class F>
+void for_each_question_of_region(F f) {
+    f(AskOverlap<R>());
+    f(AskContained<R>());
+    f(AskCount<R>());
+    f(AskAnyOverlap<R>());
+}
+
 /// Calls f with each question.
 template <std::floating_point T, int D, class F>
 void for_each_question(F f) {
@@ -253,14 +262,8 @@ void for_each_question(F f) {
     f(AskFeature<T, D>());
     f(AskNearest<T, D>());
     f(AskWithin<T, D>());
-    f(AskOverlap<Box<T, D>>());
-    f(AskContained<Box<T, D>>());
-    f(AskCount<Box<T, D>>());
-    f(AskAnyOverlap<Box<T, D>>());
-    f(AskOverlap<Sphere<T, D>>());
-    f(AskContained<Sphere<T, D>>());
-    f(AskCount<Sphere<T, D>>());
-    f(AskAnyOverlap<Sphere<T, D>>());
+    for_each_question_of_region<Box<T, D>>(f);
+    for_each_question_of_region<Sphere<T, D>>(f);
     f(AskSide<T, D>());
     f(AskWindingNumber<T, D>());
     f(AskSignedDistance<T, D>());

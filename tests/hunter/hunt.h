@@ -2,6 +2,8 @@
 /// of brute force, and compares these with exact arithmetic.
 #pragma once
 
+#include <any>
+#include <memory>
 #include <sstream>
 
 #include "answers.h"
@@ -67,8 +69,8 @@ public:
         Asking<T, D> asking(places, corners_of(shapes_, Vec<T, D>()));
         questions_ = asking.questions(256, 64);
         set_ = set_of(shapes_);
-        const auto oracle = build_any("brute-force", set_);
-        answer_all(*oracle, truth_);
+        oracle_ = build_any("brute-force", set_);
+        answer_all(*oracle_);
         hold_brute_force_against_exact_arithmetic();
         constexpr std::size_t enough = 3;  // a round often finds one fault many times
         for (const auto& structure : structure_list()) {
@@ -81,32 +83,18 @@ public:
     }
 
 private:
-    struct Answers {
-        std::vector<RayAnswer<T, D>> rays;
-        std::vector<std::vector<Near<T, D>>> points;
-        std::vector<std::vector<PrimitiveId>> boxes;
-    };
-
-    /// Queries the rays in one batch for closest and any hits, and one by one for all hits.
-    void answer_all(const AnyIndex<T, D>& index, Answers& said) {
-        const std::size_t n = index.answers_rays() ? questions_.rays.size() : 0;
-        said.rays.assign(n, {});
-        closest_.assign(n, {});
-        const std::unique_ptr<bool[]> any(new bool[n]);
-        const auto rays = std::span<const Ray<T, D>>(questions_.rays).first(n);
-        if (n > 0) {
-            index.closest_hits(rays, closest_);
-            index.any_hits(rays, {any.get(), n});
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            said.rays[i] = {closest_[i], any[i], {}};
-            index.all_hits(questions_.rays[i], said.rays[i].all);
-        }
-        said.points.clear(), said.boxes.clear();
-        for (const auto& p : questions_.points) said.points.push_back(answer(index, p));
-        for (const auto& b : questions_.boxes) said.boxes.push_back(answer(index, b));
-        report_.questions += n * answers_to_a_ray + questions_.points.size() * answers_to_a_point +
-                             questions_.boxes.size() * answers_to_a_box;
+    /// Answers of brute force to each question, in the order of for_each_hunted_question: a vector each.
+    void answer_all(const AnyIndex<T, D>& oracle) {
+        for_each_hunted_question<T, D>([&]<class Question>(Question) {
+            truth_.emplace_back();
+            if constexpr (answered_by<Question, Set>) {
+                using Given = typename Question::Given;
+                std::vector<Given> given;
+                for (const Given& g : questions_.template given<Given>()) given.push_back(exactly(g));
+                truth_.back() = answers_to<Question>(oracle, given);
+                report_.questions += given.size();
+            }
+        });
     }
 
     /// Builds a structure and compares its answers. One time in four, compares again after a change that
@@ -127,21 +115,42 @@ private:
     /// Reports the first fault, if any. Returns false if there is one.
     bool compare(const std::string& spec, const AnyIndex<T, D>& index, Then then) {
         if (const auto fault = index.validate(); !fault.empty()) return invalid(spec, fault, then), false;
-        Answers said;
-        answer_all(index, said);
-        for (std::size_t i = 0; i < said.rays.size(); ++i) {
-            if (!(said.rays[i] == truth_.rays[i])) return differs(spec, questions_.rays[i], then), false;
-            // Kernels trace single rays in another way than batches.
-            if (spec.starts_with("wide") && i % 4 == 0) {
-                report_.questions += answers_to_a_ray;
-                if (!(answer(index, questions_.rays[i]) == truth_.rays[i]))
-                    return differs(spec, questions_.rays[i], then), false;
+        std::size_t number = 0;
+        bool equal = true;
+        for_each_hunted_question<T, D>([&]<class Question>(Question) {
+            const std::any& truth = truth_[number++];
+            if constexpr (answered_by<Question, Set>)
+                if (equal && answers<Question>(index))
+                    equal = compare_answers<Question>(spec, index, then, truth);
+        });
+        return equal && compare_regions(spec, index, then);
+    }
+    /// Asks all in one batch, and some alone: kernels answer single questions in another way than batches.
+    template <class Question>
+    bool compare_answers(const std::string& spec, const AnyIndex<T, D>& index, Then then,
+                         const std::any& of_truth) {
+        using Given = typename Question::Given;
+        const auto& given = questions_.template given<Given>();
+        const auto& truth = std::any_cast<const std::vector<typename Question::Answer>&>(of_truth);
+        const auto said = answers_to<Question>(index, given);
+        report_.questions += given.size();
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            bool equal = agrees<Given, typename Question::Answer>(given[i], said[i], truth[i]);
+            if (AsksMany<Question> && spec.starts_with("wide") && i % 4 == 0) {
+                ++report_.questions;
+                const auto alone = answers_to<Question>(index, {&given[i], 1});
+                equal = equal && agrees<Given, typename Question::Answer>(given[i], alone[0], truth[i]);
             }
+            if (!equal) return differs(spec, given[i], then, Question::words), false;
         }
-        for (std::size_t i = 0; i < said.points.size(); ++i)
-            if (said.points[i] != truth_.points[i]) return differs(spec, questions_.points[i], then), false;
-        for (std::size_t i = 0; i < said.boxes.size(); ++i)
-            if (said.boxes[i] != truth_.boxes[i]) return differs(spec, questions_.boxes[i], then), false;
+        return true;
+    }
+    /// Asks about the regions that are no boxes or balls.
+    bool compare_regions(const std::string& spec, const AnyIndex<T, D>& index, Then then) {
+        for (const auto& region : questions_.regions) {
+            report_.questions += 4;
+            if (!same_answers(index, *oracle_, region)) return differs(spec, region, then, "regions"), false;
+        }
         return true;
     }
 
@@ -159,16 +168,16 @@ private:
         print("// validate(): " + fault, shapes, nothing, expected(spec, then));
     }
     template <class Question>
-    void differs(const std::string& spec, Question question, Then then) {
+    void differs(const std::string& spec, Question question, Then then, std::string_view words) {
         auto shapes = shapes_;
         const auto fails = [&](const std::vector<Shape>& some, const Question& asked) {
             return guarded([&] { return !as_brute_force(spec, some, asked, then); });
         };
-        std::string remark;
+        std::string remark = "// " + std::string(words);
         if (fails(shapes, question))
             shrink(shapes, question, fails);
         else
-            remark = "// In a batch only, of " + std::to_string(questions_.rays.size()) + " rays.";
+            remark += ", in a batch only, of " + std::to_string(questions_.template given<Question>().size());
         print(remark, shapes, question, expected(spec, then));
     }
     template <class F>
@@ -208,10 +217,12 @@ private:
     void hold_brute_force_against_exact_arithmetic() {
         if constexpr (!std::is_same_v<Shape, Vec<T, D>>)
             for (std::size_t i = 0; i < questions_.boxes.size(); i += 8)
-                check(questions_.boxes[i], truth_.boxes[i]);
+                check(questions_.boxes[i],
+                      answers_to<AskOverlap<Box<T, D>>>(*oracle_, {&questions_.boxes[i], 1})[0]);
         if constexpr (std::is_same_v<Shape, Triangle<T, 3>>)
             for (std::size_t i = 0; i < questions_.rays.size(); i += 16)
-                check(questions_.rays[i], truth_.rays[i].all);
+                check(questions_.rays[i],
+                      answers_to<AskAllHits<T, D>>(*oracle_, {&questions_.rays[i], 1})[0]);
     }
     void check(const Box<T, D>& box, const std::vector<PrimitiveId>& overlapping) {
         for (std::size_t s = 0; s < shapes_.size(); ++s) {
@@ -246,8 +257,8 @@ private:
     Set set_;
     std::vector<Shape> shapes_;
     Questions<T, D> questions_;
-    Answers truth_;
-    std::vector<Hit<T>> closest_;
+    std::unique_ptr<const AnyIndex<T, D>> oracle_;
+    std::vector<std::any> truth_;
     Report report_;
 };
 

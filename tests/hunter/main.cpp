@@ -42,6 +42,8 @@ Report run(std::uint64_t seed, std::uint64_t round) {
                                    : Hunt<Vec<double, 2>>(seed, round).run();
         case 6:
             return hunt_instances(seed, round);
+        case 7:
+            return hunt_pairs(seed, round);
         default:
             return round % 2 == 0 ? Hunt<Triangle<float, 3>>(seed, round).run()
                                   : Hunt<Triangle<double, 3>>(seed, round).run();

@@ -15,5 +15,7 @@ struct Report {
 
 /// Runs a round over instances (instances.cpp).
 Report hunt_instances(std::uint64_t seed, std::uint64_t round);
+/// Runs a round over pairs of primitives (pairs.cpp).
+Report hunt_pairs(std::uint64_t seed, std::uint64_t round);
 
 }  // namespace hedgerow::hunter

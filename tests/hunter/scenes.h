@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 
 #include "../nasty.h"
+#include "regions.h"
 #include "shapes.h"
 
 namespace hedgerow::hunter {
@@ -127,11 +129,22 @@ std::vector<Shape> scene(Places<T, D>& places) {
     return shapes;
 }
 
+/// What is given to questions.
 template <class T, int D>
 struct Questions {
     std::vector<Ray<T, D>> rays;
     std::vector<Vec<T, D>> points;
     std::vector<Box<T, D>> boxes;
+    std::vector<Neighbours<T, D>> neighbours;
+    std::vector<Ball<T, D>> balls;
+    std::vector<Sphere<T, D>> solid_balls;
+    std::vector<RegionThrough<T, D>> regions;
+
+    template <class Given>
+    const std::vector<Given>& given() const {
+        return std::get<const std::vector<Given>&>(
+            std::tie(rays, points, boxes, neighbours, balls, solid_balls, regions));
+    }
 };
 
 /// The points that define the shapes.
@@ -175,11 +188,35 @@ public:
             if (below(4) == 0) box.high[0] = box.low[0];
             if (below(8) == 0) box.low = box.high;
             all.boxes.push_back(box);
+            all.neighbours.push_back(neighbours());
+            const T reach = distance();
+            all.balls.push_back({place(), reach * reach});
+            all.solid_balls.push_back({place(), below(16) == 0 ? special() : distance()});
+            all.regions.push_back(region());
         }
         return all;
     }
 
 private:
+    /// A distance from a place to a corner along one axis or in all, and now and then none.
+    T distance() {
+        const Vec<T, D> away = place() - corner();
+        if (below(16) == 0) return T(0);
+        return below(2) == 0 ? std::abs(away[0]) : length(away);
+    }
+    Neighbours<T, D> neighbours() {
+        constexpr std::size_t counts[] = {1, 1, 2, 4, 9, 33, 1000, 0};
+        constexpr T factors[] = {T(1), T(1), T(1), T(1.5), T(10)};
+        Neighbours<T, D> n{place(), counts[below(std::size(counts))]};
+        if (below(2) == 0) n.options.radius = distance();
+        n.options.factor = factors[below(std::size(factors))];
+        return n;
+    }
+    RegionThrough<T, D> region() {
+        constexpr T sizes[] = {T(0), T(0x1p-10), T(0.5), T(1), T(8)};
+        return {static_cast<RegionKind>(below(region_kinds)), place(), place(), place(),
+                sizes[below(std::size(sizes))]};
+    }
     std::uint64_t below(std::uint64_t n) { return random_.bits() % n; }
     Vec<T, D> corner() { return corners_[below(corners_.size())]; }
     /// A corner, a point next to a corner or between some, a near or far point on a line through two, or a

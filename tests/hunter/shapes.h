@@ -5,7 +5,7 @@
 #include <ostream>
 #include <vector>
 
-#include <hedgerow/any_index.h>
+#include <hedgerow/questions.h>
 
 namespace hedgerow::hunter {
 
@@ -66,6 +66,16 @@ void for_each_number(Ray<T, D>& r, F f) {
     f(r.t_min), f(r.t_max);
 }
 
+template <class T, int D, class F>
+void for_each_number(Neighbours<T, D>& n, F f) {
+    for_each_number(n.point, f);
+}
+template <class T, int D, class F>
+void for_each_number(Ball<T, D>& b, F f) {
+    for_each_number(b.center, f);
+    f(b.radius2);
+}
+
 /// Writes C++ code that gives the same bits.
 template <std::floating_point T>
 void write(std::ostream& out, T x) {
@@ -114,6 +124,18 @@ void write(std::ostream& out, const Box<T, D>& b) {
     write_list(out, b.low, b.high);
 }
 template <class T, int D>
+void write(std::ostream& out, const Ball<T, D>& b) {
+    write_list(out, b.center, b.radius2);
+}
+template <class T, int D>
+void write(std::ostream& out, const Neighbours<T, D>& n) {
+    out << '{';
+    write(out, n.point);
+    out << ", " << n.k << ", {.radius = ";
+    write(out, n.options.radius), out << ", .factor = ", write(out, n.options.factor);
+    out << "}}";
+}
+template <class T, int D>
 void write(std::ostream& out, const Ray<T, D>& r) {
     write_list(out, r.origin, r.direction, r.t_min, r.t_max);
 }
@@ -121,7 +143,7 @@ void write(std::ostream& out, const Ray<T, D>& r) {
 template <class T>
 constexpr const char* scalar_name = std::is_same_v<T, float> ? "float" : "double";
 template <template <class, int> class Shape>
-inline constexpr const char* word_for = nullptr;
+inline constexpr const char* word_for = "RegionThrough";
 template <>
 inline constexpr const char* word_for<Triangle> = "Triangle";
 template <>
@@ -134,6 +156,11 @@ template <>
 inline constexpr const char* word_for<Box> = "Box";
 template <>
 inline constexpr const char* word_for<Ray> = "Ray";
+
+template <>
+inline constexpr const char* word_for<Neighbours> = "Neighbours";
+template <>
+inline constexpr const char* word_for<Ball> = "Ball";
 
 template <template <class, int> class Shape, class T, int D>
 std::string name_of(const Shape<T, D>&) {

@@ -130,19 +130,23 @@ bool hull_overlaps(const std::array<Vec<double, D>, n>& corners, const Cone<T, D
         if (size == 0) return false;
     }
     bool left = true, right = true;  // of the axis, all edges
+    double turns = 0, around = 0;
     for (std::size_t i = 0; i < size; ++i) {
         const Point &p = polygon[i], &q = polygon[(i + 1) % size];
         const Point along = q - p;
         for (const double t : {0.0, cone.deepest(p, along)})
             if (cone.holds(cone.seen(p + along * t), 2 * error)) return true;
         if constexpr (D == 3) {
-            const double turn = dot(cone.axis(), cross(p, q));
+            // Of `along` rather than q, so that roundings are small beside the edge.
+            const double turn = dot(cone.axis(), cross(p, along));
+            turns += turn, around += length(along);
             left = left && turn >= 0, right = right && turn <= 0;
         }
     }
     if (D == 2 || size < 3 || !(left || right)) return false;
-    // The axis's line meets the polygon: at a height of the cone, since the polygon is clipped to these.
-    return left != right;
+    // The axis's line meets the polygon: at a height of the cone, since the polygon is clipped to these. Of a
+    // polygon that has no area along the axis, but for roundings, an edge would have been found.
+    return left != right && std::abs(turns) > product(0x1p-50, product(reach, around));
 }
 }  // namespace detail
 

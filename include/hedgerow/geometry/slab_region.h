@@ -107,7 +107,9 @@ bool hull_overlaps(const std::array<Vec<double, V::dimension>, n>& corners, cons
 /// Whether some half-spaces separate a ball from what they have in common. For weights w >= 0, every point of
 /// the region is at least (sum of w·height) / |sum of w·normal| away from the center; the greatest of these
 /// bounds is the distance, and needs at most D half-spaces (the projection's multipliers). So this tries all
-/// such sets of half-spaces whose plane meets the ball. Never true for a ball that overlaps the region.
+/// such sets of half-spaces whose plane meets the ball. If nothing is in all of these half-spaces, no more
+/// than D + 1 of them have no point in common (Helly), so sets of that many are tried too unless a point is
+/// found. Never true for a ball that overlaps the region.
 template <int D>
 class BallSeparation {
 public:
@@ -146,7 +148,7 @@ public:
                             return true;
                     }
             }
-        return false;
+        return faces_.size() > D && !have_a_point() && no_point_in_some(0, 0);
     }
     static auto& kept_faces() {
         static thread_local std::vector<Face> faces;
@@ -159,6 +161,50 @@ private:
         Vec<double, D> normal;  // of length 1
         double height, error;
     };
+    /// Whether projections onto violated planes, and as far again beyond, soon reach a point that is clearly
+    /// in all half-spaces. Mostly they do if there is one.
+    bool have_a_point() const {
+        Vec<double, D> x;  // from the center
+        for (int round = 0; round < 8; ++round) {
+            bool inside = true;
+            for (const Face& f : faces_) {
+                const double height = dot(f.normal, x) + f.height;
+                const double error = f.error + 0x1p-48 * (std::abs(f.height) + length(x));
+                if (height <= -error) continue;
+                inside = false;
+                x = x - f.normal * (2 * (height + 2 * error));
+            }
+            if (inside) return true;
+        }
+        return false;
+    }
+    /// Tries all sets of D + 1 half-spaces, of which `chosen` are in chosen_ and the others come from
+    /// `first` on. The normals' combination by the weights is 0: if that of the heights is more, no point is
+    /// in all of them.
+    bool no_point_in_some(int chosen, std::size_t first) const {
+        if (chosen <= D) {
+            for (std::size_t i = first; i < faces_.size(); ++i) {
+                chosen_[chosen] = &faces_[i];
+                if (no_point_in_some(chosen + 1, i + 1)) return true;
+            }
+            return false;
+        }
+        double weights[D + 1];
+        const auto n = [&](int i) { return chosen_[i]->normal; };
+        if constexpr (D == 2) {
+            const auto area = [&](int i, int j) {
+                return product(n(i)[0], n(j)[1]) - product(n(i)[1], n(j)[0]);
+            };
+            weights[0] = area(1, 2), weights[1] = area(2, 0), weights[2] = area(0, 1);
+        } else {
+            const auto volume = [&](int i, int j, int k) { return dot(n(i), cross(n(j), n(k))); };
+            weights[0] = volume(1, 2, 3), weights[1] = -volume(0, 2, 3);
+            weights[2] = volume(0, 1, 3), weights[3] = -volume(0, 1, 2);
+        }
+        if (weights[0] < 0)
+            for (double& w : weights) w = -w;
+        return apart(chosen_, weights);
+    }
     template <std::size_t n>
     bool apart(const Face* const (&faces)[n], const double (&weights)[n]) const {
         Vec<double, D> direction;
@@ -175,6 +221,7 @@ private:
     Vec<double, D> center_;
     double radius_;
     std::vector<Face>& faces_ = kept_faces();
+    mutable const Face* chosen_[D + 1] = {};
 };
 }  // namespace detail
 
