@@ -136,10 +136,21 @@ public:
         return in_ieee_mode([&] {
             IeeeExecutor threads(executor);
             // First do all that may throw. Nothing of the index changes until then.
-            const auto references = references_of(moved, threads);
+            constexpr bool by_leaves = requires(S & s, Packed & packed) {
+                s.refit(packed, threads);
+            };
+            const auto references = [&] {
+                if constexpr (by_leaves)
+                    return refuse_unsound(moved, threads), Nothing{};
+                else
+                    return references_of(moved, threads);
+            }();
             auto leaves = pack(moved, structure_, threads);
             const auto take = [&](Executor& by) {
-                structure_.refit(references, by);
+                if constexpr (by_leaves)
+                    structure_.refit(leaves, by);
+                else
+                    structure_.refit(references, by);
                 leaves_ = std::move(leaves);
                 primitives_ = moved;
             };

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include <hedgerow/base/stored.h>
+#include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/point_cloud.h>
 
@@ -47,6 +49,14 @@ public:
     }
     /// Leaves a place empty.
     void clear(std::size_t i) { set(i, Vec<T, D>::all(std::numeric_limits<T>::quiet_NaN()), no_primitive); }
+
+    /// The box around the points of a block.
+    Box<T, D> bounds(std::size_t block) const {
+        Box<T, D> box;
+        for (int k = 0; k < D; ++k)
+            std::tie(box.low[k], box.high[k]) = extremes<T>({&blocks_[block].at[k], 1});
+        return box;
+    }
 
     /// Tests the points of a leaf one by one. It works for any query and scalar. The kernels
     /// (engine/kernels.h) are faster.

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <tuple>
 
 #include <hedgerow/base/stored.h>
+#include <hedgerow/geometry/box_rows.h>
 #include <hedgerow/geometry/lanes.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 
@@ -54,6 +56,13 @@ public:
     void clear(std::size_t i) {
         const auto nothing = Vec<T, 3>::all(std::numeric_limits<T>::quiet_NaN());
         set(i, {nothing, nothing, nothing}, no_primitive);
+    }
+
+    /// The box around the triangles of a block.
+    Box<T, 3> bounds(std::size_t block) const {
+        Box<T, 3> box;
+        for (int k = 0; k < 3; ++k) std::tie(box.low[k], box.high[k]) = extremes<T>(blocks_[block].corner[k]);
+        return box;
     }
 
     /// Tests the triangles of a leaf: the filter of the watertight test on four at once, then `meet_exactly`

@@ -131,20 +131,17 @@ public:
     /// Fits all boxes to primitives that have moved. `references` is indexed by the ids of the build. The
     /// tree stays as it is. O(n), leaves in parallel, allocates nothing.
     void refit(std::span<const Reference<T, D>> references, Executor& executor) {
-        if (built_cost_ < 0) built_cost_ = sah_cost();
-        if (tree_.empty()) return;
-        WideNodes<T, D>& nodes = tree_.nodes;
-        executor.for_each_piece(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n)
-                for_each_child(n, [&](int i, WideChild c) {
-                    if (c.leaf()) nodes.set_box(n, i, leaf_box(c.block(), nodes.count(n, i), references));
-                });
+        refit_leaves(executor, [&](WideChild leaf, std::uint32_t count) {
+            return leaf_box(leaf.block(), count, references);
         });
-        for (std::size_t n = nodes.size(); n-- > 0;)  // parents come before their children
-            for_each_child(n, [&](int i, WideChild c) {
-                if (!c.leaf()) nodes.set_box(n, i, box_around(c.word));
-            });
-        tree_.bounds = box_around(0);
+    }
+    /// The same, of primitives that have been packed into blocks again: leaves need not look for them.
+    template <class Blocks>
+    requires requires(const Blocks& blocks) {
+        { blocks.bounds(0) } -> std::same_as<Box<T, D>>;
+    }  //
+    void refit(const Blocks& blocks, Executor& executor) {
+        refit_leaves(executor, [&](WideChild leaf, std::uint32_t) { return blocks.bounds(leaf.block()); });
     }
     /// The SAH cost now as a multiple of that at the build. 1 before any refit; less than 1 where motion
     /// happened to suit the tree.
@@ -200,6 +197,24 @@ private:
     void for_each_child(std::size_t node, F f) const {
         const int children = tree_.nodes.children(node);
         for (int i = 0; i < children; ++i) f(i, tree_.nodes.child(node, i));
+    }
+    /// Fits all boxes, where box_of(leaf, count) is the box of a leaf.
+    template <class BoxOf>
+    void refit_leaves(Executor& executor, BoxOf box_of) {
+        if (built_cost_ < 0) built_cost_ = sah_cost();
+        if (tree_.empty()) return;
+        WideNodes<T, D>& nodes = tree_.nodes;
+        executor.for_each_piece(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n)
+                for_each_child(n, [&](int i, WideChild c) {
+                    if (c.leaf()) nodes.set_box(n, i, box_of(c, nodes.count(n, i)));
+                });
+        });
+        for (std::size_t n = nodes.size(); n-- > 0;)  // parents come before their children
+            for_each_child(n, [&](int i, WideChild c) {
+                if (!c.leaf()) nodes.set_box(n, i, box_around(c.word));
+            });
+        tree_.bounds = box_around(0);
     }
     Box<T, D> leaf_box(std::uint32_t block, std::uint32_t count,
                        std::span<const Reference<T, D>> references) const {

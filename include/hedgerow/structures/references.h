@@ -145,6 +145,11 @@ auto references_of(const P& set, Executor& executor) {
     });
     return references;
 }
+/// Throws what `references_of` throws.
+template <PrimitiveSet P>
+void refuse_unsound(const P& set, Executor& executor) {
+    detail::for_each_sound_box(set, executor, [](std::size_t, const auto&) {});
+}
 /// The bounds of all primitives. Throws what `references_of` throws.
 template <PrimitiveSet P>
 auto bounds_of(const P& set, Executor& executor) {
