@@ -17,7 +17,7 @@ protected:
             std::ofstream(output) << "precious";
             EXPECT_EQ(run_interrupted(arguments, milliseconds), 130)
                 << arguments[0] << " " << arguments[1] << " after " << milliseconds << " ms";
-            EXPECT_EQ(bytes_of(output), "precious") << arguments[0];
+            EXPECT_TRUE(bytes_of(output) == "precious") << arguments[0];  // not printed: it may be large
             for (const auto& entry : fs::directory_iterator(folder))
                 EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
         }

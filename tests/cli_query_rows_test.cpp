@@ -188,7 +188,7 @@ TEST_F(QueryRows, BadInputIsThreeAndNamed) {
     write_rows<float>("6.npy", 10, 6);
     expect_refused("6.npy", "(N, 3)");
     write_rows<float>("3.npy", 1000, 3);
-    for (const std::size_t length : {5, 60, 128, 1000, 12000}) {
+    for (const std::size_t length : {5u, 60u, 128u, 1000u, 12000u}) {
         write("cut.npy", bytes_of(file("3.npy")).substr(0, length));
         expect_refused("cut.npy", "cut.npy");
     }

@@ -13,10 +13,11 @@ inline constexpr double pi = 3.14159265358979323846;
 
 template <int D>
 Transform<D> turned(Random& random) {
+    const double angle = random.uniform(-pi, pi);
     if constexpr (D == 2)
-        return Transform<2>::rotation(random.uniform(-pi, pi));
+        return Transform<2>::rotation(angle);
     else
-        return Transform<3>::rotation(random.direction<3>(), random.uniform(-pi, pi));
+        return Transform<3>::rotation(random.direction<3>(), angle);
 }
 
 /// Transform i of a scene: a rotation and a translation; with Scales::even also an even scale, with
@@ -33,7 +34,8 @@ Transform<D> transform_of(std::uint64_t i, Scales scales, double far) {
             factors[k] = std::exp2(random.uniform(-3, 3)) * (random.uniform() < 0.3 ? -1 : 1);
     const auto moved = Transform<D>::translation((random.in_cube<D>() - Vec<double, D>::all(0.5)) * far);
     if (i % 5 == 4) return moved;
-    return moved * turned<D>(random) * Transform<D>::scaling(factors) * turned<D>(random);
+    const auto first = turned<D>(random), then = turned<D>(random);  // compilers order operands differently
+    return moved * then * Transform<D>::scaling(factors) * first;
 }
 
 template <int D>

@@ -68,7 +68,7 @@ void expect_all_formats_read() {
     folder.file("a.csv", csv);
     folder.file("a.json", json);
     for (const std::string name : {"a.npy", "a.csv", "a.json"}) {
-        for (const std::size_t most : {1, 2, 49, 50, 51, 1000})
+        for (const std::size_t most : {1u, 2u, 49u, 50u, 51u, 1000u})
             ASSERT_TRUE(same_bits(rows_of<T>(folder / name, points, most), numbers)) << name << ", " << most;
         gzip(folder / (name + ".gz"), contents(folder / name));
         ASSERT_TRUE(same_bits(rows_of<T>(folder / (name + ".gz"), points), numbers)) << name;

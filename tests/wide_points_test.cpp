@@ -127,7 +127,8 @@ void expect_brute_force(const char* name, const Set& set, std::size_t count) {
         for (auto& near : within)
             if (!(near.distance2 <= middle)) near = {};
         expect_found(index, points, within, middle);
-        for (const std::size_t k : {1, 5, 20}) expect_columns(index, points, k, k == 5 ? middle : anywhere);
+        for (const std::size_t k : {1u, 5u, 20u})
+            expect_columns(index, points, k, k == 5 ? middle : anywhere);
         // Lists: none, some, as many as there are and more, also where many are equally far away.
         constexpr std::size_t ks[] = {0, 1, 2, 8, 33, 300, 100000};
         for (std::size_t i = 0; i < points.size() && !testing::Test::HasFatalFailure(); i += 17) {
@@ -293,7 +294,7 @@ TEST(WidePoints, ReportsTheFacesOfTheFile) {
 }
 
 TEST(WidePoints, CloudsAsBruteForce) {
-    for (const std::size_t count : {1, 2, 7, 8, 9, 63, 64, 65, 500, 1100, 5000})
+    for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 63u, 64u, 65u, 500u, 1100u, 5000u})
         for (int kind = 0; kind < 5; ++kind) {
             SCOPED_TRACE(std::to_string(count) + " of kind " + std::to_string(kind));
             expect_brute_force("cloud", cloud_of(kind, count, 1), count < 100 ? 40 : 150);
@@ -305,7 +306,7 @@ TEST(WidePoints, CloudsAsBruteForce) {
 }
 
 TEST(WidePoints, TreesOfCloudsAreFull) {
-    for (const std::size_t count : {1, 8, 9, 64, 65, 512, 513, 4096, 4097, 30000})
+    for (const std::size_t count : {1u, 8u, 9u, 64u, 65u, 512u, 513u, 4096u, 4097u, 30000u})
         for (const int width : wide_widths)
             for (const std::uint32_t most : {1u, 3u, 8u}) {
                 WideOptions options;
