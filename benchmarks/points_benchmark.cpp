@@ -2,7 +2,8 @@
 ///
 /// Closest points of triangles, beside CGAL's tree of boxes with its hint: near the surface (1% of the
 /// diagonal off it) and far (in the doubled box). k nearest of a million points, beside nanoflann: uniform in
-/// a cube, in a hundred clusters of many sizes, and on a sphere; queries are drawn like the points.
+/// a cube, in a hundred clusters of many sizes, and on a sphere; queries are drawn like the points. k nearest
+/// among a million points at one place, beside uniform ones.
 ///
 ///   points_benchmark [SCENE ...]     default: gen:terrain:200000 gen:soup:60000 gen:teapot-in-stadium:50000;
 ///                                    a mesh file is a scene
@@ -211,6 +212,36 @@ void measure_cloud(const std::string& kind) {
     for (const std::size_t many : {30, 1000}) measure_lists(index, peer.get(), many, some);
 }
 
+/// Measures k nearest among a million points at one place, beside those of a million uniform ones.
+void measure_crowd() {
+    const PointCloud<float, 3> uniform{drawn("uniform", 1000000, 4)};
+    PointCloud<float, 3> crowd;
+    crowd.points.assign(uniform.size(), Vec3f::all(0.5f));
+    const auto among_uniform = build(uniform, serial_executor()), in_crowd = build(crowd, serial_executor());
+    const auto queries = drawn("uniform", query_count / 10, 5);
+    std::printf("\nk nearest, a million points at one place\n");
+    for (const std::size_t k : {1, 8, 32}) {
+        std::vector<Near<float, 3>> found;
+        std::vector<PrimitiveId> ids(k * queries.size());
+        Contest contest;
+        for (const auto& [name, index] :
+             {std::pair("uniform", &among_uniform), std::pair("crowd", &in_crowd)}) {
+            contest.add(std::string(name) + ", one by one", [&, index = index] {
+                for (const Vec3f& p : queries) nearest(*index, p, k, found);
+                return queries.size();
+            });
+            contest.add(std::string(name) + ", columns", [&, index = index] {
+                nearest(*index, queries, k, {ids, {}}, serial_executor());
+                return queries.size();
+            });
+        }
+        const auto times =
+            measured_in_turn(rounds, contest, Clock::wall, [](const std::string&) { return true; });
+        std::printf("k = %zu: one by one %.1f times the time of uniform points, columns %.1f times\n", k,
+                    times[2].median / times[0].median, times[3].median / times[1].median);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -219,4 +250,5 @@ int main(int argc, char** argv) {
     if (names.empty()) names = {"gen:terrain:200000", "gen:soup:60000", "gen:teapot-in-stadium:50000"};
     for (const std::string& name : names) measure_mesh(name);
     for (const char* kind : {"uniform", "clustered", "on a sphere"}) measure_cloud(kind);
+    measure_crowd();
 }

@@ -1,5 +1,6 @@
 /// Builds wide BVHs of points.
 #include <algorithm>
+#include <atomic>
 
 #include <hedgerow/engine/build.h>
 
@@ -47,6 +48,7 @@ public:
         const LaneBox<T> bounds = box_of(0, points_.size());
         tree_.bounds = bounds.template box<D>();
         grow(0, 0, points_.size(), bounds);
+        tree_.crowded = crowded_;
         if (points_.size() <= worth_a_task) executor_.advance(points_.size());
         return std::move(tree_);
     }
@@ -59,6 +61,8 @@ private:
     };
     /// Fewer points than these are not worth a task.
     static constexpr std::size_t worth_a_task = 8192;
+    /// To look at more points than these takes longer than to notice that they are at one place.
+    static constexpr std::size_t crowd = 1024;
 
     std::size_t leaves_of(std::size_t points) const { return (points + leaf_size_ - 1) / leaf_size_; }
 
@@ -111,6 +115,8 @@ private:
             parts[0] = part;
             return;
         }
+        const Box<T, D> box = part.box.template box<D>();
+        if (box.low == box.high) return cut_in_order(part, each, parts);
         const std::size_t children = (part.count + each - 1) / each, low_children = children / 2;
         const std::size_t low_count = low_children * each;
         // Split at a rank along the longest side.
@@ -126,6 +132,16 @@ private:
         both(
             part.count, [&] { half(0, low_count, parts); },
             [&] { half(low_count, part.count - low_count, parts + low_children); });
+    }
+    /// Cuts points that are all at one place, ascending by id: so the lowest ids below a node are the first.
+    void cut_in_order(const Part& part, std::size_t each, Part* parts) {
+        PointItem<T, D>* const points = points_.data() + part.first;
+        const auto before = [](const auto& a, const auto& b) { return a.id() < b.id(); };
+        if (!std::is_sorted(points, points + part.count, before))
+            std::sort(points, points + part.count, before);
+        for (std::size_t first = 0; first < part.count; first += each)
+            *parts++ = {part.first + first, std::min(each, part.count - first), part.box};
+        if (part.count > crowd) crowded_ = true;
     }
     LaneBox<T> box_of(std::size_t first, std::size_t count) const {
         auto box = LaneBox<T>::none();
@@ -145,6 +161,7 @@ private:
     Layout layout_;
     Executor& executor_;
     WideTree<T, D> tree_;
+    std::atomic<bool> crowded_ = false;
 };
 
 }  // namespace

@@ -42,17 +42,26 @@ public:
     static_assert(most_nearest % lanes == 0);
 
     LeastKeys() = default;
-    HWY_INLINE LeastKeys(std::size_t k, float max_distance2, NearKey* keys)
-        : keys_(keys), k_(k), none_(key_of(max_distance2, no_primitive)) {
+    HWY_INLINE LeastKeys(std::size_t k, float max_distance2, NearKey* keys, int most_ties)
+        : keys_(keys), k_(k), none_(key_of(max_distance2, no_primitive)), ties_left_(most_ties) {
         std::fill(keys_, keys_ + room(k), none_);
     }
 
+    // Whether too many points were as far away as the last key, and behind it. The search then soon ends,
+    // since nothing is within a distance of NaN.
+    HWY_INLINE bool given_up() const { return ties_left_ < 0; }
     HWY_INLINE std::size_t size() const {
+        if (given_up()) return gave_up;
         return static_cast<std::size_t>(std::lower_bound(keys_, keys_ + k_, none_) - keys_);
     }
-    HWY_INLINE float distance2() const { return distance2_of(keys_[k_ - 1]); }
+    HWY_INLINE float distance2() const {
+        return given_up() ? std::numeric_limits<float>::quiet_NaN() : distance2_of(keys_[k_ - 1]);
+    }
     HWY_INLINE void take(NearKey key) {
-        if (key >= keys_[k_ - 1]) return;
+        if (const NearKey last = keys_[k_ - 1]; key >= last) {
+            ties_left_ -= (key ^ last) >> 32 == 0;
+            return;
+        }
         constexpr K d;
         const auto first = hn::FirstN(d, 1);
         const auto inserted = hn::Set(d, static_cast<std::int64_t>(key));
@@ -80,16 +89,22 @@ private:
     NearKey* keys_ = nullptr;
     std::size_t k_ = 0;
     NearKey none_ = 0;
+    int ties_left_ = 0;
 };
 // The k least keys, which are written to a row of each of a caller's columns at the end.
 class LeastKeysInRow : public LeastKeys {
 public:
     LeastKeysInRow() = default;
     HWY_INLINE LeastKeysInRow(std::size_t k, float max_distance2, NearKey* keys, PrimitiveId* ids,
-                              float* distances2)
-        : LeastKeys(k, max_distance2, keys), ids_(ids), distances2_(distances2) {}
+                              float* distances2, int most_ties)
+        : LeastKeys(k, max_distance2, keys, most_ties), ids_(ids), distances2_(distances2) {}
 
     HWY_INLINE void end() const {
+        if (given_up()) {
+            if (ids_ != nullptr) *ids_ = gave_up_id;
+            if (distances2_ != nullptr) *distances2_ = gave_up_distance2;
+            return;
+        }
         if (ids_ != nullptr)
             for (std::size_t i = 0; i < k(); ++i) ids_[i] = element_of(key(i));
         if (distances2_ != nullptr)
@@ -141,7 +156,7 @@ public:
         for_each_within(
             shared.blocks[leaf], p_,
             limit_.distance2(), [&](NearKey key, int) __attribute__((always_inline)) { sink_.take(key); });
-        if (sink_.distance2() < limit_.distance2()) limit_.set(sink_.distance2());
+        if (!(sink_.distance2() >= limit_.distance2())) limit_.set(sink_.distance2());
     }
     HWY_INLINE void end(Shared&) { sink_.end(); }
 
@@ -200,6 +215,13 @@ private:
     Limit<float> limit_;
 };
 
+HWY_INLINE int most_ties(const WidePoints& scene) {
+    return scene.most_ties();
+}
+HWY_INLINE int most_ties(const WideScene&) {
+    return std::numeric_limits<int>::max();
+}
+
 // The sink when a search for a point is over.
 template <int W, template <class> class Search, class Sink, class Scene>
 Sink search_keys(const Scene& scene, const Vec<float, 3>& p, const Sink& sink) {
@@ -216,7 +238,7 @@ void nearest_many(const Scene& scene, const PointBatch<float, 3>& points, std::s
     const auto sink = [&](std::size_t i, int flight) __attribute__((always_inline)) {
         const std::size_t first = k * points.number(i);
         return LeastKeysInRow(k, max_distance2, keys[flight], ids == nullptr ? nullptr : ids + first,
-                              distances2 == nullptr ? nullptr : distances2 + first);
+                              distances2 == nullptr ? nullptr : distances2 + first, most_ties(scene));
     };
     if (scene.tree.empty() || !(max_distance2 >= 0)) {
         for (std::size_t i = 0; i < points.size(); ++i) sink(i, 0).end();

@@ -69,7 +69,7 @@ struct Keys {
     static std::size_t nearest(const Scene& scene, const Vec<float, 3>& p, std::size_t k, float max_distance2,
                                NearKey* keys) {
         if (k == 0 || !(max_distance2 >= 0)) return 0;
-        const LeastKeys sink(k, max_distance2, keys);
+        const LeastKeys sink(k, max_distance2, keys, most_ties(scene));
         return by_width<Answer>(scene, &p, &sink).size();
     }
     static void nearest_of_many(const Scene& scene, const PointBatch<float, 3>& points, std::size_t k,

@@ -6,6 +6,7 @@
 /// is no kernel, the plain walk answers.
 #pragma once
 
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -74,6 +75,9 @@ struct WidePoints {
 
     const WideTree<float, 3>& tree;
     const PointBlock<float, 3>* blocks;
+
+    /// How many points at the last distance a search for the k nearest looks at in vain before it gives up.
+    int most_ties() const { return tree.crowded ? 64 : std::numeric_limits<int>::max(); }
 };
 /// What a kernel needs to know of an index of triangles of double.
 struct WideDoubles {

@@ -207,13 +207,31 @@ struct Kernel<ClosestPoint<Set>, I> : detail::PointKernel<I> {
     Near<T, 3> answer(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
         if (!this->takes(index, point, options)) [[unlikely]]
             return this->template answer_of_walk<ClosestPoint<Set>>(index, point, options);
+        if constexpr (detail::CloudForKernels<I>)
+            if (index.structure().tree().crowded) [[unlikely]]
+                return closest_of_crowd(index, point, options);
         return this->kernels().closest(this->scene(index), point, options.max_distance2());
     }
     bool answer_many(const I& index, const PointBatch<T, 3>& points, const NearOptions<T>& options,
                      Near<T, 3>* found) const {
         if (!this->takes_all(index, points, options)) return false;
+        if constexpr (detail::CloudForKernels<I>)
+            if (index.structure().tree().crowded) {
+                for (std::size_t i = 0; i < points.size(); ++i)
+                    found[points.number(i)] = closest_of_crowd(index, points[i], options);
+                return true;
+            }
         this->kernels().closest_of_many(this->scene(index), points, options.max_distance2(), found);
         return true;
+    }
+
+private:
+    /// The first of the one nearest, since that search gives up where many points are at one place.
+    Near<T, 3> closest_of_crowd(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
+        static thread_local std::vector<Near<T, 3>> found;
+        found.reserve(1);
+        const Kernel<Nearest<Set>, I> nearest;
+        return nearest.answer(index, point, 1, options, found) == 0 ? Near<T, 3>() : found[0];
     }
 };
 
@@ -226,6 +244,9 @@ struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
         alignas(64) NearKey keys[most_nearest];
         const std::size_t count =
             this->kernels().nearest(this->scene(index), point, k, options.max_distance2(), keys);
+        if constexpr (detail::CloudForKernels<I>)
+            if (count == gave_up) [[unlikely]]
+                return this->template answer_of_walk<NearestAmongTies<Set>>(index, point, k, options, found);
         return this->read(index, point, {keys, count}, found);
     }
     bool answer_many(const I& index, const PointBatch<float, 3>& points, std::size_t k,
@@ -233,7 +254,26 @@ struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
         if (k > most_nearest || !this->takes_all(index, points, options)) return false;
         this->kernels().nearest_of_many(this->scene(index), points, k, options.max_distance2(), ids,
                                         distances2);
+        if constexpr (detail::CloudForKernels<I>)
+            if (index.structure().tree().crowded) answer_given_up(index, points, k, options, ids, distances2);
         return true;
+    }
+
+private:
+    /// Answers the points whose rows the kernel has marked.
+    void answer_given_up(const I& index, const PointBatch<float, 3>& points, std::size_t k,
+                         const NearOptions<float>& options, PrimitiveId* ids, float* distances2) const {
+        static thread_local std::vector<Near<float, 3>> found;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::size_t first = k * points.number(i);
+            if (ids != nullptr ? ids[first] != gave_up_id : distances2[first] != gave_up_distance2) continue;
+            this->template answer_of_walk<NearestAmongTies<Set>>(index, points[i], k, options, found);
+            found.resize(k);
+            for (std::size_t j = 0; j < k; ++j) {
+                if (ids != nullptr) ids[first + j] = found[j].element;
+                if (distances2 != nullptr) distances2[first + j] = found[j].distance2;
+            }
+        }
     }
 };
 

@@ -215,6 +215,7 @@ private:
                 if (!c.leaf()) nodes.set_box(n, i, box_around(c.word));
             });
         tree_.bounds = box_around(0);
+        tree_.crowded = false;
     }
     Box<T, D> leaf_box(std::uint32_t block, std::uint32_t count,
                        std::span<const Reference<T, D>> references) const {

@@ -121,6 +121,9 @@ struct WideTree {
     Stored<PrimitiveId> items;
     Box<T, D> bounds;
     int depth = 0;  // levels, leaves counted
+    /// Whether more points are at one place than a search should look at, and nodes at one place have their
+    /// points ascending by id, leaf after leaf. Only a build tells; a refit and a file forget it.
+    bool crowded = false;
 
     bool empty() const { return nodes.size() == 0; }
     std::size_t leaf_count() const { return items.size() / wide_leaf_size; }

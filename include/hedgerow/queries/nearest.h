@@ -43,6 +43,10 @@ public:
         std::push_heap(found_.begin(), found_.end(), nearer<Found, Found>);
         return Flow::go_on;
     }
+    /// Whether `offer` would keep a candidate that it has not seen.
+    bool would_keep(const Candidate& c) const {
+        return c.distance2 <= max_ && (found_.size() < k_ || nearer(c, found_.front()));
+    }
     std::size_t answer() {
         std::sort_heap(found_.begin(), found_.end(), nearer<Found, Found>);
         return found_.size();
@@ -53,6 +57,43 @@ private:
     NearOptions<Scalar> options_;
     Scalar max_;
     std::vector<Found>& found_;
+};
+
+/// The k nearest points, in a tree whose nodes at one place list their points ascending by id, and where many
+/// points may be at one place. Of such a node it takes the first that count, and looks at no others: a node's
+/// least id is its first.
+template <class Set>
+class NearestAmongTies : public Nearest<Set> {
+public:
+    using Base = Nearest<Set>;
+
+    template <class Index>
+    NearestAmongTies(const Index& index, const Vec<typename Base::Scalar, Base::dimension>& p, std::size_t k,
+                     const NearOptions<typename Base::Scalar>& options,
+                     std::vector<typename Base::Found>& found)
+        : Base(index, p, k, options, found), set_(index.primitives()) {}
+
+    template <class Node>
+    Verdict accept(const Node& node) {
+        // A leaf's points are in any order.
+        constexpr std::size_t most_in_leaf = 8;
+        const auto& box = node.volume();
+        if (!(box.low == box.high) || node.count() <= most_in_leaf) return Verdict::open;
+        node.for_leaves_in_order([&](const Leaf& leaf) {
+            for (std::uint32_t i = 0; i < leaf.count; ++i) {
+                const PrimitiveId id = leaf.ids[leaf.first + i];
+                const auto foot = closest_point(this->probe().point(), set_.point(id));
+                const typename Base::Candidate candidate{foot.distance2, id, foot.point};
+                if (!this->would_keep(candidate)) return Flow::stop;
+                this->offer(candidate);
+            }
+            return Flow::go_on;
+        });
+        return Verdict::accept;
+    }
+
+private:
+    const Set& set_;
 };
 
 }  // namespace hedgerow

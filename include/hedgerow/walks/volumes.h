@@ -49,8 +49,21 @@ public:
     void for_each_leaf(F f) const {
         for_each_leaf(parent_.empty() ? tree_.root() : tree_.child(parent_, i_), f);
     }
+    /// Calls f with the leaves below, in the tree's order, until it returns Flow::stop.
+    template <class F>
+    void for_leaves_in_order(F f) const {
+        for_leaves_in_order(parent_.empty() ? tree_.root() : tree_.child(parent_, i_), f);
+    }
 
 private:
+    template <class F>
+    Flow for_leaves_in_order(NodeRef node, F& f) const {
+        if (node.empty()) return Flow::go_on;
+        if (node.leaf()) return f(tree_.leaf(node));
+        for (int i = 0; i < S::width; ++i)
+            if (for_leaves_in_order(tree_.child(node, i), f) == Flow::stop) return Flow::stop;
+        return Flow::go_on;
+    }
     template <class F>
     void for_each_leaf(NodeRef node, F& f) const {
         if (node.empty()) return;
