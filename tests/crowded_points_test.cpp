@@ -39,7 +39,7 @@ void expect_answers(const I& index, const Oracle& oracle, const std::vector<Vec3
         EXPECT_EQ(closest_point(index, points[i]), closest) << i;
         EXPECT_EQ(batch[i], closest) << i;
     }
-    for (const std::size_t k : {1, 8, 32, 64, 100}) {
+    for (const std::size_t k : {0u, 1u, 8u, 32u, 64u, 100u}) {
         std::vector<PrimitiveId> ids(k * points.size()), ids_alone(ids.size());
         std::vector<float> distances2(ids.size()), distances2_alone(ids.size());
         nearest(index, points, k, {ids, distances2});
@@ -114,7 +114,7 @@ TEST(CrowdedPoints, AWalkAmongTiesLooksAtFewPoints) {
     const auto index = build<WideBvh>(cloud);
     const auto oracle = build<BruteForce>(cloud);
     std::vector<Near<float, 3>> found, truth;
-    for (const std::size_t k : {1, 8, 32}) {
+    for (const std::size_t k : {1u, 8u, 32u}) {
         Visits visits;
         const Vec3f p(1.5f, 2, 3);
         index.answer<NearestAmongTies<PointCloudView<float, 3>>>(visits, p, k, NearOptions<float>(), found);

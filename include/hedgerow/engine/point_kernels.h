@@ -255,7 +255,8 @@ struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
         this->kernels().nearest_of_many(this->scene(index), points, k, options.max_distance2(), ids,
                                         distances2);
         if constexpr (detail::CloudForKernels<I>)
-            if (index.structure().tree().crowded) answer_given_up(index, points, k, options, ids, distances2);
+            if (k > 0 && index.structure().tree().crowded)
+                answer_given_up(index, points, k, options, ids, distances2);
         return true;
     }
 
