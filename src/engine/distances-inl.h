@@ -23,6 +23,25 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// Lanes of T for as many numbers of a row as a vector of floats takes, or for a half of these.
+template <int W, class T>
+using LanesOf = hn::CappedTag<T, static_cast<int>(hn::MaxLanes(Floats<W>()))>;
+// What `some(rows)` computes for the lanes of T from part of a node's rows on, as floats.
+template <int W, class T, class Some>
+HWY_INLINE hn::Vec<Floats<W>> in_floats(const std::byte* node, int part, Some some) {
+    constexpr Floats<W> f;
+    constexpr LanesOf<W, T> d;
+    constexpr int lanes = static_cast<int>(hn::MaxLanes(f)), some_lanes = static_cast<int>(hn::MaxLanes(d));
+    constexpr hn::Rebind<float, LanesOf<W, T>> half;
+    const T* const rows = reinterpret_cast<const T*>(node) + part * lanes;
+    if constexpr (std::is_same_v<T, float>)
+        return some(rows);
+    else if constexpr (some_lanes == lanes)
+        return hn::DemoteTo(f, some(rows));
+    else
+        return hn::Combine(f, hn::DemoteTo(half, some(rows + some_lanes)), hn::DemoteTo(half, some(rows)));
+}
+
 // A point and the squared distance to which it looks. Boxes are entered at their squared distance, which is
 // that of PointProbe but for roundings.
 template <int W, class T = float>
@@ -33,34 +52,22 @@ public:
     HWY_INLINE Reach(const Vec<T, 3>& p, float limit2) : p_(all_lanes(d, p)), limit2_(hn::Set(F(), limit2)) {}
 
     HWY_INLINE hn::Mask<F> enter(const std::byte* node, int part, hn::Vec<F>& distance2) const {
-        const T* const rows = reinterpret_cast<const T*>(node) + part * lanes;
-        if constexpr (std::is_same_v<T, float>)
-            distance2 = some(rows);
-        else if constexpr (some_lanes == lanes)
-            distance2 = hn::DemoteTo(F(), some(rows));
-        else
-            distance2 =
-                hn::Combine(F(), hn::DemoteTo(half, some(rows + some_lanes)), hn::DemoteTo(half, some(rows)));
+        distance2 = in_floats<W, T>(
+            node, part, [&](const T* rows) __attribute__((always_inline)) {
+                const auto outside = [&](int axis, auto at) __attribute__((always_inline)) {
+                    const auto below = hn::Sub(hn::Load(d, rows + 2 * axis * W), at);
+                    const auto above = hn::Sub(at, hn::Load(d, rows + (2 * axis + 1) * W));
+                    return hn::Max(hn::Max(below, above), hn::Zero(d));
+                };
+                const Coordinates<D> away{outside(0, p_.x), outside(1, p_.y), outside(2, p_.z)};
+                return dot(away, away);
+            });
         return hn::Le(distance2, limit2_);
     }
 
 private:
-    // A vector of floats takes one or two of doubles.
-    static constexpr int lanes = static_cast<int>(hn::MaxLanes(F()));
-    using D = hn::CappedTag<T, lanes>;
+    using D = LanesOf<W, T>;
     static constexpr D d{};
-    static constexpr int some_lanes = static_cast<int>(hn::MaxLanes(d));
-    static constexpr hn::Rebind<float, D> half{};
-
-    HWY_INLINE hn::Vec<D> some(const T* rows) const {
-        const auto outside = [&](int axis, auto at) __attribute__((always_inline)) {
-            const auto below = hn::Sub(hn::Load(d, rows + 2 * axis * W), at);
-            const auto above = hn::Sub(at, hn::Load(d, rows + (2 * axis + 1) * W));
-            return hn::Max(hn::Max(below, above), hn::Zero(d));
-        };
-        const Coordinates<D> away{outside(0, p_.x), outside(1, p_.y), outside(2, p_.z)};
-        return dot(away, away);
-    }
 
     Coordinates<D> p_;
     hn::Vec<F> limit2_;

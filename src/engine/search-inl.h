@@ -116,6 +116,54 @@ void walk_to_leaves(const WideLeaves<T>& leaves, const Vec<T, 3>& p, T limit) {
         walk<W, Wanted::closest>(leaves.tree, LeavesAsker<W, T>(leaves, p, limit));
 }
 
+// The boxes that a closed box overlaps, by comparisons alone.
+template <int W, class T>
+class Overlapped {
+public:
+    using F = Floats<W>;
+
+    HWY_INLINE explicit Overlapped(const Box<T, 3>& box)
+        : low_(all_lanes(d, box.low)), high_(all_lanes(d, box.high)) {}
+
+    HWY_INLINE hn::Mask<F> enter(const std::byte* node, int part, hn::Vec<F>& at) const {
+        at = in_floats<W, T>(
+            node, part, [&](const T* rows) __attribute__((always_inline)) {
+                const auto within = [&](int axis, auto low, auto high) __attribute__((always_inline)) {
+                    return hn::And(hn::Le(hn::Load(d, rows + 2 * axis * W), high),
+                                   hn::Ge(hn::Load(d, rows + (2 * axis + 1) * W), low));
+                };
+                const auto all = hn::And(hn::And(within(0, low_.x, high_.x), within(1, low_.y, high_.y)),
+                                         within(2, low_.z, high_.z));
+                return hn::IfThenElse(all, hn::Zero(d), hn::Set(d, T(1)));
+            });
+        return hn::Eq(at, hn::Zero(F()));
+    }
+
+private:
+    using D = LanesOf<W, T>;
+    static constexpr D d{};
+
+    Coordinates<D> low_, high_;
+};
+// A walk to the leaves that a box overlaps, as an asker.
+template <int W, class T>
+class BoxAsker {
+public:
+    HWY_INLINE BoxAsker(const WideLeaves<T>& leaves, const Box<T, 3>& box) : leaves_(leaves), slabs_(box) {}
+
+    HWY_INLINE const Overlapped<W, T>& slabs() const { return slabs_; }
+    HWY_INLINE bool test(std::uint32_t leaf) { return leaves_.test(leaves_.asker, leaf) < 0; }
+    HWY_INLINE bool found() const { return false; }
+
+private:
+    const WideLeaves<T>& leaves_;
+    const Overlapped<W, T> slabs_;
+};
+template <int W, class T>
+void walk_in_box(const WideLeaves<T>& leaves, const Box<T, 3>& box) {
+    if (!leaves.tree.empty()) walk<W, Wanted::any>(leaves.tree, BoxAsker<W, T>(leaves, box));
+}
+
 // Several searches in flight, which advance in turns: all that stand at a node look at its boxes, then all
 // that stand at a leaf look at its primitives, then all that have to go back pop a child. So no branch
 // depends on what one search meets, the processor overlaps the searches' chains of operations, and what a

@@ -299,7 +299,13 @@ private:
                             bool past_surface = false) const {
         SignedCrossings<typename J::Primitives> query(index.primitives(), p, ray.axis, ray.direction, bounds_,
                                                       index.structure().exclusive(), past_surface);
-        index.structure().walk(detail::CrossedLeaves<J>(index), query, count);
+        const detail::CrossedLeaves<J> leaves(index);
+        if constexpr (detail::WideForKernels<J> && std::same_as<Count, const NoVisits>)
+            if (detail::walked_by_kernel(
+                    index.structure().tree(), query.probe().box(),
+                    [&](const Leaf& leaf) { return leaves.test_leaf(query.probe(), leaf, query); }))
+                return query.answer();
+        index.structure().walk(leaves, query, count);
         return query.answer();
     }
     template <class Count>

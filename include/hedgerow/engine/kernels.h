@@ -87,8 +87,9 @@ struct WideDoubles {
     const TriangleBlock<double>* blocks;
     Strided<std::uint32_t> faces;
 };
-/// Leaves of any primitives, behind one plain call: `test` tests those of a leaf, and returns the squared
-/// distance beyond which no box can change the answer.
+/// Leaves of any primitives, behind one plain call: `test` tests those of a leaf, and returns the limit of
+/// the walk from then on: the squared distance beyond which no box can change the answer. Below 0, a walk in
+/// a box ends.
 template <std::floating_point T>
 struct WideLeaves {
     using Scalar = T;
@@ -133,6 +134,9 @@ struct AllPointKernels {
     /// Walks to the leaves of any primitives that a point's limit, a squared distance, lets it reach.
     void (*walk)(const WideLeaves<float>&, const Vec<float, 3>&, float limit);
     void (*walk_of_doubles)(const WideLeaves<double>&, const Vec<double, 3>&, double limit);
+    /// Walks to the leaves of any primitives that a closed box overlaps, in no order.
+    void (*walk_box)(const WideLeaves<float>&, const Box<float, 3>&);
+    void (*walk_box_of_doubles)(const WideLeaves<double>&, const Box<double, 3>&);
     /// The number of points in a solid ball, whose center and radius are within `largest_coordinate`.
     std::size_t (*points_in_ball)(const WidePoints&, const Sphere<float, 3>&);
 };

@@ -118,6 +118,35 @@ private:
     const WideKernels* kernels_ = wide_kernels();
 };
 
+/// A leaf as a walk sees it.
+template <class T>
+Leaf leaf_of(const WideTree<T, 3>& tree, std::uint32_t number) {
+    const std::uint32_t first = wide_leaf_size * number;
+    std::uint32_t count = 0;
+    while (count < wide_leaf_size && tree.items[first + count] != no_primitive) ++count;
+    return {tree.items.data(), first, count};
+}
+/// Calls test(leaf) for the leaves that a closed box overlaps, until it returns Flow::stop. False, and calls
+/// nothing, if no kernels are in use.
+template <class T, class Test>
+bool walked_by_kernel(const WideTree<T, 3>& tree, const Box<T, 3>& box, Test test) {
+    const WideKernels* const kernels = wide_kernels();
+    if (kernels == nullptr) return false;
+    struct Asked {
+        const WideTree<T, 3>& tree;
+        Test& test;
+    } asked{tree, test};
+    const WideLeaves<T> leaves{tree, &asked, [](void* asker, std::uint32_t leaf) {
+                                   const Asked& of = *static_cast<const Asked*>(asker);
+                                   return of.test(leaf_of(of.tree, leaf)) == Flow::stop ? T(-1) : T(0);
+                               }};
+    if constexpr (std::is_same_v<T, float>)
+        kernels->points->walk_box(leaves, box);
+    else
+        kernels->points->walk_box_of_doubles(leaves, box);
+    return true;
+}
+
 /// Other primitives: the kernels walk, and leaves are tested as in any walk.
 template <class I>
 class OtherKernel : public PointKernel<I> {
@@ -149,11 +178,7 @@ private:
         Asked asked{index, query};
         const auto test = [](void* asker, std::uint32_t leaf) {
             auto& [of, asks] = *static_cast<Asked*>(asker);
-            const auto& items = of.structure().tree().items;
-            const std::uint32_t first = wide_leaf_size * leaf;
-            std::uint32_t count = 0;
-            while (count < wide_leaf_size && items[first + count] != no_primitive) ++count;
-            of.test_leaf(asks.probe(), {items.data(), first, count}, asks);
+            of.test_leaf(asks.probe(), leaf_of(of.structure().tree(), leaf), asks);
             return asks.limit();
         };
         const WideLeaves<T> leaves{index.structure().tree(), &asked, test};
