@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <hedgerow/engine/crossing_kernels.h>
 #include <hedgerow/engine/point_kernels.h>
 #include <hedgerow/engine/ray_kernels.h>
 #include <hedgerow/parallel/ieee_executor.h>

@@ -40,7 +40,7 @@ HWY_INLINE void begin(Near<T, 3>& best, T max_distance2) {
 // closest wait, and are tested exactly when all leaves are seen, if they still may be. An exact test takes as
 // long as a leaf, and the first leaves have many triangles that later ones put out of reach.
 template <class S>
-class ClosestTriangle {
+class ClosestTriangle : public PointSearch<S> {
 public:
     using Scene = S;
     using T = typename Scene::Scalar;
@@ -64,12 +64,9 @@ public:
     };
 
     ClosestTriangle() = default;
-    HWY_INLINE ClosestTriangle(const Vec<T, 3>& p, Near<T, 3>& best) : p_(p), best_(&best) {
-        limit_.set(best.distance2);
-    }
+    HWY_INLINE ClosestTriangle(const Vec<T, 3>& p, Near<T, 3>& best)
+        : PointSearch<S>(p, best.distance2), best_(&best) {}
 
-    HWY_INLINE const Vec<T, 3>& point() const { return p_; }
-    HWY_INLINE const Limit<T>& limit() const { return limit_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         if (count_ > most - 8) [[unlikely]]
@@ -105,6 +102,7 @@ public:
     }
 
 private:
+    using PointSearch<S>::p_, PointSearch<S>::limit_;
     static constexpr int most = 64;
     using D = hn::CappedTag<T, 8>;
     using V = hn::Vec<D>;
@@ -123,9 +121,7 @@ private:
         if (best_->distance2 < limit_.distance2()) limit_.set(best_->distance2);
     }
 
-    Vec<T, 3> p_;
     Near<T, 3>* best_ = nullptr;
-    Limit<T> limit_;
     int count_ = 0;
     // Triangles that wait: the bits of a lower bound of the squared distance, and the place among those of
     // all blocks.
@@ -133,9 +129,8 @@ private:
 };
 
 // The closest point of a cloud: lanes compute exactly.
-class ClosestOfCloud {
+class ClosestOfCloud : public PointSearch<WidePoints> {
 public:
-    using Scene = WidePoints;
     struct Shared {
         const PointBlock<float, 3>* blocks;
 
@@ -145,12 +140,8 @@ public:
 
     ClosestOfCloud() = default;
     HWY_INLINE ClosestOfCloud(const Vec<float, 3>& p, Near<float, 3>& best)
-        : p_(p), best_(&best), key_(key_of(best.distance2, no_primitive)) {
-        limit_.set(best.distance2);
-    }
+        : PointSearch(p, best.distance2), best_(&best), key_(key_of(best.distance2, no_primitive)) {}
 
-    HWY_INLINE const Vec<float, 3>& point() const { return p_; }
-    HWY_INLINE const Limit<float>& limit() const { return limit_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
         const PointBlock<float, 3>& block = shared.blocks[leaf];
@@ -172,9 +163,7 @@ public:
     }
 
 private:
-    Vec<float, 3> p_;
     Near<float, 3>* best_ = nullptr;
-    Limit<float> limit_;
     NearKey key_ = 0;
     std::uint32_t place_ = 0;
 };

@@ -14,4 +14,8 @@ std::vector<const WideKernels*> compiled_wide_kernels();
 HalfAngle settled_half_angle(const HalfAngle& h, double size, const TriangleBlock<float>& block, int place,
                              const Vec<double, 3>& x);
 
+/// `crossing` of the triangle at a place of a block.
+template <std::floating_point T>
+AxisCrossing crossing_of(const AxisRay<3>& ray, const TriangleBlock<T>& block, int place);
+
 }  // namespace hedgerow::detail

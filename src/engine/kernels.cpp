@@ -50,9 +50,10 @@ template <Wanted wanted, class Answer>
 inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, answer_ray<wanted, Answer>,
                                                    answer_rays<wanted, Answer>};
 
-extern const AllPointKernels point_kernels;   // in point_kernels.cpp
-extern const ElementKernels element_kernels;  // in near_element_kernels.cpp
-extern const WindingKernel winding_kernel;    // in winding_kernels.cpp
+extern const AllPointKernels point_kernels;        // in point_kernels.cpp
+extern const ElementKernels element_kernels;       // in near_element_kernels.cpp
+extern const WindingKernel winding_kernel;         // in winding_kernels.cpp
+extern const AllCrossingKernels crossing_kernels;  // in crossing_kernels.cpp
 
 inline constexpr WideKernels kernels {
 #if HWY_TARGET == HWY_AVX3
@@ -65,7 +66,7 @@ inline constexpr WideKernels kernels {
     "neon", 4,
 #endif
         ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>, &point_kernels,
-        &element_kernels, &winding_kernel
+        &element_kernels, &winding_kernel, &crossing_kernels
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -135,9 +135,8 @@ private:
 
 // A search that gives the keys of the points within its limit to a sink: LeastKeys or KeysWithin.
 template <class Sink>
-class KeysOfCloud {
+class KeysOfCloud : public PointSearch<WidePoints> {
 public:
-    using Scene = WidePoints;
     struct Shared {
         const PointBlock<float, 3>* blocks;
 
@@ -145,11 +144,8 @@ public:
     };
 
     KeysOfCloud() = default;
-    HWY_INLINE KeysOfCloud(const Vec<float, 3>& p, const Sink& sink) : p_(p), sink_(sink) {
-        limit_.set(sink.distance2());
-    }
-    HWY_INLINE const Vec<float, 3>& point() const { return p_; }
-    HWY_INLINE const Limit<float>& limit() const { return limit_; }
+    HWY_INLINE KeysOfCloud(const Vec<float, 3>& p, const Sink& sink)
+        : PointSearch(p, sink.distance2()), sink_(sink) {}
     HWY_INLINE const Sink& sink() const { return sink_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
@@ -161,16 +157,13 @@ public:
     HWY_INLINE void end(Shared&) { sink_.end(); }
 
 private:
-    Vec<float, 3> p_;
     Sink sink_;
-    Limit<float> limit_;
 };
 
 // The same of triangles: those whose bounds are within the limit are tested exactly.
 template <class Sink>
-class KeysOfTriangles {
+class KeysOfTriangles : public PointSearch<WideScene> {
 public:
-    using Scene = WideScene;
     struct Taker {
         Sink* sink;
 
@@ -186,11 +179,8 @@ public:
     };
 
     KeysOfTriangles() = default;
-    HWY_INLINE KeysOfTriangles(const Vec<float, 3>& p, const Sink& sink) : p_(p), sink_(sink) {
-        limit_.set(sink.distance2());
-    }
-    HWY_INLINE const Vec<float, 3>& point() const { return p_; }
-    HWY_INLINE const Limit<float>& limit() const { return limit_; }
+    HWY_INLINE KeysOfTriangles(const Vec<float, 3>& p, const Sink& sink)
+        : PointSearch(p, sink.distance2()), sink_(sink) {}
     HWY_INLINE const Sink& sink() const { return sink_; }
     template <bool alone>
     HWY_INLINE void test(Shared& shared, std::uint32_t leaf) {
@@ -210,9 +200,7 @@ public:
     HWY_INLINE void end(Shared&) { sink_.end(); }
 
 private:
-    Vec<float, 3> p_;
     Sink sink_;
-    Limit<float> limit_;
 };
 
 HWY_INLINE int most_ties(const WidePoints& scene) {

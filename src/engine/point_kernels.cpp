@@ -52,18 +52,6 @@ template <class T>
 void walk_by_width(const WideLeaves<T>& leaves, const Vec<T, 3>& p, T limit) {
     by_width<WalkToLeaves>(leaves, &p, limit);
 }
-template <int W>
-struct WalkInBox {
-    template <class T>
-    static void answer(const WideLeaves<T>& leaves, const Box<T, 3>* box) {
-        walk_in_box<W>(leaves, *box);
-    }
-};
-template <class T>
-void walk_box_by_width(const WideLeaves<T>& leaves, const Box<T, 3>& box) {
-    by_width<WalkInBox>(leaves, &box);
-}
-
 template <template <class> class Search, class Scene>
 struct Keys {
     template <int W>
@@ -117,8 +105,6 @@ const AllPointKernels point_kernels{kernels_of<ClosestTriangle<WideScene>, Keys<
                                     closest_kernels<ClosestTriangle<WideDoubles>>,
                                     walk_by_width<float>,
                                     walk_by_width<double>,
-                                    walk_box_by_width<float>,
-                                    walk_box_by_width<double>,
                                     points_in_ball};
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -56,13 +56,30 @@ private:
 
 // A search looks at the leaves that a walk brings it to. It has
 // - Scene and Shared: the tree and its leaves, and what all searches of a batch have in common;
-// - point(), and limit(), which is a Limit, of the scene's Scalar;
+// - limit_of_walk(), the `entry` beyond which no box can change its answer;
+// - slabs<W>(), which tells what boxes it enters;
 // - test(shared, leaf), which looks at the primitives of a leaf, and end(shared), when there are no more.
 
-template <int W, class Search>
-HWY_INLINE auto reach(const Search& search) {
-    return Reach<W, typename Search::Scene::Scalar>(search.point(), search.limit().of_boxes());
-}
+// What searches around a point have in common.
+template <class S>
+class PointSearch {
+public:
+    using Scene = S;
+    using T = typename Scene::Scalar;
+
+    PointSearch() = default;
+    HWY_INLINE PointSearch(const Vec<T, 3>& p, T distance2) : p_(p) { limit_.set(distance2); }
+
+    HWY_INLINE float limit_of_walk() const { return limit_.of_boxes(); }
+    template <int W>
+    HWY_INLINE auto slabs() const {
+        return Reach<W, T>(p_, limit_.of_boxes());
+    }
+
+protected:
+    Vec<T, 3> p_;
+    Limit<T> limit_;
+};
 
 // A search as an asker (see `walk`).
 template <int W, class Search>
@@ -71,9 +88,9 @@ public:
     HWY_INLINE Searching(Search& search, typename Search::Shared& shared)
         : search_(search), shared_(shared) {}
 
-    HWY_INLINE auto slabs() const { return reach<W>(search_); }
+    HWY_INLINE auto slabs() const { return search_.template slabs<W>(); }
     HWY_INLINE bool test(std::uint32_t leaf) { return search_.template test<true>(shared_, leaf), false; }
-    HWY_INLINE float limit() const { return search_.limit().of_boxes(); }
+    HWY_INLINE float limit() const { return search_.limit_of_walk(); }
     HWY_INLINE bool found() const { return false; }
 
 private:
@@ -83,7 +100,7 @@ private:
 template <int W, class Search>
 HWY_INLINE void search_through(const typename Search::Scene& scene, Search& search,
                                typename Search::Shared& shared) {
-    if (!scene.tree.empty() && search.limit().distance2() >= 0)
+    if (!scene.tree.empty() && search.limit_of_walk() >= 0)
         walk<W, Wanted::near>(scene.tree, Searching<W, Search>(search, shared));
     search.end(shared);
 }
@@ -114,54 +131,6 @@ template <int W, class T>
 void walk_to_leaves(const WideLeaves<T>& leaves, const Vec<T, 3>& p, T limit) {
     if (!leaves.tree.empty() && limit >= 0)
         walk<W, Wanted::closest>(leaves.tree, LeavesAsker<W, T>(leaves, p, limit));
-}
-
-// The boxes that a closed box overlaps, by comparisons alone.
-template <int W, class T>
-class Overlapped {
-public:
-    using F = Floats<W>;
-
-    HWY_INLINE explicit Overlapped(const Box<T, 3>& box)
-        : low_(all_lanes(d, box.low)), high_(all_lanes(d, box.high)) {}
-
-    HWY_INLINE hn::Mask<F> enter(const std::byte* node, int part, hn::Vec<F>& at) const {
-        at = in_floats<W, T>(
-            node, part, [&](const T* rows) __attribute__((always_inline)) {
-                const auto within = [&](int axis, auto low, auto high) __attribute__((always_inline)) {
-                    return hn::And(hn::Le(hn::Load(d, rows + 2 * axis * W), high),
-                                   hn::Ge(hn::Load(d, rows + (2 * axis + 1) * W), low));
-                };
-                const auto all = hn::And(hn::And(within(0, low_.x, high_.x), within(1, low_.y, high_.y)),
-                                         within(2, low_.z, high_.z));
-                return hn::IfThenElse(all, hn::Zero(d), hn::Set(d, T(1)));
-            });
-        return hn::Eq(at, hn::Zero(F()));
-    }
-
-private:
-    using D = LanesOf<W, T>;
-    static constexpr D d{};
-
-    Coordinates<D> low_, high_;
-};
-// A walk to the leaves that a box overlaps, as an asker.
-template <int W, class T>
-class BoxAsker {
-public:
-    HWY_INLINE BoxAsker(const WideLeaves<T>& leaves, const Box<T, 3>& box) : leaves_(leaves), slabs_(box) {}
-
-    HWY_INLINE const Overlapped<W, T>& slabs() const { return slabs_; }
-    HWY_INLINE bool test(std::uint32_t leaf) { return leaves_.test(leaves_.asker, leaf) < 0; }
-    HWY_INLINE bool found() const { return false; }
-
-private:
-    const WideLeaves<T>& leaves_;
-    const Overlapped<W, T> slabs_;
-};
-template <int W, class T>
-void walk_in_box(const WideLeaves<T>& leaves, const Box<T, 3>& box) {
-    if (!leaves.tree.empty()) walk<W, Wanted::any>(leaves.tree, BoxAsker<W, T>(leaves, box));
 }
 
 // Several searches in flight, which advance in turns: all that stand at a node look at its boxes, then all
@@ -211,7 +180,7 @@ private:
         Search search;
 
         HWY_INLINE Flight() : stack(places, Stack::below, 0) {}
-        HWY_INLINE float limit() const { return search.limit().of_boxes(); }
+        HWY_INLINE float limit() const { return search.limit_of_walk(); }
     };
     // The numbers of some flights.
     struct Some {
@@ -234,7 +203,7 @@ private:
     HWY_INLINE void open(int i) {
         Flight& flight = flights_[i];
         const std::byte* const node = scene_.tree.nodes.data() + flight.word * WideNodes<T, 3>::stride_of(W);
-        const Boxes<W> boxes(node, reach<W>(flight.search));
+        const Boxes<W> boxes(node, flight.search.template slabs<W>());
         const bool entered = boxes.bits() != 0;
         std::uint32_t word = 0;
         if constexpr (Boxes<W>::parts == 1)

@@ -166,6 +166,7 @@ public:
     using Scalar = typename I::Scalar;
     static constexpr int dimension = I::dimension;
     using Point = Vec<Scalar, dimension>;
+    using Points = PointBatch<Scalar, dimension>;
     using Distance = SignedDistance<Scalar, dimension>;
     static_assert(FacetSet<typename I::Primitives>,
                   "a solid is made of triangles in space or of segments in the plane");
@@ -224,9 +225,8 @@ public:
                 if (by() == SideBy::expansion)
                     return expansion_->winding_number(parts(expansion_->scale()), Vec3d(point),
                                                       options_.error, count);
-            const auto ray = way_out(point);
-            const auto found = crossings(*index_, point, ray, count, true);
-            return static_cast<double>(found.winding) + closing_.missing(ray);
+            const Ray asked = soonest_out(point, bounds_);
+            return number_of(asked, crossed(point, asked, true, count));
         });
     }
     /// The magnitude is the root of the squared distance of `closest_point`, rounded once, except that it is
@@ -235,34 +235,63 @@ public:
     Distance signed_distance(const Point& point, Count& count = no_visits) const {
         if (!finite(point)) return Distance{.by = by(), .near = {}};
         const auto near = closest_point(*index_, point, {}, count);
-        return in_ieee_mode([&] { return with_side(point, near, count); });
+        return in_ieee_mode([&] {
+            const bool by_near = by() == SideBy::pseudonormal;
+            return with_side(near, by_near ? side_beside(near, point) : side_by_number(point, count));
+        });
     }
 
     /// The box around all primitives.
     const Box<Scalar, dimension>& bounds() const { return bounds_; }
-    /// Writes the distance of point number n to distances[n]. The closest points are found some at a time.
-    void write_distances(const PointBatch<Scalar, dimension>& points, std::span<Scalar> distances) const {
-        constexpr std::size_t at_once = 128;
+    /// Write the answer to point number n to place n. Rays and closest points are asked some at a time.
+    void write_sides(const Points& points, std::span<Side> sides) const {
+        if (by() == SideBy::pseudonormal || by() == SideBy::expansion) {
+            for (std::size_t i = 0; i < points.size(); ++i) sides[points.number(i)] = side(points[i]);
+            return;
+        }
+        for_each_crossed(points, false, [&](std::size_t i, const Ray& asked, const CrossingCount& found) {
+            sides[points.number(i)] = finite(points[i]) ? side_of(asked, found, no_visits) : Side::outside;
+        });
+    }
+    void write_winding_numbers(const Points& points, std::span<double> numbers) const {
+        if (by() == SideBy::expansion) {
+            for (std::size_t i = 0; i < points.size(); ++i)
+                numbers[points.number(i)] = winding_number(points[i]);
+            return;
+        }
+        for_each_crossed(points, true, [&](std::size_t i, const Ray& asked, const CrossingCount& found) {
+            numbers[points.number(i)] =
+                finite(points[i]) ? number_of(asked, found) : std::numeric_limits<double>::quiet_NaN();
+        });
+    }
+    void write_distances(const Points& points, std::span<Scalar> distances) const {
         std::array<Point, at_once> some;
         std::array<Near<Scalar, dimension>, at_once> near;
+        std::array<Side, at_once> sides;
         for (std::size_t begin = 0; begin < points.size(); begin += at_once) {
             const std::size_t count = std::min(at_once, points.size() - begin);
             for (std::size_t k = 0; k < count; ++k) some[k] = points[begin + k];
-            closest_points(*index_, std::span<const Point>(some.data(), count), std::span(near),
-                           serial_executor());
-            if (by() == SideBy::pseudonormal)
+            const std::span<const Point> asked(some.data(), count);
+            closest_points(*index_, asked, std::span(near), serial_executor());
+            if (by() == SideBy::pseudonormal) {
                 for (std::size_t k = 0; k < count; ++k)
                     if (near[k]) pseudonormals_.prefetch(near[k].element);
+                for (std::size_t k = 0; k < count; ++k) sides[k] = side_beside(near[k], some[k]);
+            } else {
+                write_sides(Points(asked), sides);
+            }
             for (std::size_t k = 0; k < count; ++k)
-                distances[points.number(begin + k)] =
-                    finite(some[k])
-                        ? in_ieee_mode([&] { return with_side(some[k], near[k], no_visits); }).distance
-                        : std::numeric_limits<Scalar>::infinity();
+                distances[points.number(begin + k)] = finite(some[k])
+                                                          ? with_side(near[k], sides[k]).distance
+                                                          : std::numeric_limits<Scalar>::infinity();
         }
     }
 
 private:
-    using Ray = AxisRay<dimension>;
+    using Ray = RayInBounds<Scalar, dimension>;
+    template <class J>
+    using Crossed = SignedCrossings<typename J::Primitives>;
+    static constexpr std::size_t at_once = 128;
     /// Caps are made where less than one in so many edges is open: they cost as much as triangles do.
     static constexpr std::size_t few_open = 8;
     using Closing = std::conditional_t<dimension == 3, BoundingLoops, OpenEnds>;
@@ -282,60 +311,82 @@ private:
         }
     }
 
-    /// The ray along an axis that leaves the bounds soonest.
-    Ray way_out(const Point& p) const {
-        Ray ray{Vec<double, dimension>(p)};
-        Scalar least = std::numeric_limits<Scalar>::infinity();
-        for (int k = 0; k < dimension; ++k) {
-            if (const Scalar up = bounds_.high[k] - p[k]; up < least)
-                least = up, ray.axis = k, ray.direction = 1;
-            if (const Scalar down = p[k] - bounds_.low[k]; down < least)
-                least = down, ray.axis = k, ray.direction = -1;
-        }
-        return ray;
-    }
+    /// What a ray crosses of an index, of the surface or of caps.
     template <class J, class Count>
-    CrossingCount crossings(const J& index, const Point& p, const Ray& ray, Count& count,
-                            bool past_surface = false) const {
-        SignedCrossings<typename J::Primitives> query(index.primitives(), p, ray.axis, ray.direction, bounds_,
-                                                      index.structure().exclusive(), past_surface);
-        const detail::CrossedLeaves<J> leaves(index);
-        if constexpr (detail::WideForKernels<J> && std::same_as<Count, const NoVisits>)
-            if (detail::walked_by_kernel(
-                    index.structure().tree(), query.probe().box(),
-                    [&](const Leaf& leaf) { return leaves.test_leaf(query.probe(), leaf, query); }))
-                return query.answer();
-        index.structure().walk(leaves, query, count);
+    static CrossingCount crossings(const J& index, const Ray& asked, bool past_surface, Count& count) {
+        if constexpr (HasKernel<Crossed<J>, J> && std::same_as<Count, const NoVisits>)
+            if (const Kernel<Crossed<J>, J> kernel; kernel) return kernel.answer(index, asked, past_surface);
+        Crossed<J> query(index, asked, past_surface);
+        index.structure().walk(detail::CrossedLeaves<J>(index), query, count);
         return query.answer();
     }
+    /// What the ray of a point crosses of the surface. From beyond the bounds it leads away from them.
+    template <class Count>
+    CrossingCount crossed(const Point& p, const Ray& asked, bool past_surface, Count& count) const {
+        return bounds_.contains(p) ? crossings(*index_, asked, past_surface, count) : CrossingCount();
+    }
+    /// Calls answer(i, ray, crossings) for each point i of a batch.
+    template <class Answer>
+    void for_each_crossed(const Points& points, bool past_surface, Answer answer) const {
+        std::array<Ray, at_once> rays;
+        std::array<std::size_t, at_once> places;
+        std::array<CrossingCount, at_once> found;
+        for (std::size_t begin = 0, i = 0; begin < points.size(); begin = i) {
+            std::size_t count = 0;
+            for (; i < points.size() && count < at_once; ++i) {
+                const Point p = points[i];
+                places[count] = i;
+                rays[count] = soonest_out(p, bounds_);
+                if (bounds_.contains(p))
+                    ++count;
+                else
+                    answer(i, rays[count], CrossingCount());
+            }
+            in_ieee_mode([&] { find_crossings(std::span(rays).first(count), past_surface, found.data()); });
+            for (std::size_t k = 0; k < count; ++k) answer(places[k], rays[k], found[k]);
+        }
+    }
+    void find_crossings(std::span<const Ray> rays, bool past_surface, CrossingCount* found) const {
+        if constexpr (HasKernel<Crossed<I>, I>)
+            if (const Kernel<Crossed<I>, I> kernel; kernel)
+                return kernel.answer_many(*index_, rays, past_surface, found);
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            found[i] = crossings(*index_, rays[i], past_surface, no_visits);
+    }
+
     template <class Count>
     Side side_by_number(const Point& p, Count& count) const {
         if (by() == SideBy::expansion) return winding_number(p, count) >= 0.5 ? Side::inside : Side::outside;
-        const auto ray = way_out(p);
-        const auto found = crossings(*index_, p, ray, count);
-        if (found.on) return Side::on;
-        return is_inside(p, ray, found, count) ? Side::inside : Side::outside;
+        const Ray asked = soonest_out(p, bounds_);
+        return side_of(asked, crossed(p, asked, false, count), count);
     }
     template <class Count>
-    bool is_inside(const Point& p, const Ray& ray, const CrossingCount& found, Count& count) const {
+    Side side_of(const Ray& asked, const CrossingCount& found, Count& count) const {
+        if (found.on) return Side::on;
+        return is_inside(asked, found, count) ? Side::inside : Side::outside;
+    }
+    template <class Count>
+    bool is_inside(const Ray& asked, const CrossingCount& found, Count& count) const {
         if (by() == SideBy::parity) return found.crossings % 2 != 0;
         if (closing_.empty()) return found.winding != 0;
         if constexpr (dimension == 3)
-            if (caps_.look_small(ray.origin))
-                return found.winding + crossings(caps_.index(), p, ray, count).winding > 0;
-        return static_cast<double>(found.winding) + closing_.missing(ray) >= 0.5;
+            if (caps_.look_small(asked.ray.origin))
+                return found.winding + crossings(caps_.index(), asked, false, count).winding > 0;
+        return number_of(asked, found) >= 0.5;
     }
-    template <class Count>
-    Distance with_side(const Point& p, const Near<Scalar, dimension>& near, Count& count) const {
-        Distance d{std::sqrt(near.distance2), Side::outside, by(), near};
-        if (by() != SideBy::pseudonormal) {
-            d.side = side_by_number(p, count);
-        } else if (near) {
-            const int side = near.distance2 == 0 ? 0 : pseudonormals_.side(near.element, p);
-            d.side = near.distance2 == 0 ? Side::on : (side < 0 ? Side::inside : Side::outside);
-        }
-        if (d.side == Side::on) d.distance = 0;
-        if (d.side == Side::inside && d.distance > 0) d.distance = -d.distance;
+    double number_of(const Ray& asked, const CrossingCount& found) const {
+        return static_cast<double>(found.winding) + closing_.missing(asked.ray);
+    }
+    /// The side by the pseudonormal of the closest point.
+    Side side_beside(const Near<Scalar, dimension>& near, const Point& p) const {
+        if (!near) return Side::outside;
+        if (near.distance2 == 0) return Side::on;
+        return pseudonormals_.side(near.element, p) < 0 ? Side::inside : Side::outside;
+    }
+    Distance with_side(const Near<Scalar, dimension>& near, Side side) const {
+        Distance d{std::sqrt(near.distance2), side, by(), near};
+        if (side == Side::on) d.distance = 0;
+        if (side == Side::inside && d.distance > 0) d.distance = -d.distance;
         return d;
     }
 
@@ -377,17 +428,15 @@ template <class I>
 void sides(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<Side> sides_of,
            Threads threads = {}) {
     detail::expect_room("points", points.size(), sides_of.size());
-    detail::ask_solid_in_parts(solid, points, threads, [&](const auto& part) {
-        for (std::size_t k = 0; k < part.size(); ++k) sides_of[part.number(k)] = solid.side(part[k]);
-    });
+    detail::ask_solid_in_parts(solid, points, threads,
+                               [&](const auto& part) { solid.write_sides(part, sides_of); });
 }
 template <class I>
 void winding_numbers(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<double> numbers,
                      Threads threads = {}) {
     detail::expect_room("points", points.size(), numbers.size());
-    detail::ask_solid_in_parts(solid, points, threads, [&](const auto& part) {
-        for (std::size_t k = 0; k < part.size(); ++k) numbers[part.number(k)] = solid.winding_number(part[k]);
-    });
+    detail::ask_solid_in_parts(solid, points, threads,
+                               [&](const auto& part) { solid.write_winding_numbers(part, numbers); });
 }
 template <class I>
 void signed_distances(const Solid<I>& solid, const Strided<PointOf<I>>& points,

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include <hedgerow/probes/point_batch.h>
 #include <hedgerow/probes/ray_array.h>
 #include <hedgerow/queries/point_query.h>
+#include <hedgerow/queries/signed_crossings.h>
 #include <hedgerow/walks/kernel.h>
 
 namespace hedgerow {
@@ -88,8 +90,7 @@ struct WideDoubles {
     Strided<std::uint32_t> faces;
 };
 /// Leaves of any primitives, behind one plain call: `test` tests those of a leaf, and returns the limit of
-/// the walk from then on: the squared distance beyond which no box can change the answer. Below 0, a walk in
-/// a box ends.
+/// the walk from then on: the squared distance beyond which no box can change the answer.
 template <std::floating_point T>
 struct WideLeaves {
     using Scalar = T;
@@ -134,11 +135,21 @@ struct AllPointKernels {
     /// Walks to the leaves of any primitives that a point's limit, a squared distance, lets it reach.
     void (*walk)(const WideLeaves<float>&, const Vec<float, 3>&, float limit);
     void (*walk_of_doubles)(const WideLeaves<double>&, const Vec<double, 3>&, double limit);
-    /// Walks to the leaves of any primitives that a closed box overlaps, in no order.
-    void (*walk_box)(const WideLeaves<float>&, const Box<float, 3>&);
-    void (*walk_box_of_doubles)(const WideLeaves<double>&, const Box<double, 3>&);
     /// The number of points in a solid ball, whose center and radius are within `largest_coordinate`.
     std::size_t (*points_in_ball)(const WidePoints&, const Sphere<float, 3>&);
+};
+
+/// The crossings of rays along an axis with the triangles of a WideScene or WideDoubles (SignedCrossings).
+template <class Scene, class T = typename Scene::Scalar>
+struct CrossingKernels {
+    CrossingCount (*one)(const Scene&, const RayInBounds<T, 3>&, bool past_surface);
+    /// Writes counts[i] for rays[i].
+    void (*many)(const Scene&, std::span<const RayInBounds<T, 3>> rays, bool past_surface,
+                 CrossingCount* counts);
+};
+struct AllCrossingKernels {
+    CrossingKernels<WideScene> floats;
+    CrossingKernels<WideDoubles> doubles;
 };
 
 /// The exact terms of other primitives than triangles of float, behind one plain call: adds those of a leaf,
@@ -168,6 +179,7 @@ struct WideKernels {
     const AllPointKernels* points;
     const ElementKernels* elements;
     const WindingKernel* winding_number;
+    const AllCrossingKernels* crossings;
 };
 
 /// The kernels in use, or nullptr for the plain walk. The first call chooses them: those that the

@@ -40,6 +40,19 @@ concept WideForKernels = requires(const I& index) {
     { index.structure().tree() } -> std::same_as<const WideTree<typename I::Primitives::Scalar, 3>&>;
 };
 
+template <TrianglesForKernels I>
+WideScene kernel_scene(const I& index) {
+    return kernel_scene(index, {}, {});
+}
+template <DoublesForKernels I>
+WideDoubles kernel_scene(const I& index) {
+    return {index.structure().tree(), index.packed().data(), index.primitives().faces()};
+}
+template <CloudForKernels I>
+WidePoints kernel_scene(const I& index) {
+    return {index.structure().tree(), index.packed().data()};
+}
+
 /// The kernels of points over indexes I that are in use when the object is made.
 template <WideForKernels I>
 class PointKernel {
@@ -58,14 +71,7 @@ protected:
         else
             return all().points;
     }
-    static auto scene(const I& index) {
-        if constexpr (TrianglesForKernels<I>)
-            return kernel_scene(index, {}, {});
-        else if constexpr (DoublesForKernels<I>)
-            return WideDoubles{index.structure().tree(), index.packed().data(), index.primitives().faces()};
-        else
-            return WidePoints{index.structure().tree(), index.packed().data()};
-    }
+    static auto scene(const I& index) { return kernel_scene(index); }
     // Squared distances of farther points may overflow; NaN is no nearer to anything.
     static bool takes(const Vec<T, 3>& point) {  // without a branch
         const auto fits = [](T x) { return unsigned(std::abs(x) <= T(largest_coordinate<float>)); };
@@ -126,27 +132,6 @@ Leaf leaf_of(const WideTree<T, 3>& tree, std::uint32_t number) {
     while (count < wide_leaf_size && tree.items[first + count] != no_primitive) ++count;
     return {tree.items.data(), first, count};
 }
-/// Calls test(leaf) for the leaves that a closed box overlaps, until it returns Flow::stop. False, and calls
-/// nothing, if no kernels are in use.
-template <class T, class Test>
-bool walked_by_kernel(const WideTree<T, 3>& tree, const Box<T, 3>& box, Test test) {
-    const WideKernels* const kernels = wide_kernels();
-    if (kernels == nullptr) return false;
-    struct Asked {
-        const WideTree<T, 3>& tree;
-        Test& test;
-    } asked{tree, test};
-    const WideLeaves<T> leaves{tree, &asked, [](void* asker, std::uint32_t leaf) {
-                                   const Asked& of = *static_cast<const Asked*>(asker);
-                                   return of.test(leaf_of(of.tree, leaf)) == Flow::stop ? T(-1) : T(0);
-                               }};
-    if constexpr (std::is_same_v<T, float>)
-        kernels->points->walk_box(leaves, box);
-    else
-        kernels->points->walk_box_of_doubles(leaves, box);
-    return true;
-}
-
 /// Other primitives: the kernels walk, and leaves are tested as in any walk.
 template <class I>
 class OtherKernel : public PointKernel<I> {

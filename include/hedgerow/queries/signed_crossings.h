@@ -16,10 +16,39 @@ struct CrossingCount {
     std::int64_t winding = 0;
     std::size_t crossings = 0;
     bool on = false;
+
+    void add(int sign) {
+        winding += sign;
+        ++crossings;
+    }
 };
 
-/// Sums the crossings of a ray with primitives of D corners. The ray is a half-infinite box without width, so
-/// a walk compares coordinates and nothing is rounded. The box ends at the bounds of the set.
+/// A ray along an axis, and the box without width from its origin to where it leaves the bounds of a set: a
+/// walk to what the ray crosses compares coordinates, and nothing is rounded.
+template <std::floating_point T, int D>
+struct RayInBounds {
+    AxisRay<D> ray;
+    Box<T, D> box;
+};
+/// The ray from a point that leaves bounds soonest.
+template <std::floating_point T, int D>
+RayInBounds<T, D> soonest_out(const Vec<T, D>& p, const Box<T, D>& bounds) {
+    RayInBounds<T, D> out{{Vec<double, D>(p)}, {p, p}};
+    T least = std::numeric_limits<T>::infinity();
+    for (int k = 0; k < D; ++k) {
+        if (const T up = bounds.high[k] - p[k]; up < least)
+            least = up, out.ray.axis = k, out.ray.direction = 1;
+        if (const T down = p[k] - bounds.low[k]; down < least)
+            least = down, out.ray.axis = k, out.ray.direction = -1;
+    }
+    if (const int k = out.ray.axis; out.ray.direction > 0)
+        out.box.high[k] = std::max(p[k], bounds.high[k]);
+    else
+        out.box.low[k] = std::min(p[k], bounds.low[k]);
+    return out;
+}
+
+/// Sums the crossings of a ray with primitives of D corners.
 template <class Set>
 class SignedCrossings {
 public:
@@ -29,21 +58,20 @@ public:
     using Probe = BoxProbe<Scalar, dimension>;
     static constexpr Order order = Order::none;
 
-    /// `once` says that no primitive is offered twice. Otherwise crossings are collected in memory that the
-    /// thread keeps, and repeated ones are removed. With `past_surface` the search does not end where the
-    /// origin is on a primitive, which then counts as behind it.
-    SignedCrossings(const Set& set, const V& origin, int axis, int direction,
-                    const Box<Scalar, dimension>& bounds, bool once, bool past_surface = false)
-        : set_(set),
-          ray_{Vec<double, dimension>(origin), axis, direction},
-          probe_(box_of(origin, axis, direction, bounds)),
-          once_(once),
+    /// Where structures offer a primitive several times, crossings are collected in memory that the thread
+    /// keeps, and repeated ones are removed. With `past_surface` the search does not end where the origin is
+    /// on a primitive, which then counts as behind it.
+    template <class I>
+    SignedCrossings(const I& index, const RayInBounds<Scalar, dimension>& asked, bool past_surface)
+        : set_(index.primitives()),
+          ray_(asked.ray),
+          probe_(asked.box),
+          once_(index.structure().exclusive()),
           past_surface_(past_surface) {
         if (!once_) kept().clear();
     }
 
     const Probe& probe() const { return probe_; }
-    const AxisRay<dimension>& ray() const { return ray_; }
     Scalar limit() const { return std::numeric_limits<Scalar>::max(); }
     Flow offer(const OverlapCandidate& c) { return offer(set_.corners(c.element), c.element); }
     /// A primitive whose box overlaps the ray.
@@ -57,7 +85,7 @@ public:
         }
         if (found.sign == 0) return Flow::go_on;
         if (once_)
-            add(found.sign);
+            count_.add(found.sign);
         else
             kept().push_back({id, found.sign});
         return Flow::go_on;
@@ -67,28 +95,15 @@ public:
             auto& all = kept();
             std::sort(all.begin(), all.end());
             all.erase(std::unique(all.begin(), all.end()), all.end());
-            for (const auto& [id, sign] : all) add(sign);
+            for (const auto& [id, sign] : all) count_.add(sign);
         }
         return count_;
     }
 
 private:
-    static Box<Scalar, dimension> box_of(const V& origin, int axis, int direction,
-                                         const Box<Scalar, dimension>& bounds) {
-        Box<Scalar, dimension> box{origin, origin};
-        if (direction > 0)
-            box.high[axis] = std::max(origin[axis], bounds.high[axis]);
-        else
-            box.low[axis] = std::min(origin[axis], bounds.low[axis]);
-        return box;
-    }
     static std::vector<std::pair<PrimitiveId, int>>& kept() {
         static thread_local std::vector<std::pair<PrimitiveId, int>> found;
         return found;
-    }
-    void add(int sign) {
-        count_.winding += sign;
-        ++count_.crossings;
     }
 
     const Set& set_;
