@@ -25,7 +25,7 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The boxes that a closed box overlaps, by comparisons alone. All are entered at 1.
+// The boxes that a closed box overlaps, by comparisons alone.
 template <int W, class T>
 class Overlapped {
 public:
@@ -35,22 +35,31 @@ public:
         : low_(all_lanes(d, box.low)), high_(all_lanes(d, box.high)) {}
 
     HWY_INLINE hn::Mask<F> enter(const std::byte* node, int part, hn::Vec<F>& at) const {
-        at = in_floats<W, T>(
-            node, part, [&](const T* rows) __attribute__((always_inline)) {
-                const auto within = [&](int axis, auto low, auto high) __attribute__((always_inline)) {
-                    return hn::And(hn::Le(hn::Load(d, rows + 2 * axis * W), high),
-                                   hn::Ge(hn::Load(d, rows + (2 * axis + 1) * W), low));
-                };
-                const auto all = hn::And(hn::And(within(0, low_.x, high_.x), within(1, low_.y, high_.y)),
-                                         within(2, low_.z, high_.z));
-                return hn::IfThenElse(all, hn::Set(d, T(1)), hn::Set(d, T(2)));
-            });
-        return hn::Lt(at, hn::Set(F(), 2));
+        at = hn::Zero(F());
+        if constexpr (std::is_same_v<T, float>) {
+            return overlapped(reinterpret_cast<const float*>(node) +
+                              part * static_cast<int>(hn::MaxLanes(F())));
+        } else {
+            const auto apart = in_floats<W, T>(
+                node, part, [&](const T* rows) __attribute__((always_inline)) {
+                    return hn::IfThenElse(overlapped(rows), hn::Zero(d), hn::Set(d, T(1)));
+                });
+            return hn::Eq(apart, hn::Zero(F()));
+        }
     }
 
 private:
     using D = LanesOf<W, T>;
     static constexpr D d{};
+
+    HWY_INLINE hn::Mask<D> overlapped(const T* rows) const {
+        const auto within = [&](int axis, auto low, auto high) __attribute__((always_inline)) {
+            return hn::And(hn::Le(hn::Load(d, rows + 2 * axis * W), high),
+                           hn::Ge(hn::Load(d, rows + (2 * axis + 1) * W), low));
+        };
+        return hn::And(hn::And(within(0, low_.x, high_.x), within(1, low_.y, high_.y)),
+                       within(2, low_.z, high_.z));
+    }
 
     Coordinates<D> low_, high_;
 };
@@ -72,11 +81,12 @@ public:
     using V = hn::Vec<D>;
     using Mask = hn::Mask<D>;
 
-    HWY_INLINE CrossedTriangles(D d, const TriangleBlock<T>& block, int at, const AxisRay<3>& ray) {
+    HWY_INLINE CrossedTriangles(D d, const TriangleBlock<T>& block, int at, const RayInBounds<T, 3>& asked) {
+        const AxisRay<3>& ray = asked.ray;
+        const Vec<T, 3>& origin = asked.origin();
         const auto corner = [&](int c) __attribute__((always_inline)) {
             const auto row = [&](int axis) __attribute__((always_inline)) {
-                return hn::Sub(hn::Load(d, block.corner[axis][c] + at),
-                               hn::Set(d, static_cast<T>(ray.origin[axis])));
+                return hn::Sub(hn::Load(d, block.corner[axis][c] + at), hn::Set(d, origin[axis]));
             };
             return Coordinates<D>{hn::Mul(row(ray.axis), hn::Set(d, static_cast<T>(ray.direction))),
                                   row(ray.u()), row(ray.v())};
@@ -127,6 +137,7 @@ class CrossedByRay {
 public:
     using Scene = S;
     using T = typename Scene::Scalar;
+    static constexpr Wanted wanted = Wanted::any;
     struct Shared {
         const TriangleBlock<T>* blocks;
         bool past_surface;
@@ -137,7 +148,6 @@ public:
         : asked_(&asked), count_(&count) {}
 
     HWY_INLINE bool ended() const { return ended_; }
-    HWY_INLINE float limit_of_walk() const { return ended_ ? 0 : 1; }
     template <int W>
     HWY_INLINE auto slabs() const {
         return Overlapped<W, T>(asked_->box);
@@ -148,7 +158,7 @@ public:
         constexpr D d;
         const TriangleBlock<T>& block = shared.blocks[leaf];
         for (int at = 0; at < 8; at += static_cast<int>(hn::MaxLanes(d))) {
-            const CrossedTriangles<D> crossed(d, block, at, asked_->ray);
+            const CrossedTriangles<D> crossed(d, block, at, *asked_);
             const auto front = hn::CountTrue(d, crossed.front), back = hn::CountTrue(d, crossed.back);
             winding_ += static_cast<int>(front) - static_cast<int>(back);
             crossings_ += static_cast<std::uint32_t>(front + back);

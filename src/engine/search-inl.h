@@ -56,7 +56,8 @@ private:
 
 // A search looks at the leaves that a walk brings it to. It has
 // - Scene and Shared: the tree and its leaves, and what all searches of a batch have in common;
-// - limit_of_walk(), the `entry` beyond which no box can change its answer;
+// - wanted: of near ones also limit_of_walk(), the `entry` beyond which no box can change its answer, of any
+//   also ended(), whether it has its answer;
 // - slabs<W>(), which tells what boxes it enters;
 // - test(shared, leaf), which looks at the primitives of a leaf, and end(shared), when there are no more.
 
@@ -66,6 +67,7 @@ class PointSearch {
 public:
     using Scene = S;
     using T = typename Scene::Scalar;
+    static constexpr Wanted wanted = Wanted::near;
 
     PointSearch() = default;
     HWY_INLINE PointSearch(const Vec<T, 3>& p, T distance2) : p_(p) { limit_.set(distance2); }
@@ -159,7 +161,7 @@ public:
         while (at_nodes_.size + at_leaves_.size > 0) {
             at_nodes_.take_each([&](int i) __attribute__((always_inline)) { open(i); });
             at_leaves_.take_each([&](int i) __attribute__((always_inline)) {
-                flights_[i].search.template test<false>(shared_, flights_[i].word & ~WideChild::leaf_bit);
+                test(flights_[i]);
                 back_.add(i, true);
             });
             back_.take_each([&](int i) __attribute__((always_inline)) { pop(i); });
@@ -172,7 +174,7 @@ public:
 
 private:
     using T = typename Search::Scene::Scalar;
-    using Stack = WalkStack<W, Wanted::near>;
+    using Stack = WalkStack<W, Search::wanted>;
     struct Flight {
         typename Stack::Place places[Stack::room(bvh_max_depth + 1)];
         Stack stack;
@@ -180,7 +182,12 @@ private:
         Search search;
 
         HWY_INLINE Flight() : stack(places, Stack::below, 0) {}
-        HWY_INLINE float limit() const { return search.limit_of_walk(); }
+        HWY_INLINE std::uint32_t pop() {
+            if constexpr (Search::wanted == Wanted::near)
+                return stack.pop_lanes_within(search.limit_of_walk());
+            else
+                return stack.pop();
+        }
     };
     // The numbers of some flights.
     struct Some {
@@ -204,6 +211,9 @@ private:
         Flight& flight = flights_[i];
         const std::byte* const node = scene_.tree.nodes.data() + flight.word * WideNodes<T, 3>::stride_of(W);
         const Boxes<W> boxes(node, flight.search.template slabs<W>());
+        if constexpr (Search::wanted == Wanted::any) {
+            return go_to(i, flight.stack.push_and_pop(boxes, children_of<W, T>(node)));
+        }
         const bool entered = boxes.bits() != 0;
         std::uint32_t word = 0;
         if constexpr (Boxes<W>::parts == 1)
@@ -217,10 +227,16 @@ private:
         at_leaves_.add(i, entered && leaf);
         back_.add(i, !entered);
     }
-    HWY_INLINE void pop(int i) {
-        Flight& flight = flights_[i];
-        const std::uint32_t word = flight.word = flight.stack.pop_lanes_within(flight.limit());
-        if (word != Stack::end) prefetch_(word);
+    HWY_INLINE void test(Flight& flight) {
+        flight.search.template test<false>(shared_, flight.word & ~WideChild::leaf_bit);
+        if constexpr (Search::wanted == Wanted::any)
+            if (flight.search.ended()) [[unlikely]]
+                flight.stack.clear();
+    }
+    HWY_INLINE void pop(int i) { go_to(i, flights_[i].pop()); }
+    HWY_INLINE void go_to(int i, std::uint32_t word) {
+        flights_[i].word = word;
+        prefetch_(word == Stack::end ? 0 : word);  // without a branch
         const bool leaf = (word & WideChild::leaf_bit) != 0;
         at_nodes_.add(i, !leaf);
         at_leaves_.add(i, leaf && word != Stack::end);

@@ -182,6 +182,17 @@ public:
             return static_cast<std::uint32_t>(push_others_each(boxes, children));
         }
     }
+    // Pushes the entered children and pops one, of them if there are any: without a branch, and without a
+    // wait for what was just stored.
+    HWY_INLINE std::uint32_t push_and_pop(const Boxes<W>& boxes,
+                                          const std::uint32_t* children) requires(wanted == Wanted::any) {
+        const unsigned entered = boxes.bits();
+        const std::uint32_t first = children[std::countr_zero(entered) & (W - 1)];
+        const std::uint32_t before = places_[top_ - 1];
+        top_ -= entered == 0;
+        push_bits_unsorted(entered & (entered - 1), children);
+        return entered != 0 ? first : before;
+    }
     // Removes children that a hit has put out of reach, so that a pop need not check them.
     HWY_INLINE void sweep(float s_limit) requires(wanted == Wanted::closest) {
         const std::uint64_t limit = waiting(s_limit, end);
@@ -211,12 +222,14 @@ private:
     HWY_INLINE std::uint32_t push_others_unsorted(const Boxes<W>& boxes, const std::uint32_t* children) {
         const unsigned entered = boxes.bits();
         const int last = static_cast<int>(std::bit_width(entered)) - 1;
-        const std::uint64_t others = entered ^ (1u << last);
-        if constexpr (HWY_TARGET == HWY_AVX3)
-            put_unsorted(hn::LoadMaskBits(i32, reinterpret_cast<const std::uint8_t*>(&others)), children);
-        else
-            put_each_unsorted(static_cast<unsigned>(others), children);
+        push_bits_unsorted(entered ^ (1u << last), children);
         return children[last];
+    }
+    HWY_INLINE void push_bits_unsorted(std::uint64_t entered, const std::uint32_t* children) {
+        if constexpr (HWY_TARGET == HWY_AVX3)
+            put_unsorted(hn::LoadMaskBits(i32, reinterpret_cast<const std::uint8_t*>(&entered)), children);
+        else
+            put_each_unsorted(static_cast<unsigned>(entered), children);
     }
 
     // A key is the entry of a child, with the child's number in the lowest bits.

@@ -225,8 +225,9 @@ public:
                 if (by() == SideBy::expansion)
                     return expansion_->winding_number(parts(expansion_->scale()), Vec3d(point),
                                                       options_.error, count);
+            if (plainly_outside(point)) return 0.0;
             const Ray asked = soonest_out(point, bounds_);
-            return number_of(asked, crossed(point, asked, true, count));
+            return number_of(asked, crossings(*index_, asked, true, count));
         });
     }
     /// The magnitude is the root of the squared distance of `closest_point`, rounded once, except that it is
@@ -320,11 +321,8 @@ private:
         index.structure().walk(detail::CrossedLeaves<J>(index), query, count);
         return query.answer();
     }
-    /// What the ray of a point crosses of the surface. From beyond the bounds it leads away from them.
-    template <class Count>
-    CrossingCount crossed(const Point& p, const Ray& asked, bool past_surface, Count& count) const {
-        return bounds_.contains(p) ? crossings(*index_, asked, past_surface, count) : CrossingCount();
-    }
+    /// Whether a point is outside without a look at the index.
+    bool plainly_outside(const Point& p) const { return closing_.empty() && !bounds_.contains(p); }
     /// Calls answer(i, ray, crossings) for each point i of a batch.
     template <class Answer>
     void for_each_crossed(const Points& points, bool past_surface, Answer answer) const {
@@ -335,12 +333,12 @@ private:
             std::size_t count = 0;
             for (; i < points.size() && count < at_once; ++i) {
                 const Point p = points[i];
-                places[count] = i;
-                rays[count] = soonest_out(p, bounds_);
-                if (bounds_.contains(p))
-                    ++count;
-                else
-                    answer(i, rays[count], CrossingCount());
+                if (plainly_outside(p)) {
+                    answer(i, Ray(), CrossingCount());
+                } else {
+                    places[count] = i;
+                    rays[count++] = soonest_out(p, bounds_);
+                }
             }
             in_ieee_mode([&] { find_crossings(std::span(rays).first(count), past_surface, found.data()); });
             for (std::size_t k = 0; k < count; ++k) answer(places[k], rays[k], found[k]);
@@ -357,8 +355,9 @@ private:
     template <class Count>
     Side side_by_number(const Point& p, Count& count) const {
         if (by() == SideBy::expansion) return winding_number(p, count) >= 0.5 ? Side::inside : Side::outside;
+        if (plainly_outside(p)) return Side::outside;
         const Ray asked = soonest_out(p, bounds_);
-        return side_of(asked, crossed(p, asked, false, count), count);
+        return side_of(asked, crossings(*index_, asked, false, count), count);
     }
     template <class Count>
     Side side_of(const Ray& asked, const CrossingCount& found, Count& count) const {

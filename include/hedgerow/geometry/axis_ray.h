@@ -14,8 +14,11 @@ struct AxisRay {
     int axis = 0, direction = 1;
 
     /// The axes of the plane across the ray. The triple (axis, u, v) is right-handed.
-    int u() const { return (axis + 1) % D; }
-    int v() const { return (axis + 2) % D; }
+    int u() const { return after[axis]; }
+    int v() const { return after[u()]; }
+
+private:
+    static constexpr int after[] = {1, D == 3 ? 2 : 0, 0};
 };
 
 /// What a primitive is to a ray. `sign` is 1 where the ray leaves through the primitive's back towards its

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 #include <hedgerow/geometry/axis_ray.h>
@@ -29,22 +30,25 @@ template <std::floating_point T, int D>
 struct RayInBounds {
     AxisRay<D> ray;
     Box<T, D> box;
+
+    const Vec<T, D>& origin() const { return ray.direction > 0 ? box.low : box.high; }
 };
 /// The ray from a point that leaves bounds soonest.
 template <std::floating_point T, int D>
 RayInBounds<T, D> soonest_out(const Vec<T, D>& p, const Box<T, D>& bounds) {
-    RayInBounds<T, D> out{{Vec<double, D>(p)}, {p, p}};
-    T least = std::numeric_limits<T>::infinity();
-    for (int k = 0; k < D; ++k) {
-        if (const T up = bounds.high[k] - p[k]; up < least)
-            least = up, out.ray.axis = k, out.ray.direction = 1;
-        if (const T down = p[k] - bounds.low[k]; down < least)
-            least = down, out.ray.axis = k, out.ray.direction = -1;
-    }
-    if (const int k = out.ray.axis; out.ray.direction > 0)
-        out.box.high[k] = std::max(p[k], bounds.high[k]);
-    else
-        out.box.low[k] = std::min(p[k], bounds.low[k]);
+    // Way 2k leads up along axis k, way 2k + 1 down. Found without branches, which would often be mistaken.
+    T length[2 * D], least = std::numeric_limits<T>::infinity();
+    for (int k = 0; k < D; ++k)
+        length[2 * k] = bounds.high[k] - p[k], length[2 * k + 1] = p[k] - bounds.low[k];
+    for (const T l : length) least = std::min(least, l);
+    unsigned soonest = 1u << (2 * D - 1);  // any way from a point that is NaN
+    for (int i = 0; i < 2 * D; ++i) soonest |= static_cast<unsigned>(length[i] == least) << i;
+    const int way = std::countr_zero(soonest);
+    const int axis = way / 2, downward = way % 2;
+    RayInBounds<T, D> out{{Vec<double, D>(p), axis, 1 - 2 * downward}, {p, p}};
+    Vec<T, D>* const ends[] = {&out.box.high, &out.box.low};
+    const Vec<T, D>* const bounds_there[] = {&bounds.high, &bounds.low};
+    (*ends[downward])[axis] = (*bounds_there[downward])[axis];
     return out;
 }
 
