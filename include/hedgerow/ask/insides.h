@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include <hedgerow/ask/insides/caps.h>
 #include <hedgerow/ask/points.h>
 #include <hedgerow/engine/expanded_index.h>
 #include <hedgerow/geometry/closing_angle.h>
@@ -76,63 +77,6 @@ using ExpansionOf = typename std::conditional_t<
     I::dimension == 3, std::type_identity<ExpandedIndex<I, WindingTriangles<typename I::Primitives>>>,
     std::type_identity<NoExpansion>>::type;
 
-/// Fans of triangles that close a surface with few open edges, in an index of their own. Mesh and caps
-/// together have whole winding numbers. A point that sees the caps under less than half of all directions is
-/// inside of the open mesh exactly if it is inside of the closed one, so its side needs no angles.
-template <std::floating_point T>
-class Caps {
-public:
-    Caps() = default;
-    Caps(const BoundingLoops& loops, Executor& executor) {
-        TriangleMesh<T> mesh;
-        loops.for_each([&](std::span<const Vec3d> loop) {
-            Cap cap;
-            const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-            for (const Vec3d& p : loop) {
-                cap.box.expand(p);
-                mesh.vertices.emplace_back(p);
-            }
-            for (std::uint32_t i = 1; i + 2 < loop.size(); ++i) {
-                mesh.triangles.push_back({first, first + i + 1, first + i});
-                // At least the triangle's area: the sum of the normal's components, whose squares may
-                // underflow.
-                const Vec3d n = abs(cross(loop[i] - loop[0], loop[i + 1] - loop[0]));
-                cap.area += (n[0] + n[1] + n[2]) / 2;
-            }
-            caps_.push_back(cap);
-            all_.box.expand(cap.box);
-            all_.area += cap.area;
-        });
-        index_ = build<WideBvh>(std::move(mesh), {}, executor);
-    }
-
-    const auto& index() const { return index_; }
-    /// Whether all caps are surely seen under less than half of all directions: each under at most its area
-    /// by the square of its distance.
-    bool look_small(const Vec3d& point) const {
-        if (caps_.empty()) return false;
-        if (all_.area / distance2(point, all_.box) < most) return true;
-        double seen = 0;
-        for (const Cap& cap : caps_)
-            if (seen += cap.area / distance2(point, cap.box); !(seen < most)) return false;
-        return true;
-    }
-    std::size_t bytes() const {
-        return caps_.capacity() * sizeof(Cap) + index_.bytes() +
-               index_.size() * (sizeof(TriangleIndices) + sizeof(Vec<T, 3>));
-    }
-
-private:
-    struct Cap {
-        Box3d box;
-        double area = 0;
-    };
-    static constexpr double most = 2 * std::numbers::pi * (1 - 1e-6);  // of the solid angle
-
-    std::vector<Cap> caps_;
-    Cap all_;  // their areas, in one box
-    IndexOf<WideBvh, TriangleMesh<T>> index_;
-};
 /// In the plane, ends are as quick to look at as caps.
 struct NoCaps {
     static std::size_t bytes() { return 0; }
@@ -312,9 +256,10 @@ private:
         }
     }
 
-    /// What a ray crosses of an index, of the surface or of caps.
+    /// What a ray crosses of an index, of the surface or of caps. From beyond the bounds it leads away.
     template <class J, class Count>
     static CrossingCount crossings(const J& index, const Ray& asked, bool past_surface, Count& count) {
+        if (asked.box.empty()) return {};
         if constexpr (HasKernel<Crossed<J>, J> && std::same_as<Count, const NoVisits>)
             if (const Kernel<Crossed<J>, J> kernel; kernel) return kernel.answer(index, asked, past_surface);
         Crossed<J> query(index, asked, past_surface);
@@ -369,8 +314,12 @@ private:
         if (by() == SideBy::parity) return found.crossings % 2 != 0;
         if (closing_.empty()) return found.winding != 0;
         if constexpr (dimension == 3)
-            if (caps_.look_small(asked.ray.origin))
-                return found.winding + crossings(caps_.index(), asked, false, count).winding > 0;
+            if (!caps_.empty()) {
+                const auto of_caps = crossings(caps_.index(), asked, false, count);
+                const auto share = caps_.share_at(asked.ray.origin);
+                const double number = static_cast<double>(found.winding + of_caps.winding) - share.number;
+                if (!of_caps.on && std::abs(number - 0.5) > share.error) return number > 0.5;
+            }
         return number_of(asked, found) >= 0.5;
     }
     double number_of(const Ray& asked, const CrossingCount& found) const {

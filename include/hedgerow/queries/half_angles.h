@@ -24,15 +24,18 @@ public:
     /// A bound of what the roundings of a triangle change the sum by, in whole turns.
     static constexpr double rounding = 0x1p-45;
 
-    /// Adds the angle of a triangle to sum i. `scale` brings offsets from x to about 1, and is a power of
-    /// two.
-    void add(int i, const std::array<Vec3d, 3>& corners, const Vec3d& x, double scale) {
+    /// Of a triangle seen from x. `scale` brings offsets from x to about 1, and is a power of two.
+    static HalfAngle of(const std::array<Vec3d, 3>& corners, const Vec3d& x, double scale) {
         const Vec3d a = (corners[0] - x) * scale, b = (corners[1] - x) * scale, c = (corners[2] - x) * scale;
         const double la = length(a), lb = length(b), lc = length(c), size = product(product(la, lb), lc);
-        HalfAngle h{size + product(dot(a, b), lc) + product(dot(b, c), la) + product(dot(c, a), lb),
-                    dot(a, cross(b, c))};
+        const HalfAngle h{size + product(dot(a, b), lc) + product(dot(b, c), la) + product(dot(c, a), lb),
+                          dot(a, cross(b, c))};
         const double magnitude = std::abs(h.real) + std::abs(h.imaginary);
-        if (in_doubt(h, size) || !(magnitude > least)) h = settled(h, size, corners, x);
+        return in_doubt(h, size) || !(magnitude > least) ? settled(h, size, corners, x) : h;
+    }
+    /// Adds the angle of a triangle to sum i.
+    void add(int i, const std::array<Vec3d, 3>& corners, const Vec3d& x, double scale) {
+        const HalfAngle h = of(corners, x, scale);
         // The product of both.
         const double real = product(re_[i], h.real) - product(im_[i], h.imaginary);
         const double imaginary = product(re_[i], h.imaginary) + product(im_[i], h.real);
