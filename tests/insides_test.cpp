@@ -11,6 +11,7 @@
 #include <hedgerow/scenes/sets.h>
 
 #include "cubes.h"
+#include "engine.h"
 #include "every_structure.h"
 #include "exact.h"
 #include "generated.h"
@@ -178,7 +179,7 @@ void expect_insides(const char* scene, const P& set, std::size_t count = 300) {
             ASSERT_EQ(want_sides[i] == Side::inside, want_numbers[i] >= 0.5) << i;
         }
     }
-    for_each_index(set, [&](const char* name, const auto& index) {
+    const auto expect_same = [&](std::string_view name, const auto& index) {
         const Solid solid(index);
         EXPECT_EQ(solid.closed(), of_oracle.closed());
         EXPECT_EQ(solid.oriented(), of_oracle.oriented());
@@ -192,10 +193,16 @@ void expect_insides(const char* scene, const P& set, std::size_t count = 300) {
         std::vector<Side> found(points.size());
         sides(solid, points, std::span(found));
         EXPECT_EQ(found, want_sides) << name;
+        std::vector<double> numbers(points.size());
+        winding_numbers(solid, points, std::span(numbers));
+        EXPECT_EQ(numbers, want_numbers) << name;
         std::vector<T> distances(points.size());
         signed_distances(solid, points, std::span(distances));
         EXPECT_EQ(distances, want_distances) << name;
-    });
+    };
+    for_each_index(set, [&](const char* name, const auto& index) { expect_same(name, index); });
+    if constexpr (D == 3)
+        for_each_kernel(set, [&](const auto& index, std::string_view name) { expect_same(name, index); });
 }
 
 TYPED_TEST(Insides, OfClosedMeshes) {

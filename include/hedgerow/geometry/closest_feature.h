@@ -17,13 +17,16 @@ struct ClosestFeature {
     Vec<double, D> foot;
 };
 
-inline ClosestFeature<2> closest_feature(const Vec2d& p, const std::array<Vec2d, 2>& s) {
-    const double scale = detail::safe_scale<double>(s[1] - s[0], p - s[0]);
+/// T is the type that the coordinates had: floats need no scaling.
+template <std::floating_point T = double>
+ClosestFeature<2> closest_feature(const Vec2d& p, const std::array<Vec2d, 2>& s) {
+    const double scale = detail::safe_scale<T>(s[1] - s[0], p - s[0]);
     const Vec2d foot = detail::foot_on_segment(p, s[0], s[1], scale).point;
     return {foot == s[0] ? 0 : (foot == s[1] ? 1 : -1), foot};
 }
-inline ClosestFeature<3> closest_feature(const Vec3d& p, const std::array<Vec3d, 3>& t) {
-    const double scale = detail::safe_scale<double>(t[1] - t[0], t[2] - t[0], p - t[0]);
+template <std::floating_point T = double>
+ClosestFeature<3> closest_feature(const Vec3d& p, const std::array<Vec3d, 3>& t) {
+    const double scale = detail::safe_scale<T>(t[1] - t[0], t[2] - t[0], p - t[0]);
     const Vec3d normal = cross((t[1] - t[0]) * scale, (t[2] - t[0]) * scale);
     const auto beside = [&](std::size_t i) {
         return dot(cross(normal, (t[(i + 1) % 3] - t[i]) * scale), (p - t[i]) * scale);

@@ -76,7 +76,7 @@ public:
     int side(PrimitiveId element, const Vec<T, D>& point) const {
         const auto corners = detail::in_double(of_element_[element].corners);
         const Vec<double, D> p(point);
-        const auto [number, foot] = closest_feature(p, corners);
+        const auto [number, foot] = closest_feature<T>(p, corners);
         if (number < 0) {  // the plane's or the line's side, exactly
             if constexpr (D == 3)
                 return hedgerow::side(corners[0], corners[1], corners[2], p);
@@ -85,7 +85,7 @@ public:
         }
         const Vec<double, D> normal(of_element_[element].normals[static_cast<std::size_t>(number)]);
         const Vec<double, D> away = p - foot;
-        const double height = dot(away * scale_to_one(max_component(abs(away))), normal);
+        const double height = dot(away * detail::safe_scale<T>(away), normal);
         return height > 0 ? 1 : (height < 0 ? -1 : 0);
     }
     /// Reads ahead what `side` needs.
