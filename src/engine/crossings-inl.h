@@ -122,9 +122,9 @@ private:
         Mask left, right;
 
         HWY_INLINE Turn(D d, const Coordinates<D>& p, const Coordinates<D>& q) {
-            const V back = hn::Mul(p.z, q.y);
-            sum = hn::MulSub(p.y, q.z, back);
-            size = hn::Add(hn::MulAdd(hn::Abs(p.y), hn::Abs(q.z), hn::Set(d, underflow)), hn::Abs(back));
+            const V other = hn::Mul(p.z, q.y);
+            sum = hn::MulSub(p.y, q.z, other);
+            size = hn::Add(hn::MulAdd(hn::Abs(p.y), hn::Abs(q.z), hn::Set(d, underflow)), hn::Abs(other));
             const V error = hn::Mul(hn::Set(d, 8 * unit_roundoff<T>), size);
             left = hn::Gt(sum, error), right = hn::Lt(sum, hn::Neg(error));
         }
@@ -189,35 +189,13 @@ private:
     bool ended_ = false;
 };
 
-// One search, as an asker (see `walk`).
-template <int W, class Search>
-class AnySearching {
-public:
-    HWY_INLINE AnySearching(Search& search, const typename Search::Shared& shared)
-        : search_(search), shared_(shared), slabs_(search.template slabs<W>()) {}
-
-    HWY_INLINE const auto& slabs() const { return slabs_; }
-    HWY_INLINE bool test(std::uint32_t leaf) {
-        search_.template test<true>(shared_, leaf);
-        return search_.ended();
-    }
-    HWY_INLINE bool found() const { return search_.ended(); }
-
-private:
-    Search& search_;
-    const typename Search::Shared& shared_;
-    const Overlapped<W, typename Search::T> slabs_;
-};
-
 template <int W, class Scene, class T>
 CrossingCount crossings_of_one(const Scene& scene, const RayInBounds<T, 3>& asked, bool past_surface) {
     using Search = CrossedByRay<Scene>;
     CrossingCount count;
-    if (scene.tree.empty()) return count;
-    const typename Search::Shared shared{scene.blocks, past_surface};
+    typename Search::Shared shared{scene.blocks, past_surface};
     Search search(asked, count);
-    walk<W, Wanted::any>(scene.tree, AnySearching<W, Search>(search, shared));
-    search.end(shared);
+    search_through<W>(scene, search, shared);
     return count;
 }
 template <int W, class Scene, class T>

@@ -91,9 +91,14 @@ public:
         : search_(search), shared_(shared) {}
 
     HWY_INLINE auto slabs() const { return search_.template slabs<W>(); }
-    HWY_INLINE bool test(std::uint32_t leaf) { return search_.template test<true>(shared_, leaf), false; }
+    HWY_INLINE bool test(std::uint32_t leaf) { return search_.template test<true>(shared_, leaf), found(); }
     HWY_INLINE float limit() const { return search_.limit_of_walk(); }
-    HWY_INLINE bool found() const { return false; }
+    HWY_INLINE bool found() const {
+        if constexpr (Search::wanted == Wanted::any)
+            return search_.ended();
+        else
+            return false;
+    }
 
 private:
     Search& search_;
@@ -102,8 +107,9 @@ private:
 template <int W, class Search>
 HWY_INLINE void search_through(const typename Search::Scene& scene, Search& search,
                                typename Search::Shared& shared) {
-    if (!scene.tree.empty() && search.limit_of_walk() >= 0)
-        walk<W, Wanted::near>(scene.tree, Searching<W, Search>(search, shared));
+    bool begins = !scene.tree.empty();
+    if constexpr (Search::wanted == Wanted::near) begins = begins && search.limit_of_walk() >= 0;
+    if (begins) walk<W, Search::wanted>(scene.tree, Searching<W, Search>(search, shared));
     search.end(shared);
 }
 

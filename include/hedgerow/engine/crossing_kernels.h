@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include <hedgerow/engine/point_kernels.h>
+#include <hedgerow/engine/kernel_scenes.h>
 
 namespace hedgerow {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include <hedgerow/engine/kernel_scenes.h>
 #include <hedgerow/engine/near_keys.h>
-#include <hedgerow/engine/ray_kernels.h>
 #include <hedgerow/geometry/ball.h>
 #include <hedgerow/queries/closest_point.h>
 #include <hedgerow/queries/nearest.h>
@@ -20,38 +20,8 @@ namespace hedgerow {
 
 namespace detail {
 
-/// Indexes of points that the kernels can search.
-template <class I>
-concept CloudForKernels = requires(const I& index) {
-    { index.structure().tree() } -> std::same_as<const WideTree<float, 3>&>;
-    { index.packed() } -> std::same_as<const PointBlocks<float, 3>&>;
-};
 template <class I>
 concept NearForKernels = TrianglesForKernels<I> || CloudForKernels<I>;
-template <class I>
-concept DoublesForKernels = requires(const I& index) {
-    { index.structure().tree() } -> std::same_as<const WideTree<double, 3>&>;
-    { index.packed() } -> std::same_as<const TriangleBlocks<double>&>;
-    { index.primitives().faces() } -> std::same_as<const Strided<std::uint32_t>&>;
-};
-/// Indexes of any primitives, over a tree that the kernels can walk.
-template <class I>
-concept WideForKernels = requires(const I& index) {
-    { index.structure().tree() } -> std::same_as<const WideTree<typename I::Primitives::Scalar, 3>&>;
-};
-
-template <TrianglesForKernels I>
-WideScene kernel_scene(const I& index) {
-    return kernel_scene(index, {}, {});
-}
-template <DoublesForKernels I>
-WideDoubles kernel_scene(const I& index) {
-    return {index.structure().tree(), index.packed().data(), index.primitives().faces()};
-}
-template <CloudForKernels I>
-WidePoints kernel_scene(const I& index) {
-    return {index.structure().tree(), index.packed().data()};
-}
 
 /// The kernels of points over indexes I that are in use when the object is made.
 template <WideForKernels I>

@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-#include <hedgerow/engine/kernels.h>
+#include <hedgerow/engine/kernel_scenes.h>
 #include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/geometry/transform.h>
 #include <hedgerow/queries/any_hit.h>
@@ -15,30 +15,6 @@
 namespace hedgerow {
 
 namespace detail {
-
-/// Indexes of triangles that the kernels can search.
-template <class I>
-concept TrianglesForKernels = requires(const I& index) {
-    { index.structure().tree() } -> std::same_as<const WideTree<float, 3>&>;
-    { index.packed() } -> std::same_as<const TriangleBlocks<float>&>;
-    { index.primitives().faces() } -> std::same_as<const Strided<std::uint32_t>&>;
-};
-/// Indexes of instances of TrianglesForKernels.
-template <class I>
-concept InstancesForKernels = requires(const I& index) {
-    { index.structure().tree() } -> std::same_as<const WideTree<float, 3>&>;
-    { index.primitives().for_kernels() } -> std::same_as<const WideInstance*>;
-};
-
-template <TrianglesForKernels I>
-WideScene kernel_scene(const I& index, const Ray<float, 3>&, const HitFilter& filter) {
-    return {index.structure().tree(), index.packed().data(), index.primitives().faces(), filter};
-}
-template <InstancesForKernels I>
-WideInstances kernel_scene(const I& index, const Ray<float, 3>& ray, const HitFilter& filter) {
-    return {index.structure().tree(), index.primitives().for_kernels(), index.primitives().hit_error(ray),
-            filter};
-}
 
 /// One kind of query, answered by the kernels that are in use when the object is made.
 template <auto question>
