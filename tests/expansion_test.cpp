@@ -123,6 +123,43 @@ TEST(WindingMoments, OfPartsAreThoseOfTheWhole) {
         }
     }
 }
+// As many levels as the deepest tree has, each half as large again as the one below, up to a cluster of
+// radius 1: roundings stay a hundred times below what WindingRow allows for.
+TEST(WindingMoments, RoundingsOfManyLevelsAreFarBelowTheirAllowance) {
+    constexpr int levels = 64;
+    constexpr double allowed = 0x1p-38;
+    Random random(34, 0);
+    double radius = std::pow(1.5, -levels);
+    Vec3d center{};
+    WindingMoments moments, whole;
+    std::vector<Corners> all;
+    for (int level = 0; level <= levels; ++level) {
+        if (level > 0) {
+            const Vec3d moved = random.direction<3>() * (radius / 2);
+            WindingMoments larger;
+            larger.add_part(moments, moved * -1.0 / (1.5 * radius), 1 / 1.5);
+            moments = larger, radius *= 1.5, center = center + moved;
+        }
+        // A triangle of this level, of about its size.
+        Corners t;
+        for (auto& p : t) p = center + random.direction<3>() * radius;
+        moments.add_triangle({(t[0] - center) / radius, (t[1] - center) / radius, (t[2] - center) / radius},
+                             normal_of(t));
+        all.push_back(t);
+    }
+    double area = 0;
+    for (const Corners& t : all) {
+        whole.add_triangle({(t[0] - center) / radius, (t[1] - center) / radius, (t[2] - center) / radius},
+                           normal_of(t));
+        area += length(normal_of(t));
+    }
+    for (int n = 1; n <= WindingMoments::degrees; ++n)
+        for (int m = 0; m <= n; ++m) {
+            const auto [a, b] = whole.coefficients(n, m);
+            const auto [c, d] = moments.coefficients(n, m);
+            EXPECT_LE(std::abs(a - c) + std::abs(b - d), 0.01 * allowed * area) << n << " " << m;
+        }
+}
 
 /// Compares every instruction set and width with the plain walk, which counts visits.
 template <class Ask>
