@@ -81,7 +81,7 @@ void answer_piece(const Answering<T, D>& by, const RowOptions& options, const T*
                 else
                     for (std::size_t i = 0; i < count; ++i) Question::ask(index, given[i], found[i]);
             },
-            [](const Answer& answer, Record& record) { list_answer<Question>(answer, record); });
+            [](const Answer& answer, auto& record) { list_answer<Question>(answer, record); });
     }
 }
 

@@ -108,11 +108,13 @@ void answer_by_rows(const RowOptions& options, const T* numbers, std::uint64_t f
     given.resize(std::max(given.size(), count));
     for (std::size_t i = 0; i < count; ++i) given[i] = RowsOf<Given>::of(row(i), options);
     ask_all(std::span<const Given>(given.data(), count), std::span<Answer>(found.get(), count));
-    for (std::size_t i = 0; i < count; ++i) {
+    RecordSize size;
+    list(none, size);
+    append_records(answers.records, count, size.bytes, [&](std::size_t i, Record& record) {
         const bool usable = RowsOf<Given>::usable(row(i));
         if (!usable) answers.refuse(first + i);
-        append_record(answers.records, [&](Record& record) { list(usable ? found[i] : none, record); });
-    }
+        list(usable ? found[i] : none, record);
+    });
     answers.rows = count;
 }
 

@@ -32,7 +32,7 @@ struct AnsweredRows {
 struct RowCut {
     std::size_t chunk, piece;
 };
-inline constexpr RowCut cut_for_batches{std::size_t(1) << 17, 4096}, cut_for_lists{std::size_t(1) << 15, 32};
+inline constexpr RowCut cut_for_batches{std::size_t(1) << 15, 4096}, cut_for_lists{std::size_t(1) << 15, 32};
 
 template <class T>
 class RowStream {

@@ -87,27 +87,28 @@ void ByteSource::expect_not_cancelled() const {
 
 bool ByteSource::refill() {
     if (ended_) return false;
-    expect_not_cancelled();
     before_ += filled_;
     at_ = filled_ = 0;
-    if (pipe_ >= 0)
-        read_pipe();
-    else
-        read_file();
+    filled_ = load(buffer_.data());
     return !ended_;
 }
 
-void ByteSource::read_file() {
-    // Fill the buffer again, and report damaged data.
-    const int got = gzread(file_, buffer_.data(), static_cast<unsigned>(buffer_.size()));
+std::size_t ByteSource::load(unsigned char* to) {
+    expect_not_cancelled();
+    const std::size_t got = pipe_ >= 0 ? load_from_pipe(to) : load_from_file(to);
+    ended_ = got == 0;
+    return got;
+}
+
+std::size_t ByteSource::load_from_file(unsigned char* to) {
+    // Report damaged data.
+    const int got = gzread(file_, to, static_cast<unsigned>(buffer_.size()));
     int code = Z_OK;
     const std::string message = gzerror(file_, &code);
     if (code == Z_ERRNO) fail_here("cannot be read: " + std::generic_category().message(errno));
     if (code == Z_BUF_ERROR) fail_here("the compressed data end early. The file was cut off: fetch it again");
     if (got < 0 || code < 0)
         fail_here("the compressed data are damaged (" + message + "). Fetch the file again");
-    filled_ = static_cast<std::size_t>(got);
-    ended_ = got == 0;
     // Refuse a file that unpacks to far more than a scene does.
     const auto done = gzoffset(file_);
     if (gzdirect(file_) == 0 && before_ > bomb_size &&
@@ -115,30 +116,40 @@ void ByteSource::read_file() {
         fail_here("unpacks to more than " + std::to_string(bomb_ratio) +
                   " times its size, as no scene does. If it is one, unpack it first and read that");
     // Report the progress in bytes of the file, compressed or not.
-    if (ended_)
+    if (got == 0)
         progress_(total_, total_);
     else
         progress_(std::min(static_cast<std::uint64_t>(done < 0 ? 0 : done), total_), total_);
+    return static_cast<std::size_t>(got);
 }
 
-void ByteSource::read_pipe() {
+std::size_t ByteSource::load_from_pipe(unsigned char* to) {
     // Wait for data, and look at times whether reading was cancelled meanwhile.
     pollfd waiting{pipe_, POLLIN, 0};
     while (::poll(&waiting, 1, 100) == 0) expect_not_cancelled();
     ssize_t got;
-    do got = ::read(pipe_, buffer_.data(), buffer_.size());
+    do got = ::read(pipe_, to, buffer_.size());
     while (got < 0 && errno == EINTR);
     if (got < 0) fail_here("cannot be read: " + std::generic_category().message(errno));
-    filled_ = static_cast<std::size_t>(got);
-    ended_ = got == 0;
+    return static_cast<std::size_t>(got);
 }
 
 std::size_t ByteSource::read(void* to, std::size_t size) {
+    auto* const bytes = static_cast<unsigned char*>(to);
     std::size_t done = 0;
-    while (done < size && !at_end()) {
-        const std::size_t n = std::min(size - done, filled_ - at_);
-        std::memcpy(static_cast<unsigned char*>(to) + done, buffer_.data() + at_, n);
-        at_ += n, done += n;
+    while (done < size) {
+        if (at_ == filled_ && !ended_ && size - done >= buffer_.size()) {
+            // Past the buffer, without a copy.
+            before_ += filled_;
+            at_ = filled_ = 0;
+            const std::size_t got = load(bytes + done);
+            before_ += got, done += got;
+        } else {
+            if (at_end()) break;
+            const std::size_t n = std::min(size - done, filled_ - at_);
+            std::memcpy(bytes + done, buffer_.data() + at_, n);
+            at_ += n, done += n;
+        }
     }
     return done;
 }

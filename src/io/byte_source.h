@@ -76,9 +76,10 @@ public:
 
 private:
     bool refill();
-    /// Fills the buffer with what zlib unpacks, or with what a pipe has.
-    void read_file();
-    void read_pipe();
+    /// Reads up to as many bytes as the buffer has: what zlib unpacks, or what a pipe has. 0 at the end.
+    std::size_t load(unsigned char* to);
+    std::size_t load_from_file(unsigned char* to);
+    std::size_t load_from_pipe(unsigned char* to);
 
     std::string name_;
     Progress progress_;

@@ -54,28 +54,50 @@ struct ColumnList {
     }
 };
 
-/// A record: numbers in this processor's byte order, one after the other without gaps.
+/// A record: numbers in this processor's byte order, one after the other without gaps, from a place in memory
+/// on.
 class Record {
 public:
+    static constexpr std::size_t most = 128;  // bytes: 16 columns of any type
+
+    explicit Record(char* at) : at_(at) {}
     template <class N>
     void operator()(std::string_view, N value) {
         static_assert(sizeof(N) == size_of(number_type<N>()));
-        std::memcpy(raw_ + size_, &value, sizeof(N));
-        size_ += sizeof(N);
+        std::memcpy(at_, &value, sizeof(N));
+        at_ += sizeof(N);
     }
-    std::string_view bytes() const { return {raw_, size_}; }
+    const char* end() const { return at_; }
 
 private:
-    char raw_[128];  // 16 columns of any type
-    std::size_t size_ = 0;
+    char* at_;
+};
+/// Counts the bytes of a record.
+struct RecordSize {
+    std::size_t bytes = 0;
+    template <class N>
+    void operator()(std::string_view, N) {
+        bytes += size_of(number_type<N>());
+    }
 };
 
 /// Appends a record to `records`. `list(record)` gives its numbers: `record(name, number)` for each column.
 template <class List>
 void append_record(std::string& records, List list) {
-    Record record;
+    char bytes[Record::most];
+    Record record(bytes);
     list(record);
-    records += record.bytes();
+    records.append(bytes, static_cast<std::size_t>(record.end() - bytes));
+}
+/// Appends `count` records of `size` bytes each, of which `list(i, record)` gives the numbers.
+template <class List>
+void append_records(std::string& records, std::size_t count, std::size_t size, List list) {
+    const std::size_t before = records.size();
+    records.resize(before + count * size);
+    for (std::size_t i = 0; i < count; ++i) {
+        Record record(records.data() + before + i * size);
+        list(i, record);
+    }
 }
 
 }  // namespace hedgerow
