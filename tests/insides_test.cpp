@@ -12,7 +12,6 @@
 
 #include "cubes.h"
 #include "engine.h"
-#include "every_structure.h"
 #include "exact.h"
 #include "generated.h"
 
@@ -179,30 +178,44 @@ void expect_insides(const char* scene, const P& set, std::size_t count = 300) {
             ASSERT_EQ(want_sides[i] == Side::inside, want_numbers[i] >= 0.5) << i;
         }
     }
-    const auto expect_same = [&](std::string_view name, const auto& index) {
-        const Solid solid(index);
+    // Any solid, in a batch and, where visits are counted, one point at a time.
+    std::vector<Visits> counted(points.size());
+    for (const char* spec : matrix::structures) {
+        const std::string name = matrix::named_for<P>(spec);
+        const auto index = build_any(name, set);
+        const auto& solid = index->solid();
         EXPECT_EQ(solid.closed(), of_oracle.closed());
         EXPECT_EQ(solid.oriented(), of_oracle.oriented());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            ASSERT_EQ(solid.side(points[i]), want_sides[i]) << name << ", point " << i;
-            ASSERT_EQ(solid.winding_number(points[i]), want_numbers[i]) << name << ", point " << i;
-            const SignedDistance<T, D> d = solid.signed_distance(points[i]);
-            ASSERT_EQ(d.distance, want_distances[i]) << name << ", point " << i;
-            ASSERT_EQ(d.near, closest_point(oracle, points[i])) << name << ", point " << i;
+        for (const std::span<Visits> visits : {std::span<Visits>(), std::span(counted)}) {
+            std::vector<Side> found(points.size());
+            std::vector<double> numbers(points.size());
+            std::vector<T> distances(points.size());
+            solid.sides(points, found, visits);
+            solid.winding_numbers(points, numbers, visits);
+            solid.signed_distances(points, distances, visits);
+            ASSERT_EQ(found, want_sides) << name;
+            ASSERT_EQ(numbers, want_numbers) << name;
+            ASSERT_EQ(distances, want_distances) << name;
         }
-        std::vector<Side> found(points.size());
-        sides(solid, points, std::span(found));
-        EXPECT_EQ(found, want_sides) << name;
-        std::vector<double> numbers(points.size());
-        winding_numbers(solid, points, std::span(numbers));
-        EXPECT_EQ(numbers, want_numbers) << name;
-        std::vector<T> distances(points.size());
-        signed_distances(solid, points, std::span(distances));
-        EXPECT_EQ(distances, want_distances) << name;
-    };
-    for_each_index(set, [&](const char* name, const auto& index) { expect_same(name, index); });
+    }
+    // Every kernel.
     if constexpr (D == 3)
-        for_each_kernel(set, [&](const auto& index, std::string_view name) { expect_same(name, index); });
+        for_each_kernel(set, [&](const auto& index, std::string_view) {
+            const Solid solid(index);
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                ASSERT_EQ(solid.side(points[i]), want_sides[i]) << "point " << i;
+                ASSERT_EQ(solid.winding_number(points[i]), want_numbers[i]) << "point " << i;
+                const SignedDistance<T, D> d = solid.signed_distance(points[i]);
+                ASSERT_EQ(d.distance, want_distances[i]) << "point " << i;
+                ASSERT_EQ(d.near, closest_point(oracle, points[i])) << "point " << i;
+            }
+            std::vector<Side> found(points.size());
+            sides(solid, points, std::span(found));
+            EXPECT_EQ(found, want_sides);
+            std::vector<double> numbers(points.size());
+            winding_numbers(solid, points, std::span(numbers));
+            EXPECT_EQ(numbers, want_numbers);
+        });
 }
 
 TYPED_TEST(Insides, OfClosedMeshes) {
