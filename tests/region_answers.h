@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <hedgerow/any_index.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/random.h>
 
@@ -49,8 +50,41 @@ struct Answers {
     }
 };
 
-/// Compares every structure's answers about regions, alone and in batches, with those found one by one.
-/// Returns how many answers there are, of both kinds.
+/// Compares an index's answers about regions, alone and in batches, with those found one by one.
+template <class I, class P, class R>
+void expect_answers_of(const I& index, const std::vector<R>& regions,
+                       const std::vector<Answers<P, R>>& want) {
+    const auto lists = overlapping(index, regions, serial_executor());
+    const auto inner = contained(index, regions, serial_executor());
+    std::vector<std::size_t> counts(regions.size());
+    const auto any = std::make_unique<bool[]>(regions.size());
+    count_overlapping(index, regions, counts, serial_executor());
+    any_overlapping(index, regions, {any.get(), regions.size()}, serial_executor());
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        const auto list = [](std::span<const PrimitiveId> s) {
+            return std::vector<PrimitiveId>(s.begin(), s.end());
+        };
+        ASSERT_EQ(list(lists[i]), want[i].overlapping) << "overlapping region " << i;
+        ASSERT_EQ(list(inner[i]), want[i].contained) << "in region " << i;
+        ASSERT_EQ(counts[i], want[i].overlapping.size()) << "region " << i;
+        ASSERT_EQ(any[i], !want[i].overlapping.empty()) << "region " << i;
+    }
+}
+template <std::floating_point T, int D, class P, class R>
+void expect_answers_of_any(const AnyIndex<T, D>& index, const std::vector<R>& regions,
+                           const std::vector<Answers<P, R>>& want) {
+    std::vector<PrimitiveId> found;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        index.overlapping(regions[i], found);
+        ASSERT_EQ(found, want[i].overlapping) << "overlapping region " << i;
+        index.contained(regions[i], found);
+        ASSERT_EQ(found, want[i].contained) << "in region " << i;
+        ASSERT_EQ(index.count_overlapping(regions[i]), want[i].overlapping.size()) << "region " << i;
+        ASSERT_EQ(index.any_overlapping(regions[i]), !want[i].overlapping.empty()) << "region " << i;
+    }
+}
+/// Compares every structure's answers with those found one by one: by its own type an index for each way to
+/// walk, the others through an AnyIndex. Returns how many answers there are, of both kinds.
 template <class P, class R>
 std::array<std::size_t, 2> expect_answers(const P& set, const std::vector<R>& regions) {
     std::vector<Answers<P, R>> want;
@@ -59,24 +93,33 @@ std::array<std::size_t, 2> expect_answers(const P& set, const std::vector<R>& re
         want.emplace_back(set, region);
         all[0] += want.back().overlapping.size(), all[1] += want.back().contained.size();
     }
-    for_each_index(set, [&](const char* name, const auto& index) {
+    const auto of = [&](const char* name, const auto& index) {
         SCOPED_TRACE(name);
-        const auto lists = overlapping(index, regions, serial_executor());
-        const auto inner = contained(index, regions, serial_executor());
-        std::vector<std::size_t> counts(regions.size());
-        const auto any = std::make_unique<bool[]>(regions.size());
-        count_overlapping(index, regions, counts, serial_executor());
-        any_overlapping(index, regions, {any.get(), regions.size()}, serial_executor());
-        for (std::size_t i = 0; i < regions.size(); ++i) {
-            const auto list = [](std::span<const PrimitiveId> s) {
-                return std::vector<PrimitiveId>(s.begin(), s.end());
-            };
-            ASSERT_EQ(list(lists[i]), want[i].overlapping) << "overlapping region " << i;
-            ASSERT_EQ(list(inner[i]), want[i].contained) << "in region " << i;
-            ASSERT_EQ(counts[i], want[i].overlapping.size()) << "region " << i;
-            ASSERT_EQ(any[i], !want[i].overlapping.empty()) << "region " << i;
+        expect_answers_of(index, regions, want);
+    };
+    if constexpr (P::dimension == 2 && requires { set.spheres; }) {  // of which there is no AnyIndex
+        for_each_index(set, of);
+    } else {
+        of("wide", build<WideBvh>(set));
+        BvhOptions splits;
+        splits.builder = BvhBuilder::spatial_splits;
+        of("spatial splits", build<Bvh>(set, splits));
+        of("kd-tree", build<KdTree>(set));
+        of("octree", build<Orthtree>(set));
+        of("grid", build<Grid>(set));
+        std::vector<const char*> others = {"brute-force",
+                                           "wide:builder=fast,width=4",
+                                           "bvh",
+                                           "bvh:builder=lbvh,max_leaf_size=1",
+                                           "bvh:volume=sphere",
+                                           "bsp",
+                                           "two-level-grid"};
+        if constexpr (PointSet<ViewOf<P>>) others.insert(others.end(), {"point-kdtree", "hash-grid"});
+        for (const char* name : others) {
+            SCOPED_TRACE(name);
+            expect_answers_of_any(*build_any(name, set), regions, want);
         }
-    });
+    }
     return all;
 }
 
