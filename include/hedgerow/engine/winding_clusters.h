@@ -28,8 +28,8 @@ public:
           width_(static_cast<std::size_t>(tree.nodes.width())),
           clusters_(tree.nodes.size() * width_),
           rows_((clusters_.size() * WindingRow::count + 7) / 8) {
-        std::fill_n(rows_.data()->numbers, 8 * rows_.size(), 0.0);
         if (tree.empty()) return;
+        std::fill_n(rows_.data(), rows_.size(), WindingLine{});
         find_centers(executor);
         executor.for_each_piece(clusters_.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t slot = begin; slot < end; ++slot) find_extent(slot);
