@@ -19,8 +19,8 @@ struct WindingTerm {
 /// 1 to 5 of the singular harmonics times the moments. The term of a degree n above that is at most
 /// norm(n)·u²·sⁿ⁻¹, and those from degree 9 on together at most ∫(|y|/radius)⁸·u²·s⁸·(9 − 8s)/(1 − s)², since
 /// |∇(ρⁿ Pₙ)| <= n·ρⁿ⁻¹. Roundings of moments and terms are taken to be below 2⁻³⁸ of area·u²/(1 − s)², the
-/// bound of all terms. That is not derived step by step; `expansion_test` finds coefficients to err by 2⁻⁵¹ of
-/// the area after 64 levels of shifts.
+/// bound of all terms. That is not derived step by step; `expansion_test` finds coefficients to err by 2⁻⁵¹
+/// of the area after 64 levels of shifts.
 struct WindingRow {
     static constexpr int summed = 5, bounded = WindingMoments::degrees;
     enum : int {
