@@ -1,5 +1,7 @@
 /// Properties of every question of a region, tested on generated sets and regions, which shrink when they
 /// fail.
+#include <hedgerow/any_index.h>
+
 #include "generated.h"
 
 using namespace hedgerow;
@@ -29,29 +31,26 @@ using Sets = testing::Types<TriangleMesh<float>, TriangleMesh<double>, SphereSet
 TYPED_TEST_SUITE(RegionProperties, Sets);
 
 /// Expects of an index that its answers follow from each other, and are `want` of those that overlap.
-template <class I, class R>
-void expect_consistent(const I& index, const R& region, const std::vector<PrimitiveId>& want,
+template <std::floating_point T, int D, class R>
+void expect_consistent(const AnyIndex<T, D>& index, const R& region, const std::vector<PrimitiveId>& want,
                        const std::vector<PrimitiveId>& want_contained) {
     std::vector<PrimitiveId> found, inside;
-    RC_ASSERT(overlapping(index, region, found) == want.size());
+    RC_ASSERT(index.overlapping(region, found) == want.size());
     RC_ASSERT(found == want);
-    RC_ASSERT(contained(index, region, inside) == want_contained.size());
+    RC_ASSERT(index.contained(region, inside) == want_contained.size());
     RC_ASSERT(inside == want_contained);
     RC_ASSERT(std::ranges::includes(found, inside));
-    RC_ASSERT(count_overlapping(index, region) == found.size());
-    RC_ASSERT(any_overlapping(index, region) == !found.empty());
+    RC_ASSERT(index.count_overlapping(region) == found.size());
+    RC_ASSERT(index.any_overlapping(region) == !found.empty());
 }
 template <class P, class R>
 std::vector<PrimitiveId> expect_consistent_everywhere(const P& set, const R& region) {
     std::vector<PrimitiveId> want, inside;
     const auto plain = build<BruteForce>(set);
     overlapping(plain, region, want), contained(plain, region, inside);
-    expect_consistent(plain, region, want, inside);
-    expect_consistent(build<WideBvh>(set, {.max_leaf_size = 1}), region, want, inside);
-    expect_consistent(build<Bvh>(set), region, want, inside);
-    expect_consistent(build<KdTree>(set), region, want, inside);
-    expect_consistent(build<Orthtree>(set, {.leaf_size = 1}), region, want, inside);
-    expect_consistent(build<Grid>(set), region, want, inside);
+    const char* const octree = P::dimension == 3 ? "octree:leaf_size=1" : "quadtree:leaf_size=1";
+    for (const char* name : {"brute-force", "wide:max_leaf_size=1", "bvh", "kdtree", octree, "grid"})
+        expect_consistent(*build_any(name, set), region, want, inside);
     return want;
 }
 
