@@ -28,6 +28,7 @@ void for_each_index(const P& set, F f) {
     f("two-level grid", build<TwoLevelGrid>(set));
     if constexpr (PointSet<ViewOf<P>>) {
         f("point kd-tree", build<PointKdTree>(set));
+        f("point octree", build<PointOrthtree>(set));
         f("hash grid", build<HashGrid>(set));
     }
 }

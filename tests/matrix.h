@@ -273,9 +273,10 @@ void expect_equal(const char* name, const P& set, const Points<typename P::Scala
     }
     // Add the structures that hold only points.
     if constexpr (PointSet<ViewOf<P>>)
-        for (const char* spec : {"point-kdtree", "hash-grid", "hash-grid:cell=0.01", "hash-grid:cell=1e-9",
-                                 "hash-grid:cell=7"}) {
-            indexes.push_back(build_any(spec, set));
+        for (const char* spec :
+             {"point-kdtree", "point-octree", "point-octree:leaf_size=1", "point-octree:max_depth=3",
+              "hash-grid", "hash-grid:cell=0.01", "hash-grid:cell=1e-9", "hash-grid:cell=7"}) {
+            indexes.push_back(build_any(named_for<P>(spec), set));
             EXPECT_EQ(indexes.back()->validate(), "") << spec;
         }
     if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));

@@ -114,7 +114,10 @@ std::array<std::size_t, 2> expect_answers(const P& set, const std::vector<R>& re
                                            "bvh:volume=sphere",
                                            "bsp",
                                            "two-level-grid"};
-        if constexpr (PointSet<ViewOf<P>>) others.insert(others.end(), {"point-kdtree", "hash-grid"});
+        if constexpr (PointSet<ViewOf<P>>) {
+            others.insert(others.end(), {"point-kdtree", "hash-grid"});
+            others.push_back(P::dimension == 3 ? "point-octree" : "point-quadtree");
+        }
         for (const char* name : others) {
             SCOPED_TRACE(name);
             expect_answers_of_any(*build_any(name, set), regions, want);

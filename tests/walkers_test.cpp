@@ -122,6 +122,7 @@ TEST(Walkers, RangeCountingAcceptsWholeSubtrees) {
     expect_counts(build<KdTree>(cloud), cloud);
     expect_counts(build<Orthtree>(cloud), cloud);
     expect_counts(build<WideBvh>(cloud), cloud);
+    expect_counts(build<PointOrthtree>(cloud), cloud);
 }
 
 template <class I>

@@ -12,4 +12,5 @@
 #include <hedgerow/structures/kdtree/kdtree.h>
 #include <hedgerow/structures/kdtree/point_kdtree.h>
 #include <hedgerow/structures/orthtree/orthtree.h>
+#include <hedgerow/structures/orthtree/point_orthtree.h>
 #include <hedgerow/walks/fold.h>

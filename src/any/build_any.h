@@ -278,11 +278,11 @@ std::unique_ptr<AnyIndex<typename View::Scalar, View::dimension>> build_any_over
         else
             throw UsageError("structure '" + std::string(wanted) + "' holds points alone");
     });
-    // Refuse the orthtree of the other dimension, and names that are not in the list.
-    if (wanted == orthtree_name(5 - D))
+    // Refuse an octree in the plane, a quadtree in space, and names that are not in the list.
+    if (const auto here = name_in<D>(wanted); !built && !here.empty())
         throw UsageError("structure '" + std::string(wanted) + "' holds what lies in " +
                          (D == 2 ? "space" : "the plane") + ": in " + (D == 2 ? "the plane" : "space") +
-                         " use '" + std::string(orthtree_name(D)) + "'");
+                         " use '" + std::string(here) + "'");
     if (!built)
         throw UsageError("no structure is called '" + std::string(wanted) + "'" + suggestion(wanted, known) +
                          "; there are " + choices(known));

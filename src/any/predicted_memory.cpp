@@ -9,6 +9,8 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/spelling.h>
 
+#include "structures.h"
+
 namespace hedgerow {
 
 namespace {
@@ -35,6 +37,7 @@ constexpr Row rows[] = {
     {"hash-grid", "", never, {11.5, 11.5, 19, 19}, never, never},
     {"kdtree", "", {118, 225, 220, 410}, {6.2, 8.1, 180, 330}, {10.5, 13.8, 205, 395}, {6.1, 8, 170, 335}},
     {"point-kdtree", "", never, {8, 12, 40, 76}, never, never},
+    {"point-octree", "", never, {13, 13, 30, 30}, never, never},
     {"octree",
      "",
      {80, 121, 92, 135},
@@ -80,8 +83,9 @@ PredictedMemory predicted_memory(std::string_view structure, std::string_view ki
     expect_known(name);
     const std::string_view options = colon == structure.npos ? "" : structure.substr(colon + 1);
     const std::string_view builder = name == "wide" ? builder_in(options) : "";
+    const std::string_view in_space = detail::name_in<3>(name);  // a structure has one row
     const auto row = std::find_if(std::begin(rows), std::end(rows), [&](const Row& r) {
-        return r.structure == (name == "quadtree" ? "octree" : name) && r.builder == builder;
+        return r.structure == in_space && r.builder == builder;
     });
     if (row == std::end(rows))
         throw UsageError("the memory of '" + std::string(structure) + "' is not known: name a builder that " +

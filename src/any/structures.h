@@ -3,6 +3,7 @@
 
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include <hedgerow/all.h>
 
@@ -13,6 +14,10 @@ constexpr std::string_view orthtree_name(int dimension) {
     return dimension == 3 ? "octree" : "quadtree";
 }
 
+/// The name of a PointOrthtree.
+constexpr std::string_view point_orthtree_name(int dimension) {
+    return dimension == 3 ? "point-octree" : "point-quadtree";
+}
 /// Internal name of a BVH of other volumes than boxes. It is another type than Bvh, but users know both as
 /// 'bvh'.
 inline constexpr std::string_view bvh_of_volumes = "bvh:volume";
@@ -32,6 +37,10 @@ void for_each_structure(F f) {
     f.template operator()<Orthtree>(orthtree_name(D), D == 3
                                                           ? "cells cut into eight equal ones, in space"
                                                           : "cells cut into four equal ones, in the plane");
+    f.template operator()<PointOrthtree>(
+        point_orthtree_name(D), D == 3
+                                    ? "octree over points, each in one cell: sorted along a Morton curve"
+                                    : "quadtree over points, each in one cell: sorted along a Morton curve");
     f.template operator()<BspTree>("bsp",
                                    "BSP tree: space cut by planes across the axes and along the geometry");
     f.template operator()<Bvh>("bvh", "binary bounding volume hierarchy");
@@ -39,6 +48,21 @@ void for_each_structure(F f) {
     f.template operator()<WideBvh>(
         "wide",
         "wide bounding volume hierarchy: 4 to 16 children a node, tested at once (the engine; the default)");
+}
+
+/// The name in D dimensions of the structure that is called `name` there or in the other dimension; empty if
+/// none is.
+template <int D>
+std::string_view name_in(std::string_view name) {
+    std::vector<std::string_view> here, there;
+    for_each_structure<D>(
+        [&]<template <class, int> class>(std::string_view own, std::string_view) { here.push_back(own); });
+    for_each_structure<5 - D>([&]<template <class, int> class>(std::string_view other, std::string_view) {
+        there.push_back(other);
+    });
+    for (std::size_t i = 0; i < here.size(); ++i)
+        if (name == here[i] || name == there[i]) return here[i];
+    return {};
 }
 
 /// Lists the options of a structure (base/option.h) as users know them: a 'bvh' has a volume too, which is

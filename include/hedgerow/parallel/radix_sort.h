@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include <hedgerow/base/bare_vector.h>
 #include <hedgerow/parallel/blocks.h>
@@ -43,6 +45,41 @@ void radix_sort(BareVector<E>& elements, Key key, int low, int digits, Executor&
         });
         elements.swap(other);
     }
+}
+
+/// The end of the keys from `first` on, within [first, last), that are alike above their low `ignored` bits.
+inline std::size_t end_of_alike(const std::uint64_t* keys, std::size_t first, std::size_t last, int ignored) {
+    std::size_t i = first + 1;
+    while (i < last && (keys[i] ^ keys[first]) >> ignored == 0) ++i;
+    return i;
+}
+
+/// Sorts keys by their first 33 bits by radix, in O(n), and calls sort_run(begin, end) for each run of keys
+/// that are still alike, several runs at a time. Few keys are one run. So keys with distinct low bits have
+/// one order, whatever the executor.
+template <class SortRun>
+void sort_by_first_bits(BareVector<std::uint64_t>& keys, Executor& executor, SortRun sort_run) {
+    constexpr std::size_t few = 1024;
+    constexpr int sorted_from = 31;  // the lowest bit that the radix sort orders
+    if (keys.size() <= few) return sort_run(std::size_t(0), keys.size());
+    radix_sort(
+        keys, [](std::uint64_t key) { return key; }, sorted_from, 3, executor);
+    // Each block sorts the runs that begin in it. The first run of each block is found before any run is
+    // sorted, so that no block reads keys that another one moves.
+    const Blocks blocks{keys.size(), 16384};
+    std::vector<std::size_t> first(blocks.number() + 1, keys.size());
+    for (std::size_t b = blocks.number(); b-- > 0;) {
+        std::size_t i = b * blocks.size;
+        const std::size_t end = std::min(keys.size(), i + blocks.size);
+        if (i > 0) i = end_of_alike(keys.data(), i - 1, end, sorted_from);
+        first[b] = i < end ? i : first[b + 1];
+    }
+    blocks.each(executor, [&](std::size_t b, std::size_t, std::size_t) {
+        for (std::size_t begin = first[b], end; begin < first[b + 1]; begin = end) {
+            end = end_of_alike(keys.data(), begin, first[b + 1], sorted_from);
+            if (end - begin > 1) sort_run(begin, end);
+        }
+    });
 }
 
 }  // namespace hedgerow

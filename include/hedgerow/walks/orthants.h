@@ -47,9 +47,13 @@ public:
     NodeId id() const { return id_; }
     auto volume() const { return cell_.box(); }
     std::size_t count() const { return detail::items_below(*this); }
+    /// Where the items of a node are a range, all leaves below are one.
     template <class F>
     void for_each_leaf(F f) const {
-        for_each_leaf(node_, f);
+        if constexpr (requires { tree_.below(node_); })
+            f(tree_.below(node_));
+        else
+            for_each_leaf(node_, f);
     }
 
 private:

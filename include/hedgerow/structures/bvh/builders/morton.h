@@ -76,9 +76,8 @@ public:
                                                                                              << place_bits_ |
                            i;
         });
-        const auto key = [](std::uint64_t k) { return k; };
-        if (size() > few) radix_sort(keys_, key, sorted_from, 3, executor);
-        sort_rest(executor);
+        sort_by_first_bits(keys_, executor,
+                           [&](std::size_t begin, std::size_t end) { sort_run(begin, end); });
     }
 
     std::size_t size() const { return references_.size(); }
@@ -98,9 +97,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t few = 1024;
-    static constexpr int sorted_from = 31;  // the lowest bit that the radix sort orders
-
     std::size_t place(std::uint64_t key) const { return key & ((std::uint64_t(1) << place_bits_) - 1); }
     std::uint64_t code_of(std::uint64_t key) const { return cells_.code(references_[place(key)].center2()); }
 
@@ -116,17 +112,10 @@ private:
         return clear + 1;
     }
 
-    /// The end of the elements from `first` on, within [first, last), whose keys are alike above their low
-    /// `ignored` bits.
-    std::size_t end_of_alike(std::size_t first, std::size_t last, int ignored) const {
-        std::size_t i = first + 1;
-        while (i < last && (keys_[i] ^ keys_[first]) >> ignored == 0) ++i;
-        return i;
-    }
     void sort_run(std::size_t begin, std::size_t end) {
         std::sort(keys_.data() + begin, keys_.data() + end);
         for (std::size_t first = begin, last; first < end; first = last) {
-            last = end_of_alike(first, end, place_bits_);
+            last = end_of_alike(keys_.data(), first, end, place_bits_);
             if (last - first > 2) sort_by_codes(first, last);
         }
     }
@@ -134,25 +123,6 @@ private:
         std::sort(keys_.data() + begin, keys_.data() + end, [&](std::uint64_t a, std::uint64_t b) {
             const std::uint64_t x = code_of(a), y = code_of(b);
             return x != y ? x < y : a < b;
-        });
-    }
-    /// Each block sorts the runs that begin in it. The first run of each block is found before any run is
-    /// sorted, so that no block reads keys that another one moves.
-    void sort_rest(Executor& executor) {
-        if (size() <= few) return sort_run(0, size());
-        const Blocks blocks{size(), 16384};
-        std::vector<std::size_t> first(blocks.number() + 1, size());
-        for (std::size_t b = blocks.number(); b-- > 0;) {
-            std::size_t i = b * blocks.size;
-            const std::size_t end = std::min(size(), i + blocks.size);
-            if (i > 0) i = end_of_alike(i - 1, end, sorted_from);
-            first[b] = i < end ? i : first[b + 1];
-        }
-        blocks.each(executor, [&](std::size_t b, std::size_t, std::size_t) {
-            for (std::size_t begin = first[b], end; begin < first[b + 1]; begin = end) {
-                end = end_of_alike(begin, first[b + 1], sorted_from);
-                if (end - begin > 1) sort_run(begin, end);
-            }
         });
     }
 
