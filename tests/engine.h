@@ -4,23 +4,9 @@
 #include <hedgerow/ask.h>
 
 #include "matrix.h"
+#include "using.h"
 
 namespace hedgerow {
-
-/// Selects an instruction set, and restores the earlier one at its end.
-class Using {
-public:
-    explicit Using(std::string_view set)
-        : before_(wide_kernels() ? wide_kernels()->instruction_set : "plain") {
-        use_instruction_set(set);
-    }
-    ~Using() { use_instruction_set(before_); }
-    Using(const Using&) = delete;
-    Using& operator=(const Using&) = delete;
-
-private:
-    std::string_view before_;
-};
 
 /// Calls f(index, instruction set) for the index of each width, with each instruction set in use.
 template <class Set, class F>

@@ -164,7 +164,7 @@ TEST(WindingMoments, RoundingsOfManyLevelsAreFarBelowTheirAllowance) {
 /// Compares every instruction set and width with the plain walk, which counts visits.
 template <class Ask>
 void expect_bits_of_the_walk(const std::vector<Vec3f>& points, Ask ask) {
-    const std::string before(wide_kernels() != nullptr ? wide_kernels()->instruction_set : "plain");
+    const std::string before(name_of(instruction_set()));
     for (const auto name : instruction_sets()) {
         SCOPED_TRACE(std::string(name));
         use_instruction_set(name);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <hedgerow/nbody/operators.h>
+#include <hedgerow/nbody/swap_matrices.h>
 #include <hedgerow/scenes/random.h>
 
 using namespace hedgerow;
@@ -70,6 +71,37 @@ TEST(Harmonics, OnTheAxisAndAtTheCenter) {
     const auto none = regular_harmonics<4>(Vec3d());
     EXPECT_EQ(none.re[0], 1);
     for (std::size_t i = 1; i < none.count; ++i) EXPECT_EQ(none.re[i], 0);
+}
+
+/// Swapping the axes x and z multiplies the harmonics of each degree by a matrix.
+TEST(Harmonics, AreSwappedByMatrices) {
+    static constexpr SwapMatrices<9> swaps;
+    const auto r = regular_harmonics<9>(Vec3d(0.3, -0.7, 0.4)),
+               want = regular_harmonics<9>(Vec3d(0.4, -0.7, 0.3));
+    for (int n = 0; n <= 9; ++n)
+        for (int m = 0; m <= n; ++m) {
+            Complex<double> sum{0, 0}, folded{0, 0};
+            for (int l = -n; l <= n; ++l) sum = sum + swaps(n, m, l) * harmonic(r, n, l);
+            for (int l = 0; l <= n; ++l)
+                folded = folded + Complex<double>{swaps.multipole(n, m, l, true) * harmonic(r, n, l).re,
+                                                  swaps.multipole(n, m, l, false) * harmonic(r, n, l).im};
+            for (const auto& found : {sum, folded}) {
+                EXPECT_NEAR(found.re, want.re[want.at(n, m)], 1e-15);
+                EXPECT_NEAR(found.im, want.im[want.at(n, m)], 1e-15);
+            }
+            // Twice is not at all, for local expansions as well.
+            for (int l = 0; l <= n; ++l)
+                for (const bool real : {false, true}) {
+                    double twice[2] = {};
+                    for (int k = 0; k <= n; ++k) {
+                        twice[0] += swaps.multipole(n, m, k, real) * swaps.multipole(n, k, l, real);
+                        twice[1] += swaps.local(n, m, k, real) * swaps.local(n, k, l, real);
+                    }
+                    const bool same = m == l && (real || m > 0);
+                    EXPECT_NEAR(twice[0], same ? 1 : 0, 1e-12);
+                    EXPECT_NEAR(twice[1], same ? 1 : 0, 1e-12);
+                }
+        }
 }
 
 TEST(Operators, ShiftsOfMultipolesAreExact) {

@@ -198,11 +198,11 @@ TEST(WidePoints, BatchesOfEverySizeAndStride) {
         Vec3f p;
         double after;
     };
+    std::vector<Padded> padded;
+    for (const Vec3f& p : points) padded.push_back({-1, p, -1});
     for (std::size_t count = 0; count <= points.size(); ++count) {
-        std::vector<Padded> padded;
-        for (std::size_t i = 0; i < count; ++i) padded.push_back({-1, points[i], -1});
         Found found(count);
-        closest_points(index, Strided<Vec3f>(&padded.data()->p, count, sizeof(Padded)), std::span(found));
+        closest_points(index, Strided<Vec3f>(&padded[0].p, count, sizeof(Padded)), std::span(found));
         for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(want[i], found[i]) << i << " of " << count;
     }
 }

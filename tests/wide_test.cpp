@@ -372,7 +372,7 @@ TEST(Wide, InstructionSetsAreListedAndChosen) {
     EXPECT_EQ(sets.back(), "plain");
     for (const auto set : sets) {
         const Using use(set);
-        EXPECT_EQ(wide_kernels() ? wide_kernels()->instruction_set : "plain", set);
+        EXPECT_EQ(name_of(instruction_set()), set);
         EXPECT_EQ(build<WideBvh>(soup<float>(10)).structure().options().width, preferred_wide_width());
     }
     EXPECT_THROW(use_instruction_set("avx1024"), InputError);

@@ -107,7 +107,7 @@ BenchReport report_for(const EngineOptions& options, const std::vector<std::uniq
     BenchReport r;
     r.processor = processor(), r.avx512_rate = avx512_rate(), r.compiler = compiler(),
     r.cores = std::thread::hardware_concurrency();
-    r.instruction_set = wide_kernels() != nullptr ? wide_kernels()->instruction_set : "plain";
+    r.instruction_set = name_of(instruction_set());
     r.gigahertz = clock_rate();
     r.width = options.width, r.threads = options.threads, r.options = options;
     for (const auto& peer : peers) {

@@ -1,14 +1,10 @@
-/// What the sources of the kernels share: the list that kernels.cpp makes and choice.cpp chooses from,
-/// and what is compiled once for all instruction sets.
+/// What the sources of the kernels share and is compiled once for all instruction sets.
 #pragma once
 
 #include <hedgerow/engine/kernels.h>
 #include <hedgerow/queries/half_angles.h>
 
 namespace hedgerow::detail {
-
-/// The kernels of every instruction set that was compiled, best first. Empty in a build without Highway.
-std::vector<const WideKernels*> compiled_wide_kernels();
 
 /// `HalfAngles::settled` for the triangle at a place of a block.
 HalfAngle settled_half_angle(const HalfAngle& h, double size, const TriangleBlock<float>& block, int place,

@@ -1,7 +1,7 @@
 /// The kernels of crossings, compiled for each instruction set: Highway's foreach_target includes this file
 /// once for each. The tables of kernels.cpp point to them.
 #if HEDGEROW_HAS_HIGHWAY
-#include "targets.h"
+#include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/crossing_kernels.cpp"
 #include <hwy/foreach_target.h>

@@ -1,7 +1,7 @@
 /// The kernels of rays, compiled for each instruction set: Highway's foreach_target includes this file once
 /// for each. The table of each instruction set, with the kernels of the other sources.
 #if HEDGEROW_HAS_HIGHWAY
-#include "targets.h"
+#include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -55,51 +55,32 @@ extern const ElementKernels element_kernels;       // in near_element_kernels.cp
 extern const WindingKernel winding_kernel;         // in winding_kernels.cpp
 extern const AllCrossingKernels crossing_kernels;  // in crossing_kernels.cpp
 
-inline constexpr WideKernels kernels {
-#if HWY_TARGET == HWY_AVX3
-    "avx512", 16,
-#elif HWY_TARGET == HWY_AVX2
-    "avx2", 8,
-#elif HWY_TARGET == HWY_SSE4
-    "sse4", 4,
-#else
-    "neon", 4,
-#endif
-        ray_kernels<Wanted::closest, Hit<float>>, ray_kernels<Wanted::any, bool>, &point_kernels,
-        &element_kernels, &winding_kernel, &crossing_kernels
-};
+inline constexpr int best_width = HWY_TARGET == HWY_AVX3 ? 16 : HWY_TARGET == HWY_AVX2 ? 8 : 4;
+inline constexpr WideKernels kernels{best_width,
+                                     ray_kernels<Wanted::closest, Hit<float>>,
+                                     ray_kernels<Wanted::any, bool>,
+                                     &point_kernels,
+                                     &element_kernels,
+                                     &winding_kernel,
+                                     &crossing_kernels};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET != HWY_SCALAR
 
 #if HWY_ONCE
-namespace hedgerow::detail {
+#include "core/kernel_tables.h"
 
-std::vector<const WideKernels*> compiled_wide_kernels() {
-    std::vector<const WideKernels*> all;
-#if HWY_TARGETS & HWY_AVX3
-    all.push_back(&N_AVX3::kernels);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    all.push_back(&N_AVX2::kernels);
-#endif
-#if HWY_TARGETS & HWY_SSE4
-    all.push_back(&N_SSE4::kernels);
-#endif
-#if HWY_TARGETS & HWY_NEON
-    all.push_back(&N_NEON::kernels);
-#endif
-    return all;
+const hedgerow::WideKernels* hedgerow::wide_kernels() {
+    static constexpr KernelTables<WideKernels> tables = HEDGEROW_KERNEL_TABLES(kernels);
+    return in_use(tables);
 }
-
-}  // namespace hedgerow::detail
 #endif
 
 #else
-#include "compiled.h"
+#include <hedgerow/engine/kernels.h>
 
-std::vector<const hedgerow::WideKernels*> hedgerow::detail::compiled_wide_kernels() {
-    return {};
+const hedgerow::WideKernels* hedgerow::wide_kernels() {
+    return nullptr;
 }
 #endif

@@ -14,7 +14,7 @@ namespace {
 using Mesh = TriangleMesh<float>;
 
 std::string_view instruction_set() {
-    return wide_kernels() != nullptr ? wide_kernels()->instruction_set : "plain";
+    return name_of(hedgerow::instruction_set());
 }
 
 class Measuring {

@@ -1,16 +1,15 @@
 /// Kernels: rays and points against triangles in a wide BVH, and rays against instances of such indexes, with
-/// the processor's vectors. This header says which instruction sets there are, and what each offers.
+/// the processor's vectors. This header says what the kernels of an instruction set (instruction_set.h)
+/// offer.
 ///
-/// The kernels are one source (src/engine/), compiled for every instruction set that the compiler knows
-/// (AVX-512, AVX2, SSE4; NEON) and chosen at run time. All give the same bits as the plain walk. Where there
-/// is no kernel, the plain walk answers.
+/// All give the same bits as the plain walk. Where there is no kernel, the plain walk answers.
 #pragma once
 
 #include <limits>
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include <hedgerow/base/instruction_set.h>
 #include <hedgerow/engine/hit_filter.h>
 #include <hedgerow/engine/near_elements.h>
 #include <hedgerow/engine/near_keys.h>
@@ -171,7 +170,6 @@ using WindingKernel = double (*)(const WideExpansion&, const WindingQuery&);
 
 /// The kernels of one instruction set.
 struct WideKernels {
-    std::string_view instruction_set;
     /// The width (children per node) that these kernels are best at.
     int width;
     RayKernels<Hit<float>> closest;
@@ -182,19 +180,13 @@ struct WideKernels {
     const AllCrossingKernels* crossings;
 };
 
-/// The kernels in use, or nullptr for the plain walk. The first call chooses them: those that the
-/// environment variable HEDGEROW_INSTRUCTION_SET names, or the best there are. A name that
-/// `instruction_sets()` lacks is ignored.
+/// The kernels in use, or nullptr for the plain walk.
 const WideKernels* wide_kernels();
 
-/// The instruction sets that this processor and this build have, best first. "plain" is last and always
-/// there.
-std::vector<std::string_view> instruction_sets();
-/// Switches to another instruction set, from now on and for all threads. Throws UsageError for a name that
-/// is not in the list.
-void use_instruction_set(std::string_view name);
-
 /// The width (children per node) of new indexes: what the kernels in use are best at, or 8 without kernels.
-int preferred_wide_width();
+inline int preferred_wide_width() {
+    const WideKernels* const kernels = wide_kernels();
+    return kernels != nullptr ? kernels->width : 8;
+}
 
 }  // namespace hedgerow

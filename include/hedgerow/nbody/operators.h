@@ -15,15 +15,9 @@
 #include <cmath>
 
 #include <hedgerow/nbody/harmonics.h>
+#include <hedgerow/nbody/potential.h>
 
 namespace hedgerow {
-
-/// A potential Σ q/r and its gradient. Where charges are masses, the acceleration is G times the gradient.
-template <std::floating_point T>
-struct PotentialAt {
-    T potential{};
-    Vec<T, 3> gradient{};
-};
 
 /// Particle to multipole: adds a charge at `offset` from the center.
 template <std::floating_point T, int p>

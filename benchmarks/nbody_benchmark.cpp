@@ -1,0 +1,88 @@
+/// Forces between particles on one thread: pairs by direct sums of every instruction set, and octrees of
+/// points.
+///
+///   nbody_benchmark [COUNT]      particles; default 1,000,000
+#include <cstdio>
+#include <cstdlib>
+
+#include <hedgerow/base/instruction_set.h>
+#include <hedgerow/index.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/nbody/direct_sum.h>
+#include <hedgerow/scenes/sets.h>
+#include <hedgerow/structures/orthtree/orthtree.h>
+#include <hedgerow/structures/orthtree/point_orthtree.h>
+
+using namespace hedgerow;
+using namespace hedgerow::measure;
+
+namespace {
+
+constexpr int repeats = 5;
+
+/// Prints the cycles that a contender takes a unit of work.
+void print(const Contest& contest, std::size_t units, const char* unit) {
+    const auto times =
+        measured_in_turn(repeats, contest, Clock::thread, [](const std::string&) { return true; });
+    const double rate = clock_rate();
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const double seconds = times[i].median / static_cast<double>(units);
+        std::printf("  %-34s %9.3f ns %9.2f cycles a %s\n", contest.names[i].c_str(), seconds * 1e9,
+                    seconds * rate * 1e9, unit);
+    }
+}
+
+template <class T>
+void add_direct_sums(Contest& contest, const char* scalar, const PointCloud<T, 3>& cloud,
+                     std::size_t targets) {
+    for (const auto set : instruction_sets()) {
+        if (set == "plain") continue;
+        contest.add(std::string(scalar) + ", " + std::string(set), [&cloud, set, targets] {
+            use_instruction_set(set);
+            const std::vector<T> charges(cloud.size(), T(1));
+            std::vector<PotentialAt<T>> found(targets);
+            direct_sum<T>({cloud.points, charges}, std::span(cloud.points).first(targets), found,
+                          serial_executor());
+            return static_cast<std::size_t>(found[0].potential);
+        });
+    }
+}
+template <class T>
+void add_trees(Contest& contest, const char* scalar, const PointCloud<T, 3>& cloud) {
+    const std::string of = scalar;
+    for (const std::uint32_t leaf_size : {8u, 32u})
+        contest.add(of + ", point-octree of leaves of " + std::to_string(leaf_size), [&cloud, leaf_size] {
+            return build<PointOrthtree>(cloud, {.leaf_size = leaf_size}, serial_executor())
+                .structure()
+                .leaf_count();
+        });
+    contest.add(of + ", octree",
+                [&cloud] { return build<Orthtree>(cloud, {}, serial_executor()).structure().node_count(); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::size_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
+    std::printf("%s at %.2f GHz, %s, %s, one thread, medians of %d\n", processor().c_str(), clock_rate(),
+                avx512_rate().c_str(), compiler().c_str(), repeats);
+    const auto floats = points<float>(count);
+    const auto doubles = points<double>(count);
+
+    const std::size_t sources = std::min<std::size_t>(count, 20000),
+                      targets = std::min<std::size_t>(sources, 4096);
+    const auto few = points<float>(sources);
+    const auto few_doubles = points<double>(sources);
+    std::printf("direct sums: %zu sources, %zu targets\n", sources, targets);
+    Contest sums;
+    add_direct_sums(sums, "float", few, targets);
+    add_direct_sums(sums, "double", few_doubles, targets);
+    print(sums, sources * targets, "pair");
+
+    std::printf("builds: %zu points of the unit cube\n", count);
+    Contest trees;
+    add_trees(trees, "float", floats);
+    add_trees(trees, "double", doubles);
+    print(trees, count, "point");
+}

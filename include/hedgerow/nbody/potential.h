@@ -1,0 +1,35 @@
+/// Potentials of charges, and the kernels of the distance that they are sums of.
+#pragma once
+
+#include <cmath>
+
+#include <hedgerow/geometry/vec.h>
+
+namespace hedgerow {
+
+/// A potential Σ q·φ(r) and its gradient. Where charges are masses and φ is 1/r, the acceleration is G times
+/// the gradient.
+template <std::floating_point T, int D = 3>
+struct PotentialAt {
+    T potential{};
+    Vec<T, D> gradient{};
+};
+
+/// A kernel tells φ(r) and φ'(r)/r of a squared distance above 0: what a unit charge does, and by how much
+/// the offset from the charge is multiplied to give the gradient.
+struct KernelShare {
+    double potential, slope;
+};
+/// Charges and masses in space.
+struct InverseDistance {
+    KernelShare operator()(double distance2) const {
+        const double potential = 1 / std::sqrt(distance2);
+        return {potential, -potential / distance2};
+    }
+};
+/// Charges in the plane, vortices, line masses.
+struct MinusLogarithm {
+    KernelShare operator()(double distance2) const { return {-std::log(distance2) / 2, -1 / distance2}; }
+};
+
+}  // namespace hedgerow

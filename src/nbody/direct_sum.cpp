@@ -1,0 +1,131 @@
+/// Sums over all pairs: charges in rows, by the kernels in use or one after the other.
+#include <hedgerow/nbody/direct_sum.h>
+
+#include <cmath>
+#include <string>
+
+#include <hedgerow/base/bare_vector.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/nbody/kernels.h>
+#include <hedgerow/structures/references.h>
+
+namespace hedgerow {
+namespace {
+
+/// Numbers in rows, whose last ones are padding.
+template <class T>
+class Rows {
+public:
+    Rows(std::size_t rows, std::size_t count)
+        : stride_((count + 2 * row_padding - 1) / row_padding * row_padding),
+          numbers_(rows * stride_, T(0)) {}
+    T* operator[](std::size_t row) { return numbers_.data() + row * stride_; }
+    const T* operator[](std::size_t row) const { return numbers_.data() + row * stride_; }
+
+private:
+    std::size_t stride_;
+    std::vector<T> numbers_;
+};
+
+/// Throws InputError for a number that is not finite or too large.
+template <class T>
+T sound(T x, const char* what, std::size_t i) {
+    if (std::abs(x) <= T(largest_coordinate<T>)) return x;
+    throw InputError(std::string(what) + " " + std::to_string(i) + " is " + std::to_string(x) +
+                     ": numbers are finite, and at most 2^" +
+                     std::to_string(std::ilogb(largest_coordinate<T>)));
+}
+/// The power of two that brings a number to between 1/2 and 1.
+template <class T>
+T to_unit(T largest) {
+    constexpr int most = std::numeric_limits<T>::max_exponent - 2;
+    return largest > 0 ? std::ldexp(T(1), std::clamp(-std::ilogb(largest) - 1, -most, most)) : T(1);
+}
+
+/// What `DirectKernel` does, one pair after the other.
+template <class T>
+void direct(const ChargeRows<T>& sources, const TargetRows<T>& targets) {
+    for (std::size_t t = 0; t < targets.count; ++t)
+        for (std::size_t s = 0; s < sources.count; ++s) {
+            const Vec<T, 3> apart(targets.x[t] - sources.x[s], targets.y[t] - sources.y[s],
+                                  targets.z[t] - sources.z[s]);
+            if (!(length2(apart) >= coincident2<T>)) continue;
+            const PotentialAt<T> one = p2p(sources.charge[s], apart);
+            targets.potential[t] += static_cast<double>(one.potential);
+            targets.gx[t] += static_cast<double>(one.gradient[0]);
+            targets.gy[t] += static_cast<double>(one.gradient[1]);
+            targets.gz[t] += static_cast<double>(one.gradient[2]);
+        }
+}
+template <class T>
+DirectKernel<T> direct_kernel() {
+    const NbodyKernels* const kernels = nbody_kernels();
+    if (kernels == nullptr) return direct<T>;
+    if constexpr (std::same_as<T, float>)
+        return kernels->direct_float;
+    else
+        return kernels->direct_double;
+}
+
+}  // namespace
+
+template <std::floating_point T>
+void direct_sum(const Charges<T>& sources, const Strided<Vec<T, 3>>& targets, std::span<PotentialAt<T>> found,
+                Threads threads) {
+    const std::size_t n = sources.places.size();
+    if (sources.charges.size() != n)
+        throw InputError(std::to_string(sources.charges.size()) + " charges for " + std::to_string(n) +
+                         " places: give one each");
+    if (found.size() != targets.size())
+        throw InputError("room for " + std::to_string(found.size()) + " answers to " +
+                         std::to_string(targets.size()) + " targets: give one each");
+    // Find the powers of two that bring coordinates and charges to about 1.
+    T largest = 0, most = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (int k = 0; k < 3; ++k)
+            largest = std::max(largest, std::abs(sound(sources.places[i][k], "a coordinate of source", i)));
+        most = std::max(most, std::abs(sound(sources.charges[i], "the charge of source", i)));
+    }
+    for (std::size_t i = 0; i < targets.size(); ++i)
+        for (int k = 0; k < 3; ++k)
+            largest = std::max(largest, std::abs(sound(targets[i][k], "a coordinate of target", i)));
+    const T scale = to_unit(largest), of_charge = to_unit(most);
+    // Copy sources and targets to rows. Multiples by powers of two are exact.
+    Rows<T> source(4, n), target(3, targets.size());
+    Rows<double> sums(4, targets.size());
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vec<T, 3> p = sources.places[i] * scale;
+        source[0][i] = p[0], source[1][i] = p[1], source[2][i] = p[2];
+        source[3][i] = sources.charges[i] * of_charge;
+    }
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const Vec<T, 3> p = targets[i] * scale;
+        target[0][i] = p[0], target[1][i] = p[1], target[2][i] = p[2];
+    }
+    const ChargeRows<T> rows{source[0], source[1], source[2], source[3], n};
+    const auto kernel = in_ieee_mode([&] { return direct_kernel<T>(); });
+    constexpr std::size_t piece = 64;
+    Executor& executor = threads.over(targets.size() > 1 ? n * targets.size() / 64 : 0);
+    executor.expect(targets.size());
+    executor.for_each_piece(targets.size(), piece, [&](std::size_t begin, std::size_t end) {
+        in_ieee_mode([&] {
+            kernel(rows, {target[0] + begin, target[1] + begin, target[2] + begin, end - begin,
+                          sums[0] + begin, sums[1] + begin, sums[2] + begin, sums[3] + begin});
+        });
+        // Scale the sums back: a potential by charge and length, a gradient by another length.
+        const double of_potential = static_cast<double>(scale) / static_cast<double>(of_charge),
+                     of_gradient = of_potential * static_cast<double>(scale);
+        for (std::size_t i = begin; i < end; ++i)
+            found[i] = {static_cast<T>(sums[0][i] * of_potential),
+                        {static_cast<T>(sums[1][i] * of_gradient), static_cast<T>(sums[2][i] * of_gradient),
+                         static_cast<T>(sums[3][i] * of_gradient)}};
+        executor.advance(end - begin);
+    });
+}
+
+template void direct_sum(const Charges<float>&, const Strided<Vec3f>&, std::span<PotentialAt<float>>,
+                         Threads);
+template void direct_sum(const Charges<double>&, const Strided<Vec3d>&, std::span<PotentialAt<double>>,
+                         Threads);
+
+}  // namespace hedgerow

@@ -1,0 +1,40 @@
+/// The kernels of forces, compiled for each instruction set: Highway's foreach_target includes this file once
+/// for each.
+#include <hedgerow/nbody/kernels.h>
+
+#if HEDGEROW_HAS_HIGHWAY
+#include "core/targets.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nbody/kernels.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#if HWY_TARGET != HWY_SCALAR
+#include "direct-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+inline constexpr NbodyKernels nbody_kernels{direct<float>, direct<double>};
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#if HWY_ONCE
+#include "core/kernel_tables.h"
+
+const hedgerow::NbodyKernels* hedgerow::nbody_kernels() {
+    static constexpr KernelTables<NbodyKernels> tables = HEDGEROW_KERNEL_TABLES(nbody_kernels);
+    return in_use(tables);
+}
+#endif
+
+#else
+
+const hedgerow::NbodyKernels* hedgerow::nbody_kernels() {
+    return nullptr;
+}
+
+#endif

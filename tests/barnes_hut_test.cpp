@@ -1,0 +1,103 @@
+/// The method of Barnes and Hut over every structure, in space and in the plane, against direct sums.
+#include <gtest/gtest.h>
+
+#include <hedgerow/nbody/barnes_hut.h>
+#include <hedgerow/scenes/random.h>
+#include <hedgerow/scenes/sets.h>
+
+#include "every_structure.h"
+
+using namespace hedgerow;
+
+namespace {
+
+std::vector<double> some_charges(std::size_t count, bool neutral) {
+    std::vector<double> charges;
+    for (std::uint64_t i = 0; i < count; ++i)
+        charges.push_back((neutral && i % 2 == 1 ? -1 : 1) * (0.5 + Random(9, i).uniform()));
+    return charges;
+}
+template <class Kernel, class Cloud, int D = Cloud::dimension>
+PotentialAt<double, D> direct(const Cloud& cloud, const std::vector<double>& charges, std::size_t target) {
+    PotentialAt<double, D> sum;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const Vec<double, D> apart = Vec<double, D>(cloud.points[target]) - Vec<double, D>(cloud.points[i]);
+        if (i == target) continue;
+        const auto [potential, slope] = Kernel()(length2(apart));
+        sum.potential += charges[i] * potential;
+        sum.gradient = sum.gradient + apart * (charges[i] * slope);
+    }
+    return sum;
+}
+
+/// The rms error of gradients at some points, relative to their rms.
+template <class Kernel, class Index, class Cloud>
+double error_of(const Index& index, const Cloud& cloud, const std::vector<double>& charges, double angle,
+                Visits& visits) {
+    const BarnesHut<Index, Kernel> method(index, charges, angle);
+    double error2 = 0, size2 = 0;
+    for (std::size_t i = 0; i < cloud.size(); i += 20) {
+        const auto want = direct<Kernel>(cloud, charges, i), found = method(cloud.points[i], visits);
+        error2 += length2(found.gradient - want.gradient), size2 += length2(want.gradient);
+    }
+    return std::sqrt(error2 / size2);
+}
+
+template <class Kernel, class Cloud>
+void expect_near_direct_sums(const Cloud& cloud) {
+    const auto charges = some_charges(cloud.size(), false);
+    int summed = 0;
+    for_each_index(cloud, [&](const char* name, const auto& index) {
+        SCOPED_TRACE(name);
+        if (!index.structure().exclusive()) {
+            EXPECT_THROW((BarnesHut<std::decay_t<decltype(index)>, Kernel>(index, charges)), InputError);
+            return;
+        }
+        ++summed;
+        Visits exact, coarse;
+        EXPECT_LT(error_of<Kernel>(index, cloud, charges, 0, exact), 1e-13);
+        EXPECT_LT(error_of<Kernel>(index, cloud, charges, 0.3, coarse), 0.02);
+        EXPECT_LE(coarse.primitives, exact.primitives);
+    });
+    EXPECT_GE(summed, 7);
+}
+TEST(BarnesHut, InSpace) {
+    expect_near_direct_sums<InverseDistance>(points<double>(1500));
+}
+TEST(BarnesHut, InThePlane) {
+    expect_near_direct_sums<MinusLogarithm>(points2d<double>(1500));
+}
+
+TEST(BarnesHut, NearsTheDirectSumAsTheAngleShrinks) {
+    const auto cloud = points<float>(3000);
+    const auto index = build<PointOrthtree>(cloud);
+    for (const bool neutral : {false, true}) {
+        const auto charges = some_charges(cloud.size(), neutral);
+        Visits visits[3];
+        const double errors[] = {error_of<InverseDistance>(index, cloud, charges, 1, visits[0]),
+                                 error_of<InverseDistance>(index, cloud, charges, 0.5, visits[1]),
+                                 error_of<InverseDistance>(index, cloud, charges, 0.25, visits[2])};
+        EXPECT_LT(errors[0], neutral ? 0.5 : 0.05);
+        EXPECT_LT(errors[1], 0.6 * errors[0]);
+        EXPECT_LT(errors[2], 0.6 * errors[1]);
+        EXPECT_LT(visits[0].primitives, visits[1].primitives);
+        EXPECT_LT(visits[1].primitives, visits[2].primitives);
+        EXPECT_LT(visits[0].primitives, 150 * cloud.size() / 5);
+    }
+}
+TEST(BarnesHut, OfFewOrCoincidentPoints) {
+    const PointCloud<double, 3> none;
+    const auto empty = build<PointOrthtree>(none);
+    EXPECT_EQ((BarnesHut<decltype(build<PointOrthtree>(none))>(empty, {})({1, 2, 3}).potential), 0);
+    PointCloud<double, 3> cloud;
+    cloud.points.assign(50, {1, 2, 3});
+    const auto index = build<PointOrthtree>(cloud);
+    const std::vector<double> charges(50, 2);
+    const BarnesHut method(index, charges);
+    EXPECT_EQ(method({1, 2, 3}).potential, 0);
+    EXPECT_EQ(method({1, 2, 5}).potential, 50);
+    EXPECT_EQ(method({1, 2, 5}).gradient, Vec3d(0, 0, -25));
+    EXPECT_THROW((BarnesHut(index, std::span(charges).first(49))), InputError);
+}
+
+}  // namespace
