@@ -9,7 +9,7 @@
 #include <hedgerow/index.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
-#include <hedgerow/nbody/direct_sum.h>
+#include <hedgerow/nbody/forces.h>
 #include <hedgerow/scenes/sets.h>
 #include <hedgerow/structures/orthtree/orthtree.h>
 #include <hedgerow/structures/orthtree/point_orthtree.h>
@@ -79,6 +79,21 @@ int main(int argc, char** argv) {
     add_direct_sums(sums, "float", few, targets);
     add_direct_sums(sums, "double", few_doubles, targets);
     print(sums, sources * targets, "pair");
+
+    std::printf("forces: %zu charges of the unit cube\n", count);
+    Contest methods;
+    const std::vector<double> charges(count, 1.0);
+    std::vector<PotentialAt<double>> found(count);
+    for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
+        char name[32];
+        std::snprintf(name, sizeof name, "accuracy %.0e", accuracy);
+        methods.add(name, [&, accuracy] {
+            use_instruction_set(instruction_sets().front());
+            forces<double>({doubles.points, charges}, found, {.accuracy = accuracy}, serial_executor());
+            return static_cast<std::size_t>(found[0].potential);
+        });
+    }
+    print(methods, count, "charge");
 
     std::printf("builds: %zu points of the unit cube\n", count);
     Contest trees;

@@ -1,13 +1,11 @@
 /// Sums over all pairs: charges in rows, by the kernels in use or one after the other.
 #include <hedgerow/nbody/direct_sum.h>
 
-#include <cmath>
-#include <string>
+#include <vector>
 
-#include <hedgerow/base/bare_vector.h>
-#include <hedgerow/base/error.h>
 #include <hedgerow/nbody/kernels.h>
-#include <hedgerow/structures/references.h>
+
+#include "rows.h"
 
 namespace hedgerow {
 namespace {
@@ -26,21 +24,6 @@ private:
     std::size_t stride_;
     std::vector<T> numbers_;
 };
-
-/// Throws InputError for a number that is not finite or too large.
-template <class T>
-T sound(T x, const char* what, std::size_t i) {
-    if (std::abs(x) <= T(largest_coordinate<T>)) return x;
-    throw InputError(std::string(what) + " " + std::to_string(i) + " is " + std::to_string(x) +
-                     ": numbers are finite, and at most 2^" +
-                     std::to_string(std::ilogb(largest_coordinate<T>)));
-}
-/// The power of two that brings a number to between 1/2 and 1.
-template <class T>
-T to_unit(T largest) {
-    constexpr int most = std::numeric_limits<T>::max_exponent - 2;
-    return largest > 0 ? std::ldexp(T(1), std::clamp(-std::ilogb(largest) - 1, -most, most)) : T(1);
-}
 
 /// What `DirectKernel` does, one pair after the other.
 template <class T>
@@ -73,23 +56,11 @@ template <std::floating_point T>
 void direct_sum(const Charges<T>& sources, const Strided<Vec<T, 3>>& targets, std::span<PotentialAt<T>> found,
                 Threads threads) {
     const std::size_t n = sources.places.size();
-    if (sources.charges.size() != n)
-        throw InputError(std::to_string(sources.charges.size()) + " charges for " + std::to_string(n) +
-                         " places: give one each");
-    if (found.size() != targets.size())
-        throw InputError("room for " + std::to_string(found.size()) + " answers to " +
-                         std::to_string(targets.size()) + " targets: give one each");
-    // Find the powers of two that bring coordinates and charges to about 1.
-    T largest = 0, most = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        for (int k = 0; k < 3; ++k)
-            largest = std::max(largest, std::abs(sound(sources.places[i][k], "a coordinate of source", i)));
-        most = std::max(most, std::abs(sound(sources.charges[i], "the charge of source", i)));
-    }
-    for (std::size_t i = 0; i < targets.size(); ++i)
-        for (int k = 0; k < 3; ++k)
-            largest = std::max(largest, std::abs(sound(targets[i][k], "a coordinate of target", i)));
-    const T scale = to_unit(largest), of_charge = to_unit(most);
+    detail::expect_room(found.size(), targets.size());
+    // Powers of two bring coordinates and charges to about 1.
+    detail::Extremes<T> extremes(sources);
+    for (std::size_t i = 0; i < targets.size(); ++i) extremes.expand(targets[i], "a coordinate of target", i);
+    const T scale = detail::to_unit(extremes.coordinate), of_charge = detail::to_unit(extremes.charge);
     // Copy sources and targets to rows. Multiples by powers of two are exact.
     Rows<T> source(4, n), target(3, targets.size());
     Rows<double> sums(4, targets.size());

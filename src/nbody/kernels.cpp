@@ -16,7 +16,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-inline constexpr NbodyKernels nbody_kernels{direct<float>, direct<double>};
+extern const FmmFloatKernels fmm_float_kernels;    // in fmm_float_kernels.cpp
+extern const FmmDoubleKernels fmm_double_kernels;  // in fmm_double_kernels.cpp
+
+inline constexpr NbodyKernels nbody_kernels{direct<float>, direct<double>, &fmm_float_kernels,
+                                            &fmm_double_kernels};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

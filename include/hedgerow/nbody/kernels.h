@@ -1,7 +1,10 @@
 /// Kernels of forces between particles, with the processor's vectors (src/nbody/), chosen at run time.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include <hedgerow/base/instruction_set.h>
 
@@ -33,10 +36,38 @@ using DirectKernel = void (*)(const ChargeRows<T>&, const TargetRows<T>&);
 template <class T>
 inline constexpr T coincident2 = sizeof(T) == 4 ? T(0x1p-80) : T(0x1p-640);
 
-/// The kernels of one instruction set.
+template <class T>
+struct FmmCells;
+/// A target's walk that any thread may go on with: the cells that are undecided against it, and its local
+/// expansion.
+template <class T>
+struct FmmTask {
+    std::uint32_t cell;
+    std::vector<std::uint32_t> undecided;
+    std::vector<T> local;
+};
+/// The fast multipole method of one order (src/nbody/fmm-inl.h).
+template <class T>
+struct FmmKernel {
+    int order;
+    std::size_t multipole_stride;
+    /// Computes centers, radii and multipoles of cells `first` to `end`, once those of their children are
+    /// there.
+    void (*upward)(FmmCells<T>&, std::uint32_t first, std::uint32_t end);
+    /// Walks down to cells of at most `most` charges, and appends a task for each.
+    void (*walk_above)(FmmCells<T>&, std::uint32_t most, std::vector<FmmTask<T>>& tasks);
+    /// Finishes a task: finds potentials and gradients of all charges of its cell.
+    void (*walk_below)(FmmCells<T>&, const FmmTask<T>&);
+};
+using FmmFloatKernels = std::array<FmmKernel<float>, 3>;
+using FmmDoubleKernels = std::array<FmmKernel<double>, 2>;
+
+/// The kernels of one instruction set. Orders ascend.
 struct NbodyKernels {
     DirectKernel<float> direct_float;
     DirectKernel<double> direct_double;
+    const FmmFloatKernels* fmm_float;
+    const FmmDoubleKernels* fmm_double;
 };
 /// The kernels in use, or nullptr where plain code answers.
 const NbodyKernels* nbody_kernels();

@@ -1,0 +1,32 @@
+/// Forces between all charges or masses, within an error that the caller states.
+#pragma once
+
+#include <span>
+
+#include <hedgerow/nbody/direct_sum.h>
+
+namespace hedgerow {
+
+struct ForceOptions {
+    /// The error that is aimed at: the root of the mean square of |error of a gradient| / |gradient|, where
+    /// the second is at least a hundredth of Σ |q|/r². From 1e-7 to 0.1.
+    double accuracy = 1e-3;
+};
+
+/// Writes the potential Σ q/r and its gradient at each charge, of all others, in the order of the charges.
+/// Where charges are masses, the acceleration is G times the gradient.
+///
+/// By the fast multipole method (nbody/operators.h) over an octree of the charges: its order, its precision
+/// and which cells act as a whole follow from the accuracy, by estimates of the errors. Forces add up to
+/// nothing but for roundings: 10⁻⁶ of the sum of their sizes where single precision suffices for the
+/// accuracy, else 10⁻¹³. Charges in one place do nothing to each other. O(n); the same bits for any executor.
+///
+/// Throws InputError if there is not one charge and one element of `found` a place, for numbers that are not
+/// finite or beyond 2⁶⁰ (in double 2⁴⁸⁰), and for an accuracy out of its range.
+///
+/// In the library `nbody`; T is float or double.
+template <std::floating_point T>
+void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options = {},
+            Threads threads = {});
+
+}  // namespace hedgerow

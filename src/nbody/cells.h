@@ -1,0 +1,39 @@
+/// The cells of an octree of charges in rows, as the kernels of the fast multipole method read them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <hedgerow/base/bare_vector.h>
+#include <hedgerow/nbody/kernels.h>
+#include <hedgerow/parallel/executor.h>
+#include <hedgerow/structures/orthtree/point_orthtree.h>
+
+namespace hedgerow {
+
+/// Cells are numbered by level, from the root, and the children of a cell lie side by side. Charges are in
+/// the order of the leaves. Expansions are about the center of charge (by |q|), in units of the cell's
+/// `scale`, a power of two near its radius. Rows have `row_padding` numbers more than there are cells or
+/// charges, so that vectors may be read beyond the last ones.
+template <class T>
+struct FmmCells {
+    // Of each charge: its place, its offset from its leaf's center, and its charge.
+    BareVector<double> x, y, z;
+    BareVector<T> dx, dy, dz, charge;
+    // Of each cell: its charges, its children (none: a leaf), ...
+    std::vector<std::uint32_t> first, count, child, children;
+    // ... its center, the radius around its charges, the effective radius of its multipole, Σ |q|, the unit
+    // of its expansions, and the error that a conversion may make in it.
+    std::vector<double> cx, cy, cz;
+    std::vector<T> radius, reach, weight, scale, tolerance;
+    std::vector<std::uint32_t> levels;  ///< the first cell of each level, and the number of cells
+    BareVector<T> multipoles;           ///< packed numbers of each cell, `multipole_stride` apart
+    std::size_t multipole_stride = 0;
+    // What is found, by charge.
+    BareVector<T> potential, gx, gy, gz;
+
+    std::size_t size() const { return first.size(); }
+    bool is_leaf(std::uint32_t c) const { return children[c] == 0; }
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,23 @@
+/// The fast multipole method in float, compiled for each instruction set: Highway's foreach_target includes
+/// this file once for each. The tables of kernels.cpp point to it.
+#if HEDGEROW_HAS_HIGHWAY
+#include "core/targets.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nbody/fmm_float_kernels.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#if HWY_TARGET != HWY_SCALAR
+#include "fmm_table-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+extern const FmmFloatKernels fmm_float_kernels;  // for kernels.cpp
+const FmmFloatKernels fmm_float_kernels = fmm_table<float, 3, 4, 6>();
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+#endif

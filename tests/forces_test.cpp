@@ -1,0 +1,184 @@
+/// Forces within the error that is asked for, against direct sums: scenes of every kind, by every instruction
+/// set.
+#include <gtest/gtest.h>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/nbody/forces.h>
+#include <hedgerow/scenes/random.h>
+
+#include "using.h"
+
+using namespace hedgerow;
+
+namespace {
+
+struct Scene {
+    std::vector<Vec3d> places;
+    std::vector<double> charges;
+
+    void add(const Vec3d& p, double charge) { places.push_back(p), charges.push_back(charge); }
+    Charges<double> view() const { return {places, charges}; }
+};
+Scene cube(std::size_t n, bool neutral = false) {
+    Scene scene;
+    for (std::uint64_t i = 0; i < n; ++i) {
+        Random random(70, i);
+        scene.add(random.in_cube<3>(), (neutral && i % 2 == 1 ? -1 : 1) * (0.5 + random.uniform()));
+    }
+    return scene;
+}
+/// A Plummer sphere, cut off at some radius.
+Scene plummer(std::size_t n) {
+    Scene scene;
+    for (std::uint64_t i = 0; i < n; ++i) {
+        Random random(71, i);
+        const double radius = 1 / std::sqrt(std::pow(0.999 * random.uniform() + 1e-9, -2.0 / 3) - 1);
+        scene.add(Vec3d(random.direction<3>()) * radius, 1.0 / double(n));
+    }
+    return scene;
+}
+Scene lattice(int side) {
+    Scene scene;
+    for (int i = 0; i < side * side * side; ++i)
+        scene.add(Vec3d(i % side, i / side % side, i / side / side), 1);
+    return scene;
+}
+/// Two clusters, one 10^6 times as heavy and 10^6 times as small.
+Scene two_clusters(std::size_t n) {
+    Scene scene;
+    for (std::uint64_t i = 0; i < n; ++i) {
+        Random random(72, i);
+        const Vec3d p(random.direction<3>() * random.uniform());
+        if (i % 2 == 0)
+            scene.add(p * 1e-6, 1e6);
+        else
+            scene.add(p + Vec3d(5, 1, 2), 1);
+    }
+    return scene;
+}
+
+std::vector<PotentialAt<double>> forces_of(const Scene& scene, double accuracy, Threads threads = {}) {
+    std::vector<PotentialAt<double>> found(scene.places.size());
+    forces<double>(scene.view(), found, {.accuracy = accuracy}, threads);
+    return found;
+}
+/// The rms of the errors of gradients, each relative to itself or to a hundredth of Σ |q|/r².
+double error_of(const Scene& scene, const std::vector<PotentialAt<double>>& found) {
+    const std::size_t n = scene.places.size(), step = std::max<std::size_t>(1, n / 1000);
+    std::vector<Vec3d> targets;
+    for (std::size_t i = 0; i < n; i += step) targets.push_back(scene.places[i]);
+    std::vector<PotentialAt<double>> want(targets.size());
+    direct_sum<double>(scene.view(), targets, want);
+    double error2 = 0;
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+        double size = 0;
+        for (std::size_t j = 0; j < n; ++j)
+            if (const double d2 = length2(scene.places[j] - targets[k]); d2 > 0)
+                size += std::abs(scene.charges[j]) / d2;
+        const double of = std::max(length(want[k].gradient), 0.01 * size);
+        error2 += length2(found[k * step].gradient - want[k].gradient) / (of * of);
+    }
+    return std::sqrt(error2 / double(targets.size()));
+}
+/// What all forces add up to, relative to the sum of their sizes.
+double imbalance(const Scene& scene, const std::vector<PotentialAt<double>>& found) {
+    Vec3d sum;
+    double size = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        sum = sum + found[i].gradient * scene.charges[i];
+        size += length(found[i].gradient) * std::abs(scene.charges[i]);
+    }
+    return length(sum) / size;
+}
+
+TEST(Forces, KeepTheirAccuracy) {
+    const std::pair<const char*, Scene> scenes[] = {{"cube", cube(20000)},
+                                                    {"neutral", cube(20000, true)},
+                                                    {"plummer", plummer(20000)},
+                                                    {"lattice", lattice(25)},
+                                                    {"two clusters", two_clusters(20000)}};
+    for (const auto& [name, scene] : scenes)
+        for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
+            SCOPED_TRACE(std::string(name) + " " + std::to_string(accuracy * 1e7) + "e-7");
+            const auto found = forces_of(scene, accuracy);
+            const double error = error_of(scene, found);
+            EXPECT_LE(error, accuracy);
+            if (std::getenv("HEDGEROW_LONG") != nullptr)
+                std::printf("%-14s %.0e: %.1e\n", name, accuracy, error);
+            EXPECT_LE(imbalance(scene, found), accuracy >= 1e-5 ? 1e-6 : 1e-13);
+        }
+}
+TEST(Forces, OfEveryInstructionSet) {
+    const Scene scene = plummer(5000);
+    for (const auto set : instruction_sets()) {
+        SCOPED_TRACE(set);
+        const Using use(set);
+        for (const double accuracy : {1e-2, 1e-3, 1e-5, 1e-7})
+            EXPECT_LE(error_of(scene, forces_of(scene, accuracy)), accuracy) << accuracy;
+    }
+}
+TEST(Forces, AreTheSameForAnyNumberOfThreads) {
+    const Scene scene = plummer(30000);
+    for (const double accuracy : {1e-3, 1e-6}) {
+        const auto serial = forces_of(scene, accuracy, serial_executor()),
+                   parallel = forces_of(scene, accuracy, default_executor());
+        for (std::size_t i = 0; i < serial.size(); ++i) {
+            ASSERT_EQ(serial[i].potential, parallel[i].potential);
+            ASSERT_EQ(serial[i].gradient, parallel[i].gradient);
+        }
+    }
+}
+TEST(Forces, OfFewOrCoincidentCharges) {
+    EXPECT_TRUE(forces_of(Scene(), 1e-3).empty());
+    Scene scene;
+    scene.add({1, 2, 3}, 5);
+    EXPECT_EQ(forces_of(scene, 1e-3)[0].potential, 0);
+    scene.add({1, 2, 5}, 3);
+    EXPECT_NEAR(forces_of(scene, 1e-3)[0].potential, 1.5, 1e-6);
+    EXPECT_NEAR(forces_of(scene, 1e-3)[1].gradient[2], -1.25, 1e-6);
+    scene = Scene();
+    for (int i = 0; i < 1000000; ++i) scene.add({0.1, 0.2, 0.3}, 1);
+    EXPECT_EQ(forces_of(scene, 1e-3)[7].potential, 0);
+    // On a line, and charges of nothing.
+    scene = Scene();
+    for (int i = 0; i < 5000; ++i) scene.add(Vec3d(1, 2, 3) * std::sqrt(i), i % 3 == 0 ? 0 : 1);
+    EXPECT_LE(error_of(scene, forces_of(scene, 1e-4)), 1e-4);
+    for (auto& charge : scene.charges) charge = 0;
+    for (const auto& at : forces_of(scene, 1e-4)) EXPECT_EQ(at.gradient, Vec3d());
+}
+TEST(Forces, OfFloatsOfAnyScale) {
+    const Scene scene = cube(3000);
+    for (const int exponent : {-20, 0, 20}) {
+        Scene scaled = scene;
+        std::vector<Vec3f> places;
+        std::vector<float> charges;
+        for (std::size_t i = 0; i < scene.places.size(); ++i) {
+            places.emplace_back(scene.places[i] * std::ldexp(1.0, exponent));
+            charges.push_back(static_cast<float>(std::ldexp(scene.charges[i], exponent)));
+            scaled.places[i] = Vec3d(places[i]), scaled.charges[i] = static_cast<double>(charges[i]);
+        }
+        std::vector<PotentialAt<float>> found(places.size());
+        forces<float>({places, charges}, found, {.accuracy = 1e-4});
+        std::vector<PotentialAt<double>> in_double;
+        for (const auto& at : found)
+            in_double.push_back({static_cast<double>(at.potential), Vec3d(at.gradient)});
+        EXPECT_LE(error_of(scaled, in_double), 1e-4) << exponent;
+    }
+}
+TEST(Forces, RefuseBadInput) {
+    Scene scene = cube(100);
+    EXPECT_THROW(forces_of(scene, 0), InputError);
+    EXPECT_THROW(forces_of(scene, 1), InputError);
+    EXPECT_THROW(forces_of(scene, std::nan("")), InputError);
+    scene.places[31][2] = std::nan("");
+    try {
+        forces_of(scene, 1e-3);
+        ADD_FAILURE();
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("source 31 is nan"), std::string::npos) << e.what();
+    }
+    std::vector<PotentialAt<double>> found(99);
+    EXPECT_THROW(forces<double>(cube(100).view(), found), InputError);
+}
+
+}  // namespace
