@@ -1,5 +1,5 @@
-/// Forces between particles on one thread: pairs by direct sums of every instruction set, and octrees of
-/// points.
+/// Forces between particles on one thread: pairs by direct sums of every instruction set, forces of a stated
+/// accuracy, and octrees of points.
 ///
 ///   nbody_benchmark [COUNT]      particles; default 1,000,000
 #include <cstdio>

@@ -105,6 +105,8 @@ TEST(PlainFmm, RefusesPointsInSeveralCells) {
 }
 TEST(PlainFmm, OfFewOrCoincidentPoints) {
     EXPECT_TRUE(PlainFmm<3>()(build<PointOrthtree>(PointCloud<double, 3>()), {}).empty());
+    EXPECT_THROW(PlainFmm<3>()(build<PointOrthtree>(points<double>(20)), some_charges(19, false)),
+                 InputError);
     PointCloud<double, 3> cloud{{{1, 2, 3}}};
     EXPECT_EQ(PlainFmm<3>()(build<PointOrthtree>(cloud), std::vector{2.0})[0].potential, 0);
     cloud.points.assign(50, {1, 2, 3});

@@ -6,8 +6,6 @@
 
 #include <hedgerow/base/bare_vector.h>
 #include <hedgerow/nbody/kernels.h>
-#include <hedgerow/parallel/executor.h>
-#include <hedgerow/structures/orthtree/point_orthtree.h>
 
 namespace hedgerow {
 
@@ -33,7 +31,7 @@ struct FmmCells {
     BareVector<T> potential, gx, gy, gz;
 
     std::size_t size() const { return first.size(); }
-    bool is_leaf(std::uint32_t c) const { return children[c] == 0; }
+    bool is_leaf(std::size_t c) const { return children[c] == 0; }
 };
 
 }  // namespace hedgerow

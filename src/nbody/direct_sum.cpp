@@ -74,7 +74,7 @@ void direct_sum(const Charges<T>& sources, const Strided<Vec<T, 3>>& targets, st
         target[0][i] = p[0], target[1][i] = p[1], target[2][i] = p[2];
     }
     const ChargeRows<T> rows{source[0], source[1], source[2], source[3], n};
-    const auto kernel = in_ieee_mode([&] { return direct_kernel<T>(); });
+    const DirectKernel<T> kernel = direct_kernel<T>();
     constexpr std::size_t piece = 64;
     Executor& executor = threads.over(targets.size() > 1 ? n * targets.size() / 64 : 0);
     executor.expect(targets.size());

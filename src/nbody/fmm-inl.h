@@ -12,6 +12,11 @@
 #define HEDGEROW_NBODY_FMM_INL_H
 #endif
 
+#include <algorithm>
+#include <cmath>
+
+#include <hedgerow/geometry/box.h>
+
 #include "cells.h"
 #include "direct-inl.h"
 #include "shifts-inl.h"
@@ -21,7 +26,8 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The sum of n − m)!(n + m)! |M(n, m)|² over all m: the square of the power of a degree.
+// What |M(n, m)|² is multiplied by in the power of a degree, the root of the sum of (n − m)!(n + m)!·|M(n,
+// m)|² over all m.
 template <class T>
 constexpr T power_weight(int n, int m) {
     return static_cast<T>(factorial(n - m) * factorial(n + m) * (m == 0 ? 1 : 2));
@@ -33,6 +39,8 @@ public:
     static constexpr int q = p + 1, of_multipole = packed_count(p), of_local = packed_count(q);
     static constexpr std::size_t stride = (of_multipole + 3) / 4 * 4;
     static constexpr std::uint32_t most_children = 8;
+    // The sum of two radii over the distance of the centers stays below this: no estimate holds near 1.
+    static constexpr double opening_angle = 0.8;
     using F = hn::ScalableTag<T>;
     using V = hn::Vec<F>;
     using Eight = hn::CappedTag<T, most_children>;
@@ -65,8 +73,7 @@ public:
 
     // ---- Down
 
-    // A cell's walk that another thread may go on with: what is undecided against it, and its local
-    // expansion.
+    // The cells that act on a target as a whole, and those that are undecided against it.
     struct Lists {
         std::vector<std::uint32_t> far, undecided;
     };
@@ -229,7 +236,8 @@ private:
                                  HWY_ATTR { return hn::LoadU(f, all.data() + first + i); };
             const auto own = [&](const std::vector<T>& all) HWY_ATTR { return hn::Set(f, all[c]); };
             const W radii = row(cells_.radius), radius = own(cells_.radius);
-            const auto apart = hn::Lt(hn::Add(radii, radius), hn::Mul(hn::Set(f, T(0.8)), distance));
+            const auto apart =
+                hn::Lt(hn::Add(radii, radius), hn::Mul(hn::Set(f, T(opening_angle)), distance));
             const auto there =
                 hn::Lt(error(f, distance, own(cells_.weight), own(cells_.reach), radius, radii),
                        row(cells_.tolerance));
@@ -383,9 +391,8 @@ private:
         }
         for (std::size_t i = at; i < at + row_padding; ++i) x_[i] = y_[i] = z_[i] = charge_[i] = 0;
         const std::size_t first = cells_.first[c], count = cells_.count[c];
-        if (sums_.size() < 4 * (count + row_padding)) sums_.resize(8 * (count + row_padding));
-        const std::size_t row = sums_.size() / 4;
-        std::fill(sums_.begin(), sums_.end(), 0.0);
+        const std::size_t row = count + row_padding;
+        sums_.assign(4 * row, 0.0);
         double *const potential = sums_.data(), *const gx = potential + row, *const gy = gx + row,
                       *const gz = gy + row;
         direct<T>({x_.data(), y_.data(), z_.data(), charge_.data(), sources},

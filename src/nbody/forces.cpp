@@ -1,13 +1,16 @@
 /// Forces within a stated error: the plan, the cells, and the steps of the fast multipole method over them.
 #include <hedgerow/nbody/forces.h>
 
-#include <array>
+#include <algorithm>
+#include <cstdio>
+#include <string>
 #include <vector>
 
 #include <hedgerow/index.h>
 #include <hedgerow/nbody/kernels.h>
 #include <hedgerow/nbody/plain_fmm.h>
 #include <hedgerow/primitives/point_cloud.h>
+#include <hedgerow/structures/orthtree/point_orthtree.h>
 
 #include "cells.h"
 #include "rows.h"
@@ -15,9 +18,10 @@
 namespace hedgerow {
 namespace {
 
-/// How an accuracy is reached: the order of multipoles, whether expansions and pairs are in float, and what
-/// the rms error of the gradients is to the bound that each conversion keeps (measured on cubes and Plummer
-/// spheres). Leaves are as long as makes pairs and conversions take about as long.
+/// How an accuracy is reached: the order of multipoles, whether expansions and pairs are in float, and at
+/// most what the rms error of the gradients is to the bound that each conversion keeps. That was measured: it
+/// is largest for Plummer spheres, whose outskirts are large and sparse cells, and several times less for a
+/// cube. Leaves are as long as makes pairs and conversions take about as long.
 struct Plan {
     double least_accuracy;
     int order;
@@ -36,7 +40,9 @@ const Plan& plan_for(double accuracy) {
     if (accuracy <= most_accuracy)
         for (const Plan& plan : plans)
             if (accuracy >= plan.least_accuracy) return plan;
-    throw InputError("an accuracy of " + std::to_string(accuracy) + " is not from 1e-7 to 0.1");
+    char given[32];
+    std::snprintf(given, sizeof given, "%g", accuracy);
+    throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-7 to 0.1");
 }
 
 /// Copies the cells of an octree to rows, numbered by level.
@@ -111,12 +117,12 @@ void set_tolerances(FmmCells<R>& cells, double share, Executor& executor) {
     executor.for_each_piece(cells.size(), 64, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> stack;
         for (std::size_t c = begin; c < end; ++c)
-            if (cells.is_leaf(static_cast<std::uint32_t>(c)))
+            if (cells.is_leaf(c))
                 cells.tolerance[c] =
                     static_cast<R>(share * strength_in(cells, static_cast<std::uint32_t>(c), stack));
     });
     for (std::size_t c = cells.size(); c-- > 0;)
-        if (!cells.is_leaf(static_cast<std::uint32_t>(c)))
+        if (!cells.is_leaf(c))
             cells.tolerance[c] =
                 *std::min_element(cells.tolerance.begin() + cells.child[c],
                                   cells.tolerance.begin() + cells.child[c] + cells.children[c]);
@@ -124,9 +130,9 @@ void set_tolerances(FmmCells<R>& cells, double share, Executor& executor) {
 
 template <class R, class T>
 void multipole_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const Plan& plan,
-                      double accuracy, const FmmKernel<R>& kernel, Executor& executor) {
+                      double accuracy, const FmmKernel<R>& kernel, const detail::Extremes<T>& extremes,
+                      Executor& executor) {
     const std::size_t n = charges.places.size();
-    const detail::Extremes<T> extremes(charges);
     const double scale = static_cast<double>(detail::to_unit(extremes.coordinate)),
                  of_charge = static_cast<double>(detail::to_unit(extremes.charge));
     // Sort the charges into cells.
@@ -195,7 +201,7 @@ void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const Fo
             Threads threads) {
     const Plan& plan = plan_for(options.accuracy);
     detail::expect_room(found.size(), charges.places.size());
-    static_cast<void>(detail::Extremes<T>(charges));  // throws for bad numbers
+    const detail::Extremes<T> extremes(charges);  // throws for bad numbers
     if (found.empty()) return;
     Executor& executor = threads.over(found.size());
     in_ieee_mode([&] {
@@ -205,10 +211,10 @@ void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const Fo
             plain_forces(charges, found, options.accuracy, ieee);
         else if (plan.in_float)
             multipole_forces(charges, found, plan, options.accuracy,
-                             of_order(*kernels->fmm_float, plan.order), ieee);
+                             of_order(*kernels->fmm_float, plan.order), extremes, ieee);
         else
             multipole_forces(charges, found, plan, options.accuracy,
-                             of_order(*kernels->fmm_double, plan.order), ieee);
+                             of_order(*kernels->fmm_double, plan.order), extremes, ieee);
     });
 }
 

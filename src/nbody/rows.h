@@ -34,9 +34,7 @@ struct Extremes {
 
     explicit Extremes(const Charges<T>& charges) {
         const std::size_t n = charges.places.size();
-        if (charges.charges.size() != n)
-            throw InputError(std::to_string(charges.charges.size()) + " charges for " + std::to_string(n) +
-                             " places: give one each");
+        expect_one_charge_each(charges.charges.size(), n);
         for (std::size_t i = 0; i < n; ++i) {
             expand(charges.places[i], "a coordinate of source", i);
             charge = std::max(charge, std::abs(sound_number(charges.charges[i], "the charge of source", i)));

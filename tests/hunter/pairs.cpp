@@ -40,6 +40,7 @@ public:
         look_at<BruteForce, BspTree>("BruteForce, BspTree");
         if constexpr (std::is_same_v<Shape, Vec<T, D>>) {
             look_at<PointKdTree, HashGrid>("PointKdTree, HashGrid");
+            look_at<HashGrid, PointKdTree>("HashGrid, PointKdTree");
             look_at<HashGrid, PointOrthtree>("HashGrid, PointOrthtree");
         }
         return std::move(report_);

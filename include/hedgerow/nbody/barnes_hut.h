@@ -39,9 +39,7 @@ public:
     BarnesHut(const Index& index, std::span<const double> charges, double opening_angle = 0.5,
               Kernel kernel = {})
         : index_(index), charges_(charges), opening_angle_(opening_angle), kernel_(kernel) {
-        if (charges.size() != index.primitives().size())
-            throw InputError(std::to_string(charges.size()) + " charges for " +
-                             std::to_string(index.primitives().size()) + " points: give one each");
+        detail::expect_one_charge_each(charges.size(), index.primitives().size());
         if (!index.structure().exclusive())
             throw InputError("charges would count several times: use a structure that holds each point once");
         if constexpr (detail::FoldableTree<std::remove_cvref_t<decltype(index.structure())>>)

@@ -22,7 +22,7 @@ struct ForceOptions {
 /// accuracy, else 10⁻¹³. Charges in one place do nothing to each other. O(n); the same bits for any executor.
 ///
 /// Throws InputError if there is not one charge and one element of `found` a place, for numbers that are not
-/// finite or beyond 2⁶⁰ (in double 2⁴⁸⁰), and for an accuracy out of its range.
+/// finite or beyond 2⁶⁰ (in double 2⁴⁸⁰), and UsageError for an accuracy out of its range.
 ///
 /// In the library `nbody`; T is float or double.
 template <std::floating_point T>

@@ -28,10 +28,11 @@ public:
     explicit PlainFmm(double opening_angle = 0.5) : opening_angle_(opening_angle) {}
 
     /// `charges` has one for each point of the index, of any sign. Points in one place do nothing to each
-    /// other. Throws InputError if the index holds a point in several leaves, as an Orthtree or a KdTree may
-    /// do.
+    /// other. Throws InputError for another number of charges, and if the index holds a point in several
+    /// leaves, as an Orthtree or a KdTree may do.
     template <class Index>
     std::vector<PotentialAt<double>> operator()(const Index& index, std::span<const double> charges) const {
+        detail::expect_one_charge_each(charges.size(), index.primitives().size());
         std::vector<PotentialAt<double>> found(charges.size());
         const auto hierarchy = hierarchy_of(index.structure(), index.primitives());
         std::vector<Cell> cells(hierarchy.node_count());

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
+#include <hedgerow/base/error.h>
 #include <hedgerow/geometry/vec.h>
 
 namespace hedgerow {
@@ -14,6 +16,15 @@ struct PotentialAt {
     T potential{};
     Vec<T, D> gradient{};
 };
+
+namespace detail {
+/// Throws InputError unless there is one charge for each point.
+inline void expect_one_charge_each(std::size_t charges, std::size_t points) {
+    if (charges != points)
+        throw InputError(std::to_string(charges) + " charges for " + std::to_string(points) +
+                         " places: give one each");
+}
+}  // namespace detail
 
 /// A kernel tells φ(r) and φ'(r)/r of a squared distance above 0: what a unit charge does, and by how much
 /// the offset from the charge is multiplied to give the gradient.
