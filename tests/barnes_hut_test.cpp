@@ -2,33 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <hedgerow/nbody/barnes_hut.h>
-#include <hedgerow/scenes/random.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "charges.h"
 #include "every_structure.h"
 
 using namespace hedgerow;
 
 namespace {
-
-std::vector<double> some_charges(std::size_t count, bool neutral) {
-    std::vector<double> charges;
-    for (std::uint64_t i = 0; i < count; ++i)
-        charges.push_back((neutral && i % 2 == 1 ? -1 : 1) * (0.5 + Random(9, i).uniform()));
-    return charges;
-}
-template <class Kernel, class Cloud, int D = Cloud::dimension>
-PotentialAt<double, D> direct(const Cloud& cloud, const std::vector<double>& charges, std::size_t target) {
-    PotentialAt<double, D> sum;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const Vec<double, D> apart = Vec<double, D>(cloud.points[target]) - Vec<double, D>(cloud.points[i]);
-        if (i == target) continue;
-        const auto [potential, slope] = Kernel()(length2(apart));
-        sum.potential += charges[i] * potential;
-        sum.gradient = sum.gradient + apart * (charges[i] * slope);
-    }
-    return sum;
-}
 
 /// The rms error of gradients at some points, relative to their rms.
 template <class Kernel, class Index, class Cloud>
@@ -37,7 +18,7 @@ double error_of(const Index& index, const Cloud& cloud, const std::vector<double
     const BarnesHut<Index, Kernel> method(index, charges, angle);
     double error2 = 0, size2 = 0;
     for (std::size_t i = 0; i < cloud.size(); i += 20) {
-        const auto want = direct<Kernel>(cloud, charges, i), found = method(cloud.points[i], visits);
+        const auto want = sum_of_pairs<Kernel>(cloud, charges, i), found = method(cloud.points[i], visits);
         error2 += length2(found.gradient - want.gradient), size2 += length2(want.gradient);
     }
     return std::sqrt(error2 / size2);

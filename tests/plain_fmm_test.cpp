@@ -1,12 +1,10 @@
 /// The fast multipole method over every structure, against sums over all pairs; passes over hierarchies.
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include <hedgerow/nbody/plain_fmm.h>
-#include <hedgerow/scenes/random.h>
 #include <hedgerow/scenes/sets.h>
 
+#include "charges.h"
 #include "every_structure.h"
 
 using namespace hedgerow;
@@ -15,13 +13,9 @@ namespace {
 
 template <class Cloud>
 std::vector<PotentialAt<double>> direct_sum(const Cloud& cloud, const std::vector<double>& charges) {
-    std::vector<PotentialAt<double>> found(cloud.size());
+    std::vector<PotentialAt<double>> found;
     for (std::size_t i = 0; i < cloud.size(); ++i)
-        for (std::size_t j = 0; j < cloud.size(); ++j) {
-            const auto one = p2p(charges[j], Vec3d(cloud.points[i]) - Vec3d(cloud.points[j]));
-            found[i].potential += one.potential;
-            found[i].gradient = found[i].gradient + one.gradient;
-        }
+        found.push_back(sum_of_pairs<InverseDistance>(cloud, charges, i));
     return found;
 }
 /// The rms of the errors of the gradients, relative to the rms of these.
@@ -31,13 +25,6 @@ double error_of(const std::vector<PotentialAt<double>>& found, const std::vector
         error2 += length2(found[i].gradient - want[i].gradient), size2 += length2(want[i].gradient);
     return std::sqrt(error2 / size2);
 }
-std::vector<double> some_charges(std::size_t count, bool neutral) {
-    std::vector<double> charges;
-    for (std::uint64_t i = 0; i < count; ++i)
-        charges.push_back((neutral && i % 2 == 1 ? -1 : 1) * (0.5 + Random(7, i).uniform()));
-    return charges;
-}
-
 TEST(PlainFmm, NearsTheDirectSumAsTheAngleShrinks) {
     const auto cloud = points<double>(1200);
     for (const bool neutral : {false, true}) {

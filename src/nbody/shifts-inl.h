@@ -61,18 +61,23 @@ HWY_INLINE void expand_points(F f, V charge, V x, V y, V z, V* sums) {
 constexpr int full(int n, int m) {
     return n * n + n + m;
 }
-template <int order, class F, class V>
-HWY_INLINE void unpack(F, const V* packed, V* real, V* imaginary, V zero) {
-    for (int n = 0; n <= order; ++n) {
-        real[full(n, 0)] = packed[re(n, 0)], imaginary[full(n, 0)] = zero;
-        for (int m = 1; m <= n; ++m) {
-            const V a = packed[re(n, m)], b = packed[im(n, m)];
-            real[full(n, m)] = a, imaginary[full(n, m)] = b;
-            real[full(n, -m)] = m % 2 == 0 ? a : hn::Neg(a);
-            imaginary[full(n, -m)] = m % 2 == 0 ? hn::Neg(b) : b;
+template <int order, class V>
+struct Unpacked {
+    V re[packed_count(order)], im[packed_count(order)];
+
+    template <class F>
+    HWY_INLINE Unpacked(F f, const V* packed) {
+        for (int n = 0; n <= order; ++n) {
+            re[full(n, 0)] = packed[HWY_NAMESPACE::re(n, 0)], im[full(n, 0)] = hn::Zero(f);
+            for (int m = 1; m <= n; ++m) {
+                const V a = packed[HWY_NAMESPACE::re(n, m)], b = packed[HWY_NAMESPACE::im(n, m)];
+                re[full(n, m)] = a, im[full(n, m)] = b;
+                re[full(n, -m)] = m % 2 == 0 ? a : hn::Neg(a);
+                im[full(n, -m)] = m % 2 == 0 ? hn::Neg(b) : b;
+            }
         }
     }
-}
+};
 template <int order, class F, class V>
 HWY_INLINE void regular_in_lanes(F f, V x, V y, V z, V* packed) {
     for_each_regular_in_lanes<order>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> r) HWY_ATTR {
@@ -84,11 +89,9 @@ HWY_INLINE void regular_in_lanes(F f, V x, V y, V z, V* packed) {
 // Shifts multipoles, whose centers are at the offsets: whole(n, m) = Σ part(k, l) · R(n − k, m − l).
 template <int p, class F, class V>
 HWY_NOINLINE void shift_multipoles(F f, const V* part, V x, V y, V z, V* whole) {
-    V shift[packed_count(p)], ar[packed_count(p)], ai[packed_count(p)], br[packed_count(p)],
-        bi[packed_count(p)];
+    V shift[packed_count(p)];
     regular_in_lanes<p>(f, x, y, z, shift);
-    unpack<p>(f, part, ar, ai, hn::Zero(f));
-    unpack<p>(f, shift, br, bi, hn::Zero(f));
+    const Unpacked<p, V> a(f, part), b(f, shift);
     for (int n = 0; n <= p; ++n)
         for (int m = 0; m <= n; ++m) {
             V sr = hn::Zero(f), si = hn::Zero(f);
@@ -96,8 +99,8 @@ HWY_NOINLINE void shift_multipoles(F f, const V* part, V x, V y, V z, V* whole) 
                 const int first = HWY_MAX(-k, m - (n - k)), last = HWY_MIN(k, m + (n - k));
                 for (int l = first; l <= last; ++l) {
                     const int i = full(k, l), j = full(n - k, m - l);
-                    sr = hn::NegMulAdd(ai[i], bi[j], hn::MulAdd(ar[i], br[j], sr));
-                    si = hn::MulAdd(ai[i], br[j], hn::MulAdd(ar[i], bi[j], si));
+                    sr = hn::NegMulAdd(a.im[i], b.im[j], hn::MulAdd(a.re[i], b.re[j], sr));
+                    si = hn::MulAdd(a.im[i], b.re[j], hn::MulAdd(a.re[i], b.im[j], si));
                 }
             }
             whole[re(n, m)] = sr;
@@ -107,19 +110,17 @@ HWY_NOINLINE void shift_multipoles(F f, const V* part, V x, V y, V z, V* whole) 
 // Shifts a local expansion to centers at the offsets: part(n, m) = Σ conj R(k − n, l − m) · whole(k, l).
 template <int q, class F, class V>
 HWY_NOINLINE void shift_locals(F f, const V* whole, V x, V y, V z, V* part) {
-    V shift[packed_count(q)], ar[packed_count(q)], ai[packed_count(q)], br[packed_count(q)],
-        bi[packed_count(q)];
+    V shift[packed_count(q)];
     regular_in_lanes<q>(f, x, y, z, shift);
-    unpack<q>(f, whole, ar, ai, hn::Zero(f));
-    unpack<q>(f, shift, br, bi, hn::Zero(f));
+    const Unpacked<q, V> a(f, whole), b(f, shift);
     for (int n = 0; n <= q; ++n)
         for (int m = 0; m <= n; ++m) {
             V sr = hn::Zero(f), si = hn::Zero(f);
             for (int k = n; k <= q; ++k)
                 for (int l = m - (k - n); l <= m + (k - n); ++l) {
                     const int i = full(k, l), j = full(k - n, l - m);
-                    sr = hn::MulAdd(ai[i], bi[j], hn::MulAdd(ar[i], br[j], sr));
-                    si = hn::NegMulAdd(ar[i], bi[j], hn::MulAdd(ai[i], br[j], si));
+                    sr = hn::MulAdd(a.im[i], b.im[j], hn::MulAdd(a.re[i], b.re[j], sr));
+                    si = hn::NegMulAdd(a.re[i], b.im[j], hn::MulAdd(a.im[i], b.re[j], si));
                 }
             part[re(n, m)] = sr;
             if (m > 0) part[im(n, m)] = si;
