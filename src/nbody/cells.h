@@ -15,20 +15,23 @@ namespace hedgerow {
 /// charges, so that vectors may be read beyond the last ones.
 template <class T>
 struct FmmCells {
-    // Of each charge: its place, its offset from its leaf's center, and its charge.
+    // Of each charge: its place, its offset from its leaf's center, its charge, and how far it is softened,
+    // if charges are.
     BareVector<double> x, y, z;
-    BareVector<T> dx, dy, dz, charge;
+    BareVector<T> dx, dy, dz, charge, soft;
+    SofteningKernel softening = SofteningKernel::wendland;
     // Of each cell: its charges, its children (none: a leaf), ...
     std::vector<std::uint32_t> first, count, child, children;
-    // ... its center, the radius around its charges, the effective radius of its multipole, Σ |q|, the unit
-    // of its expansions, and the error that a conversion may make in it.
+    // ... its center, the radius around its charges, the effective radius of its multipole (how far it
+    // reaches) and of its charges as targets (how far they spread), Σ |q|, the unit of its expansions, the
+    // greatest reach of a softened charge, and the error that a conversion may make in it.
     std::vector<double> cx, cy, cz;
-    std::vector<T> radius, reach, weight, scale, tolerance;
+    std::vector<T> radius, reach, spread, weight, scale, softest, tolerance;
     std::vector<std::uint32_t> levels;  ///< the first cell of each level, and the number of cells
     BareVector<T> multipoles;           ///< packed numbers of each cell, `multipole_stride` apart
     std::size_t multipole_stride = 0;
     // What is found, by charge.
-    BareVector<T> potential, gx, gy, gz;
+    BareVector<double> potential, gx, gy, gz;
 
     std::size_t size() const { return first.size(); }
     bool is_leaf(std::size_t c) const { return children[c] == 0; }

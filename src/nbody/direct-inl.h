@@ -41,11 +41,47 @@ HWY_INLINE V inverse_root(F f, V x) {
     }
 }
 
+// Softens what charges do that are near: SoftenedInverse in lanes, of the distance as a share of the reach.
+template <class F, class V = hn::Vec<F>, class M = hn::Mask<F>>
+HWY_INLINE void soften(F f, SofteningKernel kernel, M near, V charge, V distance, V reach, V& of_potential,
+                       V& of_gradient) {
+    using T = hn::TFromD<F>;
+    const V per_reach = hn::Div(hn::Set(f, T(1)), hn::IfThenElse(near, reach, hn::Set(f, T(1))));
+    const V u = hn::IfThenElseZero(near, hn::Mul(distance, per_reach)), u2 = hn::Mul(u, u);
+    const auto sum = [&](V x, auto... coefficients) HWY_ATTR {  // of powers of x, the highest first
+        V all = hn::Zero(f);
+        ((all = hn::MulAdd(all, x, hn::Set(f, T(coefficients)))), ...);
+        return all;
+    };
+    V potential, force;
+    if (kernel == SofteningKernel::wendland) {
+        potential = hn::MulAdd(u2, hn::MulAdd(u2, sum(u, -3.0, 15.0, -28.0, 21.0), hn::Set(f, T(-7))),
+                               hn::Set(f, T(3)));
+        force = hn::MulAdd(u2, sum(u, 21.0, -90.0, 140.0, -84.0), hn::Set(f, T(14)));
+    } else {
+        const auto inner = hn::Lt(u, hn::Set(f, T(0.5)));
+        const V tail = hn::Div(hn::Set(f, T(1.0 / 15)), hn::IfThenElse(inner, hn::Set(f, T(1)), u));
+        const V inside =
+            hn::NegMulAdd(u2, hn::MulAdd(u2, sum(u, 6.4, -9.6), hn::Set(f, T(16.0 / 3))), hn::Set(f, T(2.8)));
+        const V outside =
+            hn::Sub(hn::NegMulAdd(u2, sum(u, -32.0 / 15, 9.6, -16.0, 32.0 / 3), hn::Set(f, T(3.2))), tail);
+        potential = hn::IfThenElse(inner, inside, outside);
+        const V force_inside = hn::MulAdd(u2, sum(u, 32.0, -38.4), hn::Set(f, T(32.0 / 3)));
+        const V rest = hn::Div(tail, hn::IfThenElse(inner, hn::Set(f, T(1)), u2));
+        const V force_outside = hn::Sub(sum(u, -32.0 / 3, 38.4, -48.0, 64.0 / 3), rest);
+        force = hn::IfThenElse(inner, force_inside, force_outside);
+    }
+    const V of_charge = hn::Mul(charge, per_reach);
+    of_potential = hn::IfThenElse(near, hn::Mul(of_charge, potential), of_potential);
+    of_gradient =
+        hn::IfThenElse(near, hn::Mul(hn::Mul(of_charge, force), hn::Mul(per_reach, per_reach)), of_gradient);
+}
+
 // Adds what sources do to `block` targets. The sums stay in registers: with 16 of them for two targets, with
 // 32 for four.
-template <int block, class F, class T = hn::TFromD<F>>
+template <int block, bool softened, class F, class T = hn::TFromD<F>>
 HWY_INLINE void add_to_block(F f, const ChargeRows<T>& sources, std::size_t first, std::size_t end,
-                             const TargetRows<T>& targets, std::size_t at) {
+                             const TargetRows<T>& targets, std::size_t at, SofteningKernel kernel) {
     using V = hn::Vec<F>;
     V x[block], y[block], z[block], potential[block], gx[block], gy[block], gz[block];
     for (int i = 0; i < block; ++i) {
@@ -60,9 +96,17 @@ HWY_INLINE void add_to_block(F f, const ChargeRows<T>& sources, std::size_t firs
         for (int i = 0; i < block; ++i) {
             const V dx = hn::Sub(sx, x[i]), dy = hn::Sub(sy, y[i]), dz = hn::Sub(sz, z[i]);
             const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-            const V inverse = hn::IfThenElseZero(hn::Ge(r2, least), inverse_root(f, r2));
-            const V of_potential = hn::Mul(charge, inverse);
-            const V of_gradient = hn::Mul(of_potential, hn::Mul(inverse, inverse));
+            const auto apart = hn::Ge(r2, least);
+            const V inverse = hn::IfThenElseZero(apart, inverse_root(f, r2));
+            V of_potential = hn::Mul(charge, inverse);
+            V of_gradient = hn::Mul(of_potential, hn::Mul(inverse, inverse));
+            if constexpr (softened) {
+                const V reach = hn::Max(hn::LoadU(f, sources.reach + s),
+                                        hn::Set(f, targets.reach[at + static_cast<std::size_t>(i)]));
+                const auto near = hn::And(apart, hn::Lt(r2, hn::Mul(reach, reach)));
+                if (HWY_UNLIKELY(!hn::AllFalse(f, near)))
+                    soften(f, kernel, near, charge, hn::Mul(r2, inverse), reach, of_potential, of_gradient);
+            }
             potential[i] = hn::Add(potential[i], of_potential);
             gx[i] = hn::MulAdd(of_gradient, dx, gx[i]);
             gy[i] = hn::MulAdd(of_gradient, dy, gy[i]);
@@ -79,14 +123,17 @@ HWY_INLINE void add_to_block(F f, const ChargeRows<T>& sources, std::size_t firs
 }
 
 template <class T>
-void direct(const ChargeRows<T>& sources, const TargetRows<T>& targets) {
+void direct(const ChargeRows<T>& sources, const TargetRows<T>& targets, SofteningKernel kernel) {
     constexpr int block = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON ? 4 : 2;
     constexpr std::size_t at_once = 1024;
     const hn::ScalableTag<T> f;
     for (std::size_t first = 0; first < sources.count; first += at_once) {
         const std::size_t end = HWY_MIN(sources.count, first + at_once);
         for (std::size_t t = 0; t < targets.count; t += block)
-            add_to_block<block>(f, sources, first, end, targets, t);
+            if (sources.reach == nullptr)
+                add_to_block<block, false>(f, sources, first, end, targets, t, kernel);
+            else
+                add_to_block<block, true>(f, sources, first, end, targets, t, kernel);
     }
 }
 

@@ -12,19 +12,17 @@ HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
 template <class T, int p>
-void walk_above(FmmCells<T>& cells, std::uint32_t most, std::vector<FmmTask<T>>& tasks) {
-    Fmm<T, p>(cells).walk_above(
-        most, [&](std::uint32_t cell, const std::vector<std::uint32_t>& undecided, const T* local) {
-            tasks.push_back({cell, undecided, {local, local + Fmm<T, p>::of_local}});
-        });
+void walk_above(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t most,
+                std::vector<FmmTask<T>>& tasks) {
+    Fmm<T, p>(sources, targets).walk_above(most, tasks);
 }
 template <class T, int p>
-void walk_below(FmmCells<T>& cells, const FmmTask<T>& task) {
-    Fmm<T, p>(cells).walk_below(task.cell, task.undecided, task.local.data());
+void walk_below(const FmmCells<T>& sources, FmmCells<T>& targets, const FmmTask<T>& task) {
+    Fmm<T, p>(sources, targets).walk_below(task);
 }
 template <class T, int... orders>
 constexpr std::array<FmmKernel<T>, sizeof...(orders)> fmm_table() {
-    return {{{orders, Fmm<T, orders>::stride, Fmm<T, orders>::upward, walk_above<T, orders>,
+    return {{{orders, Expansions<T, orders>::stride, Moments<T, orders>::upward, walk_above<T, orders>,
               walk_below<T, orders>}...}};
 }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,10 +20,10 @@
 namespace hedgerow {
 namespace {
 
-/// How an accuracy is reached: the order of multipoles, whether expansions and pairs are in float, and at
-/// most what the rms error of the gradients is to the bound that each conversion keeps. That was measured: it
-/// is largest for Plummer spheres, whose outskirts are large and sparse cells, and several times less for a
-/// cube. Leaves are as long as makes pairs and conversions take about as long.
+/// How an accuracy is reached: the order of multipoles, whether expansions and pairs are in float, at most
+/// what the rms error of the gradients is to the bound that each conversion keeps, and how long leaves are,
+/// so that pairs and conversions take about as long. Errors were measured on a cube, a lattice, Plummer's and
+/// Hernquist's spheres, a disc, two unlike clusters, and charges that cancel.
 struct Plan {
     double least_accuracy;
     int order;
@@ -29,11 +31,8 @@ struct Plan {
     double error_per_bound;
     std::uint32_t leaf_size;
 };
-constexpr Plan plans[] = {{3e-3, 3, true, 2.2, 48},
-                          {2e-4, 4, true, 2.0, 48},
-                          {1e-5, 6, true, 7, 64},
-                          {1e-6, 8, false, 5, 64},
-                          {1e-7, 11, false, 4, 64}};
+constexpr Plan plans[] = {{3e-3, 3, true, 0.6, 48},   {2e-4, 4, true, 0.75, 48},  {1e-5, 6, true, 0.6, 64},
+                          {1e-6, 8, false, 0.85, 64}, {1e-8, 11, false, 0.4, 64}, {1e-9, 11, false, 0.7, 64}};
 constexpr double most_accuracy = 0.1;
 
 const Plan& plan_for(double accuracy) {
@@ -42,7 +41,7 @@ const Plan& plan_for(double accuracy) {
             if (accuracy >= plan.least_accuracy) return plan;
     char given[32];
     std::snprintf(given, sizeof given, "%g", accuracy);
-    throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-7 to 0.1");
+    throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-9 to 0.1");
 }
 
 /// Copies the cells of an octree to rows, numbered by level.
@@ -74,12 +73,13 @@ template <class R>
 void make_room(FmmCells<R>& cells, std::size_t charges, std::size_t multipole_stride) {
     const std::size_t rows = cells.size() + row_padding, places = charges + row_padding;
     for (auto* row : {&cells.cx, &cells.cy, &cells.cz}) row->resize(rows);
-    for (auto* row : {&cells.radius, &cells.reach, &cells.weight, &cells.scale, &cells.tolerance})
+    for (auto* row : {&cells.radius, &cells.reach, &cells.spread, &cells.weight, &cells.scale, &cells.softest,
+                      &cells.tolerance})
         row->resize(rows);
     for (auto* row : {&cells.x, &cells.y, &cells.z}) row->resize(places);
-    for (auto* row :
-         {&cells.dx, &cells.dy, &cells.dz, &cells.charge, &cells.potential, &cells.gx, &cells.gy, &cells.gz})
+    for (auto* row : {&cells.dx, &cells.dy, &cells.dz, &cells.charge})
         row->resize(places), std::fill(row->end() - row_padding, row->end(), R(0));
+    for (auto* row : {&cells.potential, &cells.gx, &cells.gy, &cells.gz}) row->resize(charges);
     cells.multipole_stride = multipole_stride;
     cells.multipoles.resize(cells.size() * multipole_stride);
 }
@@ -87,86 +87,193 @@ void make_room(FmmCells<R>& cells, std::size_t charges, std::size_t multipole_st
 /// About the least gradient in a leaf: that of all other cells as single charges (Barnes and Hut), each
 /// farther away by the leaf's radius, or a hundredth of the sum of their sizes.
 template <class R>
-double strength_in(const FmmCells<R>& cells, std::uint32_t leaf, std::vector<std::uint32_t>& stack) {
+double strength_in(const FmmCells<R>& sources, const FmmCells<R>& targets, std::uint32_t leaf) {
+    thread_local std::vector<std::uint32_t> stack;
     constexpr double opening_angle = 0.7;
-    const double own = static_cast<double>(cells.radius[leaf]);
+    const double own = static_cast<double>(targets.radius[leaf]);
     double x = 0, y = 0, z = 0, size = 0;
     stack.assign(1, 0);
     while (!stack.empty()) {
         const std::uint32_t other = stack.back();
         stack.pop_back();
-        const double dx = cells.cx[other] - cells.cx[leaf], dy = cells.cy[other] - cells.cy[leaf],
-                     dz = cells.cz[other] - cells.cz[leaf];
+        const double dx = sources.cx[other] - targets.cx[leaf], dy = sources.cy[other] - targets.cy[leaf],
+                     dz = sources.cz[other] - targets.cz[leaf];
         const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-        if (!cells.is_leaf(other) && !(static_cast<double>(cells.radius[other]) < opening_angle * distance)) {
-            for (std::uint32_t i = 0; i < cells.children[other]; ++i) stack.push_back(cells.child[other] + i);
+        if (!sources.is_leaf(other) &&
+            !(static_cast<double>(sources.reach[other]) < opening_angle * distance)) {
+            for (std::uint32_t i = 0; i < sources.children[other]; ++i)
+                stack.push_back(sources.child[other] + i);
             continue;
         }
         if (!(distance > 0)) continue;
         const double per_d2 = 1 / ((distance + own) * (distance + own)), along = per_d2 / distance;
-        const double charge = static_cast<double>(cells.multipoles[other * cells.multipole_stride]);
+        const double charge = static_cast<double>(sources.multipoles[other * sources.multipole_stride]);
         x += charge * along * dx, y += charge * along * dy, z += charge * along * dz;
-        size += static_cast<double>(cells.weight[other]) * per_d2;
+        size += static_cast<double>(sources.weight[other]) * per_d2;
     }
     return std::max(std::sqrt(x * x + y * y + z * z), 0.01 * size);
 }
-/// Sets how large an error a conversion may make in each cell: a share of the gradient in a leaf, and the
-/// least of its children's in any other cell.
+/// What counts of the errors in a cell: the mean of some power of them as shares of the gradients, so that a
+/// few targets that are far out or where gradients are small count as they should.
+constexpr double error_power = 4;
+
+/// The tolerance and the spread of a leaf whose gradients are known, of sizes in the units of the cells.
+template <class R, class F>
+void set_leaf_by(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
+    // No charge is farther away than the far side of all of them.
+    const double dx = sources.cx[0] - targets.cx[leaf], dy = sources.cy[0] - targets.cy[leaf],
+                 dz = sources.cz[0] - targets.cz[leaf];
+    const double farthest = std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(sources.radius[0]) +
+                            static_cast<double>(targets.radius[leaf]);
+    const double least = 0.01 * static_cast<double>(sources.weight[0]) / (farthest * farthest);
+    const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
+    const double per_radius = targets.radius[leaf] > 0 ? 1 / static_cast<double>(targets.radius[leaf]) : 0;
+    double inverse = 0, spread = 0;
+    for (std::size_t i = first; i < end; ++i) {
+        const double size = std::max(size_of(i), least), inverse2 = 1 / (size * size),
+                     x = static_cast<double>(targets.dx[i]) * per_radius,
+                     y = static_cast<double>(targets.dy[i]) * per_radius,
+                     z = static_cast<double>(targets.dz[i]) * per_radius, r2 = x * x + y * y + z * z;
+        double power = 1;
+        for (int k = 0; k < order; ++k) power *= r2;
+        inverse += inverse2 * inverse2, spread += inverse2 * inverse2 * power * power;
+    }
+    targets.spread[leaf] =
+        targets.radius[leaf] * static_cast<R>(std::pow(spread / inverse, 1 / (error_power * order)));
+    targets.tolerance[leaf] =
+        static_cast<R>(std::pow(static_cast<double>(targets.count[leaf]) / inverse, 1 / error_power));
+}
+/// The same by an estimate that is less than all gradients in the leaf.
 template <class R>
-void set_tolerances(FmmCells<R>& cells, double share, Executor& executor) {
-    executor.for_each_piece(cells.size(), 64, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t> stack;
+void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order) {
+    targets.tolerance[leaf] = static_cast<R>(strength_in(sources, targets, leaf));
+    const R radius = targets.radius[leaf], per_radius = radius > 0 ? 1 / radius : 0;
+    const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
+    R spread = 0;
+    for (std::size_t i = first; i < end; ++i) {
+        const R x = targets.dx[i] * per_radius, y = targets.dy[i] * per_radius,
+                z = targets.dz[i] * per_radius;
+        const R r2 = x * x + y * y + z * z;
+        R power = 1;
+        for (int k = 0; k < order; ++k) power *= r2;
+        spread += power * power;
+    }
+    targets.spread[leaf] = radius * std::pow(spread / static_cast<R>(targets.count[leaf]),
+                                             static_cast<R>(1 / (error_power * order)));
+}
+/// Sets tolerances and spreads of all cells above the leaves, as if the targets of a cell were all on its far
+/// side, and takes the share of the tolerances that a conversion may err by.
+template <class R>
+void set_cells(FmmCells<R>& targets, double share, int order) {
+    for (std::size_t c = targets.size(); c-- > 0;) {
+        if (targets.is_leaf(c)) continue;
+        double count = 0, spread = 0, least = static_cast<double>(targets.tolerance[targets.child[c]]);
+        const std::uint32_t first = targets.child[c], end = first + targets.children[c];
+        for (std::uint32_t k = first; k < end; ++k)
+            least = std::min(least, static_cast<double>(targets.tolerance[k]));
+        for (std::uint32_t k = first; k < end; ++k) {
+            const double dx = targets.cx[k] - targets.cx[c], dy = targets.cy[k] - targets.cy[c],
+                         dz = targets.cz[k] - targets.cz[c];
+            const double far =
+                std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(targets.spread[k]);
+            const double inverse = least / static_cast<double>(targets.tolerance[k]);
+            const double weight = targets.count[k] * inverse * inverse * inverse * inverse;
+            count += weight;
+            spread += weight * std::pow(far / static_cast<double>(targets.radius[c]), error_power * order);
+        }
+        targets.tolerance[c] = static_cast<R>(least * std::pow(targets.count[c] / count, 1 / error_power));
+        targets.spread[c] =
+            std::min(targets.radius[c],
+                     targets.radius[c] * static_cast<R>(std::pow(spread / count, 1 / (error_power * order))));
+    }
+    for (R& tolerance : targets.tolerance) tolerance *= static_cast<R>(share);
+}
+template <class R, class F>
+void set_tolerances(FmmCells<R>& targets, double share, int order, Executor& executor, F set) {
+    executor.for_each_piece(targets.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c)
-            if (cells.is_leaf(c))
-                cells.tolerance[c] =
-                    static_cast<R>(share * strength_in(cells, static_cast<std::uint32_t>(c), stack));
+            if (targets.is_leaf(c)) set(static_cast<std::uint32_t>(c));
     });
-    for (std::size_t c = cells.size(); c-- > 0;)
-        if (!cells.is_leaf(c))
-            cells.tolerance[c] =
-                *std::min_element(cells.tolerance.begin() + cells.child[c],
-                                  cells.tolerance.begin() + cells.child[c] + cells.children[c]);
+    set_cells(targets, share, order);
 }
 
+/// Charges in cells, in the order of the leaves, with their multipoles.
 template <class R, class T>
-void multipole_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const Plan& plan,
-                      double accuracy, const FmmKernel<R>& kernel, const detail::Extremes<T>& extremes,
-                      Executor& executor) {
-    const std::size_t n = charges.places.size();
+struct Sorted {
+    PointOrthtree<T, 3> tree;
+    FmmCells<R> cells;
+
+    /// charge_of and reach_of tell of a charge by its number; the second is asked if charges are softened.
+    template <class Charge, class Reach>
+    Sorted(const Strided<Vec<T, 3>>& places, double scale, bool softened, const Plan& plan,
+           const FmmKernel<R>& kernel, Executor& executor, Charge charge_of, Reach reach_of)
+        : tree(PointOrthtree<T, 3>::build(PointCloudView<T, 3>(places), {.leaf_size = plan.leaf_size},
+                                          executor)) {
+        number_cells(tree, cells);
+        make_room(cells, places.size(), kernel.multipole_stride);
+        if (softened) cells.soft.resize(places.size() + row_padding, R(0));
+        executor.for_each_piece(places.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const PrimitiveId id = tree.items()[i];
+                const Vec3d p = Vec3d(places[id]) * scale;
+                cells.x[i] = p[0], cells.y[i] = p[1], cells.z[i] = p[2];
+                cells.charge[i] = static_cast<R>(charge_of(id));
+                if (softened) cells.soft[i] = static_cast<R>(static_cast<double>(reach_of(id)) * scale);
+            }
+        });
+        // Upward: multipoles, the deepest cells first.
+        for (std::size_t level = cells.levels.size() - 1; level-- > 0;) {
+            const std::uint32_t first = cells.levels[level];
+            executor.for_each_piece(cells.levels[level + 1] - first, 64,
+                                    [&](std::size_t begin, std::size_t end) {
+                                        kernel.upward(cells, first + static_cast<std::uint32_t>(begin),
+                                                      first + static_cast<std::uint32_t>(end));
+                                    });
+        }
+    }
+};
+
+/// At targets, or at the charges themselves.
+template <class R, class T>
+void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std::span<PotentialAt<T>> found,
+                      const Plan& plan, const ForceOptions& options, const FmmKernel<R>& kernel,
+                      const detail::Extremes<T>& extremes, Executor& executor) {
     const double scale = static_cast<double>(detail::to_unit(extremes.coordinate)),
                  of_charge = static_cast<double>(detail::to_unit(extremes.charge));
-    // Sort the charges into cells.
-    const PointCloudView<T, 3> cloud(charges.places);
-    const auto tree = PointOrthtree<T, 3>::build(cloud, {.leaf_size = plan.leaf_size}, executor);
-    FmmCells<R> cells;
-    number_cells(tree, cells);
-    make_room(cells, n, kernel.multipole_stride);
-    executor.for_each_piece(n, worth_a_task, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const PrimitiveId id = tree.items()[i];
-            const Vec3d p = Vec3d(charges.places[id]) * scale;
-            cells.x[i] = p[0], cells.y[i] = p[1], cells.z[i] = p[2];
-            cells.charge[i] = static_cast<R>(static_cast<double>(charges.charges[id]) * of_charge);
-        }
-    });
-    // Upward: multipoles, the deepest cells first.
-    for (std::size_t level = cells.levels.size() - 1; level-- > 0;) {
-        const std::uint32_t first = cells.levels[level];
-        executor.for_each_piece(cells.levels[level + 1] - first, 64, [&](std::size_t begin, std::size_t end) {
-            kernel.upward(cells, first + static_cast<std::uint32_t>(begin),
-                          first + static_cast<std::uint32_t>(end));
-        });
+    const bool softened = detail::softened(charges);
+    Sorted<R, T> sources(
+        charges.places, scale, softened, plan, kernel, executor,
+        [&](PrimitiveId i) { return static_cast<double>(charges.charges[i]) * of_charge; },
+        [&](PrimitiveId i) { return detail::reach_of(charges, i); });
+    sources.cells.softening = charges.softening.kernel;
+    std::optional<Sorted<R, T>> others;
+    if (targets != nullptr) {
+        others.emplace(
+            targets->places, scale, softened, plan, kernel, executor, [](PrimitiveId) { return 1.0; },
+            [&](PrimitiveId i) { return detail::reach_of(*targets, charges.softening, i); });
+        // Nothing acts on the sources.
+        std::fill(sources.cells.tolerance.begin(), sources.cells.tolerance.end(),
+                  std::numeric_limits<R>::infinity());
     }
-    set_tolerances(cells, accuracy / plan.error_per_bound, executor);
+    const auto& tree = targets != nullptr ? others->tree : sources.tree;
+    FmmCells<R>& cells = targets != nullptr ? others->cells : sources.cells;
+    const double of_potential = scale / of_charge, of_gradient = of_potential * scale;
+    const int order = kernel.order + 1;  // of the errors
+    set_tolerances(cells, options.accuracy / plan.error_per_bound, order, executor, [&](std::uint32_t leaf) {
+        if (options.sizes.empty()) return set_leaf(sources.cells, cells, leaf, order);
+        set_leaf_by(sources.cells, cells, leaf, order,
+                    [&](std::size_t i) { return options.sizes[tree.items()[i]] / of_gradient; });
+    });
     // Down: each target's walk.
+    const std::size_t n = found.size();
     std::vector<FmmTask<R>> tasks;
-    kernel.walk_above(cells, static_cast<std::uint32_t>(n / 128 + 1), tasks);
+    kernel.walk_above(sources.cells, cells, static_cast<std::uint32_t>(n / 128 + 1), tasks);
     executor.for_each_piece(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) kernel.walk_below(cells, tasks[i]), executor.look();
+        for (std::size_t i = begin; i < end; ++i)
+            kernel.walk_below(sources.cells, cells, tasks[i]), executor.look();
     });
     // In the caller's order and units.
-    const double of_potential = scale / of_charge, of_gradient = of_potential * scale;
-    const auto in_units = [](R x, double unit) { return static_cast<T>(static_cast<double>(x) * unit); };
+    const auto in_units = [](double x, double unit) { return static_cast<T>(x * unit); };
     executor.for_each_piece(n, worth_a_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             found[tree.items()[i]] = {in_units(cells.potential[i], of_potential),
@@ -181,10 +288,7 @@ const auto& of_order(const Kernels& kernels, int order) {
 
 /// Without kernels: as the method is described.
 template <class T>
-void plain_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, double accuracy,
-                  Executor& executor) {
-    if (charges.places.size() < 2000 || accuracy < 1e-4)
-        return direct_sum(charges, charges.places, found, executor);
+void plain_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, Executor& executor) {
     const Index<PointOrthtree<T, 3>, PointCloudView<T, 3>> index(PointCloudView<T, 3>(charges.places),
                                                                  {.leaf_size = 32}, executor);
     std::vector<double> all(charges.charges.size());
@@ -194,31 +298,57 @@ void plain_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, do
         found[i] = {static_cast<T>(sums[i].potential), Vec<T, 3>(sums[i].gradient)};
 }
 
+template <class T>
+void forces_at(const Charges<T>& charges, const Targets<T>* targets, std::span<PotentialAt<T>> found,
+               const ForceOptions& options, Threads threads) {
+    const Plan& plan = plan_for(options.accuracy);
+    detail::expect_room(found.size(), targets != nullptr ? targets->places.size() : charges.places.size());
+    detail::Extremes<T> extremes(charges);  // throws for bad numbers
+    if (targets != nullptr) extremes.expand(*targets);
+    if (!options.sizes.empty() && options.sizes.size() != found.size())
+        throw InputError(std::to_string(options.sizes.size()) + " sizes of gradients for " +
+                         std::to_string(found.size()) + " targets: give one each, or none");
+    if (found.empty()) return;
+    Executor& executor = threads.over(found.size());
+    const NbodyKernels* const kernels = nbody_kernels();
+    const bool plain = kernels == nullptr && targets == nullptr && !detail::softened(charges) &&
+                       found.size() >= 2000 && options.accuracy >= 1e-4;
+    if (charges.places.empty() || (kernels == nullptr && !plain))
+        return direct_sum(charges,
+                          targets != nullptr ? *targets : Targets<T>(charges.places, charges.lengths), found,
+                          threads);
+    in_ieee_mode([&] {
+        IeeeExecutor ieee(executor);
+        const auto by = [&](const auto& kernel) {
+            multipole_forces(charges, targets, found, plan, options, kernel, extremes, ieee);
+        };
+        if (plain)
+            plain_forces(charges, found, ieee);
+        else if (plan.in_float)
+            by(of_order(*kernels->fmm_float, plan.order));
+        else
+            by(of_order(*kernels->fmm_double, plan.order));
+    });
+}
+
 }  // namespace
 
 template <std::floating_point T>
 void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options,
             Threads threads) {
-    const Plan& plan = plan_for(options.accuracy);
-    detail::expect_room(found.size(), charges.places.size());
-    const detail::Extremes<T> extremes(charges);  // throws for bad numbers
-    if (found.empty()) return;
-    Executor& executor = threads.over(found.size());
-    in_ieee_mode([&] {
-        IeeeExecutor ieee(executor);
-        const NbodyKernels* const kernels = nbody_kernels();
-        if (kernels == nullptr)
-            plain_forces(charges, found, options.accuracy, ieee);
-        else if (plan.in_float)
-            multipole_forces(charges, found, plan, options.accuracy,
-                             of_order(*kernels->fmm_float, plan.order), extremes, ieee);
-        else
-            multipole_forces(charges, found, plan, options.accuracy,
-                             of_order(*kernels->fmm_double, plan.order), extremes, ieee);
-    });
+    forces_at<T>(charges, nullptr, found, options, threads);
+}
+template <std::floating_point T>
+void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<PotentialAt<T>> found,
+            const ForceOptions& options, Threads threads) {
+    forces_at<T>(charges, &targets, found, options, threads);
 }
 
 template void forces(const Charges<float>&, std::span<PotentialAt<float>>, const ForceOptions&, Threads);
 template void forces(const Charges<double>&, std::span<PotentialAt<double>>, const ForceOptions&, Threads);
+template void forces(const Charges<float>&, const Targets<float>&, std::span<PotentialAt<float>>,
+                     const ForceOptions&, Threads);
+template void forces(const Charges<double>&, const Targets<double>&, std::span<PotentialAt<double>>,
+                     const ForceOptions&, Threads);
 
 }  // namespace hedgerow

@@ -35,15 +35,50 @@ struct Extremes {
     explicit Extremes(const Charges<T>& charges) {
         const std::size_t n = charges.places.size();
         expect_one_charge_each(charges.charges.size(), n);
+        if (!(charges.softening.length >= 0 && charges.softening.length <= 0x1p480))
+            throw InputError("a length of softening of " + std::to_string(charges.softening.length) +
+                             ": give 0 or more");
+        expect_lengths(charges.lengths, n, "the length of source");
         for (std::size_t i = 0; i < n; ++i) {
             expand(charges.places[i], "a coordinate of source", i);
             charge = std::max(charge, std::abs(sound_number(charges.charges[i], "the charge of source", i)));
         }
     }
+    void expand(const Targets<T>& targets) {
+        for (std::size_t i = 0; i < targets.places.size(); ++i)
+            expand(targets.places[i], "a coordinate of target", i);
+        expect_lengths(targets.lengths, targets.places.size(), "the length of target");
+    }
+
+private:
     void expand(const Vec<T, 3>& p, const char* what, std::size_t i) {
         for (int k = 0; k < 3; ++k) coordinate = std::max(coordinate, std::abs(sound_number(p[k], what, i)));
     }
+    static void expect_lengths(const Strided<T>& lengths, std::size_t n, const char* what) {
+        if (!lengths.empty() && lengths.size() != n)
+            throw InputError(std::to_string(lengths.size()) + " lengths of softening for " +
+                             std::to_string(n) + " places: give one each, or none");
+        for (std::size_t i = 0; i < lengths.size(); ++i)
+            if (sound_number(lengths[i], what, i) < 0)
+                throw InputError(std::string(what) + " " + std::to_string(i) + " is below 0");
+    }
 };
+template <class T>
+bool softened(const Charges<T>& charges) {
+    return charges.softening.length > 0 || !charges.lengths.empty();
+}
+/// How far a charge is softened, and a target: one without a length of its own leaves it to the charges.
+template <class T>
+T reach_of(const Charges<T>& charges, std::size_t i) {
+    const double length =
+        charges.lengths.empty() ? charges.softening.length : static_cast<double>(charges.lengths[i]);
+    return static_cast<T>(charges.softening.reach(length));
+}
+template <class T>
+T reach_of(const Targets<T>& targets, const Softening& softening, std::size_t i) {
+    if (targets.lengths.empty()) return 0;
+    return static_cast<T>(softening.reach(static_cast<double>(targets.lengths[i])));
+}
 inline void expect_room(std::size_t room, std::size_t targets) {
     if (room != targets)
         throw InputError("room for " + std::to_string(room) + " answers to " + std::to_string(targets) +

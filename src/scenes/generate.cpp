@@ -10,6 +10,8 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/spelling.h>
 
+#include "precision.h"
+
 namespace hedgerow {
 namespace {
 
@@ -34,7 +36,19 @@ constexpr SceneInfo scene(std::string_view name, std::uint64_t size, std::string
             },
             [](U n, U seed, const Progress& progress) -> Scene<double> {
                 return F{}(In<double>{}, n, seed, progress);
-            }};
+            },
+            nullptr};
+}
+
+/// An entry of particles: their places, and all of them for those who ask.
+template <class F>
+constexpr SceneInfo particles(std::string_view name, std::string_view description, F) {
+    SceneInfo info =
+        scene(name, 100'000, "points", 3, description, 80, []<class T>(In<T>, U n, U seed, const P& p) {
+            return PointCloud<T, 3>{detail::narrowed<T>(F{}(n, seed, p).places)};
+        });
+    info.particles = [](U n, U seed, const P& p) { return F{}(n, seed, p); };
+    return info;
 }
 
 /// The one list of scenes.
@@ -65,6 +79,18 @@ constexpr SceneInfo scenes[] = {
           []<class T>(In<T>, U n, U seed, const P& p) { return spheres<T>(n, seed, p); }),
     scene("points", 100'000, "points", 3, "random points in the unit cube", 24,
           []<class T>(In<T>, U n, U seed, const P& p) { return points<T>(n, seed, p); }),
+    particles("plummer", "stars: a Plummer sphere in equilibrium",
+              [](U n, U seed, const P& p) { return plummer(n, seed, p); }),
+    particles("hernquist", "stars: Hernquist's galaxy in equilibrium, dense in its center",
+              [](U n, U seed, const P& p) { return hernquist(n, seed, p); }),
+    particles("uniform-sphere", "stars: a uniform sphere that swings about equilibrium",
+              [](U n, U seed, const P& p) { return uniform_sphere(n, seed, p); }),
+    particles("cold-collapse", "stars: a uniform sphere at rest, which falls into its center",
+              [](U n, U seed, const P& p) { return cold_collapse(n, seed, p); }),
+    particles("disc", "stars: a thin disc that turns",
+              [](U n, U seed, const P& p) { return disc(n, seed, p); }),
+    particles("two-clusters", "stars: two Plummer spheres that fall into each other",
+              [](U n, U seed, const P& p) { return two_clusters(n, seed, p); }),
     scene("points2d", 100'000, "points", 2, "random points in the unit square", 16,
           []<class T>(In<T>, U n, U seed, const P& p) { return points2d<T>(n, seed, p); }),
     scene("clusters2d", 100'000, "points", 2, "random points in 16 heaps in the unit square", 16,
@@ -150,5 +176,18 @@ Scene<T> generate(const SceneSpec& spec, const Progress& progress) {
 }
 template Scene<float> generate<float>(const SceneSpec&, const Progress&);
 template Scene<double> generate<double>(const SceneSpec&, const Progress&);
+
+Particles generate_particles(const SceneSpec& spec, const Progress& progress) {
+    const SceneInfo& info = scene_named(spec.name);
+    if (info.particles == nullptr) {
+        std::string list;
+        for (const SceneInfo& s : scenes)
+            if (s.particles != nullptr) list += (list.empty() ? "gen:" : ", gen:") + std::string(s.name);
+        throw UsageError("gen:" + spec.name + " has no velocities and masses; those that have are " + list);
+    }
+    const std::uint64_t size = spec.size.value_or(info.default_size);
+    check_size(info.name, size);
+    return info.particles(size, spec.seed, progress);
+}
 
 }  // namespace hedgerow

@@ -5,6 +5,7 @@
 
 #include <hedgerow/base/strided.h>
 #include <hedgerow/nbody/operators.h>
+#include <hedgerow/nbody/softening.h>
 #include <hedgerow/parallel/executor.h>
 
 namespace hedgerow {
@@ -14,23 +15,37 @@ template <std::floating_point T>
 struct Charges {
     Strided<Vec<T, 3>> places;
     Strided<T> charges;  ///< one for each place
+    Softening softening = {};
+    Strided<T> lengths = {};  ///< each charge's own length of softening; empty: that of `softening`
+};
+/// Places at which charges act, in the caller's array.
+template <std::floating_point T>
+struct Targets {
+    Strided<Vec<T, 3>> places;
+    Strided<T> lengths;  ///< of softening, if the targets are charges themselves; empty: none of their own
+
+    Targets(const Strided<Vec<T, 3>>& at, const Strided<T>& own = {}) : places(at), lengths(own) {}
+    template <class R>
+    requires std::convertible_to<const R&, std::span<const Vec<T, 3>>> Targets(const R& at) : places(at) {}
 };
 
-/// Writes the potential Σ q/r and its gradient at each target. Sources at a target's own place do nothing
-/// there, and so do those that are nearer to it than 2⁻⁴⁰ of the scene's largest coordinate (in double
-/// 2⁻³²⁰).
+/// Writes the potential Σ q/r, or that of softened charges, and its gradient at each target. Sources at a
+/// target's own place do nothing there, and so do those that are nearer to it than 2⁻⁴⁰ of the scene's
+/// largest coordinate (in double 2⁻³²⁰).
 ///
-/// The term of a pair errs by at most 2⁻²¹ of itself in `float` and 2⁻⁴² in `double`; where no kernel answers
-/// (instruction set "plain") by some roundings. Sums are in double, of sums of at most 1,024 terms in T.
-/// Answers are the same for any executor, and differ within these bounds from one instruction set to another.
-/// O(sources · targets) time; 16 bytes a source and 44 a target (32 and 56) of memory.
+/// The term of a pair errs by at most 2⁻²¹ of itself in `float` and 2⁻⁴² in `double` (if it is softened, 2⁻¹⁸
+/// and 2⁻⁴⁰); where no kernel answers (instruction set "plain") by some roundings. Sums are in double, of
+/// sums of at most 1,024 terms in T. Answers are the same for any executor, and differ within these bounds
+/// from one instruction set to another. O(sources · targets) time; 16 bytes a source and 44 a target (32 and
+/// 56) of memory.
 ///
-/// Throws InputError if there is not one charge a place, if `found` has not one element a target, or for a
-/// coordinate or charge that is not finite, or beyond 2⁶⁰ (in double 2⁴⁸⁰).
+/// Throws InputError if there is not one charge a place (and one length, or none), if `found` has not one
+/// element a target, for a coordinate or charge that is not finite, or beyond 2⁶⁰ (in double 2⁴⁸⁰), and for
+/// such a length or one below 0.
 ///
 /// In the library `nbody`; T is float or double.
 template <std::floating_point T>
-void direct_sum(const Charges<T>& sources, const Strided<Vec<T, 3>>& targets, std::span<PotentialAt<T>> found,
+void direct_sum(const Charges<T>& sources, const Targets<T>& targets, std::span<PotentialAt<T>> found,
                 Threads threads = {});
 
 }  // namespace hedgerow

@@ -9,12 +9,15 @@ namespace hedgerow {
 
 struct ForceOptions {
     /// The error that is aimed at: the root of the mean square of |error of a gradient| / |gradient|, where
-    /// the second is at least a hundredth of Σ |q|/r². From 1e-7 to 0.1.
+    /// the second is at least a hundredth of Σ |q|/r². From 1e-9 to 0.1.
     double accuracy = 1e-3;
+    /// About the size of each gradient, if it is known, as of a step before: less to compute, and cells are
+    /// taken as a whole as far as the accuracy allows. Empty: it is estimated.
+    Strided<double> sizes = {};
 };
 
-/// Writes the potential Σ q/r and its gradient at each charge, of all others, in the order of the charges.
-/// Where charges are masses, the acceleration is G times the gradient.
+/// Writes the potential Σ q/r, or that of softened charges, and its gradient at each charge, of all others,
+/// in the order of the charges. Where charges are masses, the acceleration is G times the gradient.
 ///
 /// By the fast multipole method (nbody/operators.h) over an octree of the charges: its order, its precision
 /// and which cells act as a whole follow from the accuracy, by estimates of the errors. Forces add up to
@@ -28,5 +31,11 @@ struct ForceOptions {
 template <std::floating_point T>
 void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options = {},
             Threads threads = {});
+
+/// The same at other places, which may be few: a target costs about as much as a charge, and charges cost
+/// little beside. A charge at a target's own place does nothing there.
+template <std::floating_point T>
+void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<PotentialAt<T>> found,
+            const ForceOptions& options = {}, Threads threads = {});
 
 }  // namespace hedgerow

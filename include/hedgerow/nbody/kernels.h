@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hedgerow/base/instruction_set.h>
+#include <hedgerow/nbody/softening.h>
 
 namespace hedgerow {
 
@@ -16,6 +17,7 @@ template <class T>
 struct ChargeRows {
     const T *x, *y, *z, *charge;
     std::size_t count;
+    const T* reach = nullptr;  ///< how far each is softened, if charges are
 };
 inline constexpr std::size_t row_padding = 16;
 /// Places at which charges act, in rows that are readable up to the next multiple of `row_padding`, and what
@@ -25,14 +27,16 @@ struct TargetRows {
     const T *x, *y, *z;
     std::size_t count;
     double *potential, *gx, *gy, *gz;
+    const T* reach = nullptr;
 };
 
-/// Adds the potentials Σ q/r and their gradients, of all sources at all targets. Sources whose squared
-/// distance is below `coincident2` do nothing. Coordinates are about 1 or less, so that no power of a
-/// distance overflows. The error of a pair is at most 2⁻²¹ of it, in double 2⁻⁴²; sums are kept in T for at
-/// most 1,024 sources.
+/// Adds the potentials Σ q/r and their gradients, of all sources at all targets; softened by the kernel, if
+/// there are reaches, by the greater of a pair. Sources whose squared distance is below `coincident2` do
+/// nothing. Coordinates are about 1 or less, so that no power of a distance overflows. The error of a pair is
+/// at most 2⁻²¹ of it, in double 2⁻⁴² (softened: 2⁻¹⁸ and 2⁻⁴⁰); sums are kept in T for at most 1,024
+/// sources.
 template <class T>
-using DirectKernel = void (*)(const ChargeRows<T>&, const TargetRows<T>&);
+using DirectKernel = void (*)(const ChargeRows<T>&, const TargetRows<T>&, SofteningKernel);
 template <class T>
 inline constexpr T coincident2 = sizeof(T) == 4 ? T(0x1p-80) : T(0x1p-640);
 
@@ -54,10 +58,11 @@ struct FmmKernel {
     /// Computes centers, radii and multipoles of cells `first` to `end`, once those of their children are
     /// there.
     void (*upward)(FmmCells<T>&, std::uint32_t first, std::uint32_t end);
-    /// Walks down to cells of at most `most` charges, and appends a task for each.
-    void (*walk_above)(FmmCells<T>&, std::uint32_t most, std::vector<FmmTask<T>>& tasks);
-    /// Finishes a task: finds potentials and gradients of all charges of its cell.
-    void (*walk_below)(FmmCells<T>&, const FmmTask<T>&);
+    /// Walks down to targets' cells of at most `most` of them, and appends a task for each.
+    void (*walk_above)(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t most,
+                       std::vector<FmmTask<T>>& tasks);
+    /// Finishes a task: finds potentials and gradients at all targets of its cell.
+    void (*walk_below)(const FmmCells<T>& sources, FmmCells<T>& targets, const FmmTask<T>&);
 };
 using FmmFloatKernels = std::array<FmmKernel<float>, 3>;
 using FmmDoubleKernels = std::array<FmmKernel<double>, 2>;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/particles.h>
 #include <hedgerow/scenes/sets.h>
 
 namespace hedgerow {
@@ -39,6 +40,8 @@ struct SceneInfo {
     double bytes;                  ///< least memory that an element takes while it is made
     Generator<float> in_float;
     Generator<double> in_double;
+    /// Of scenes of particles: with their velocities and masses. Else nullptr.
+    Particles (*particles)(std::uint64_t size, std::uint64_t seed, const Progress& progress);
 };
 
 /// The largest size of any scene, in elements.
@@ -57,5 +60,9 @@ SceneSpec parse_scene_spec(std::string_view text);
 /// and Cancelled if `progress` is cancelled.
 template <class T>
 Scene<T> generate(const SceneSpec& spec, const Progress& progress = {});
+
+/// Makes a scene of particles, whose places `generate` gives too. Throws as `generate` does, and UsageError
+/// for a scene that is none of particles.
+Particles generate_particles(const SceneSpec& spec, const Progress& progress = {});
 
 }  // namespace hedgerow

@@ -1,0 +1,82 @@
+/// Particles that move by their gravity: leapfrog, in steps of one length or in steps of their own.
+///
+/// A step is a kick, a drift and a kick (Verlet 1967): velocities by half a step, places by a whole one,
+/// velocities by the other half, with the new accelerations. It is of second order, and as near to reversible
+/// as the forces are exact. In block steps (as in GADGET: Springel 2005) each particle has the greatest step
+/// of dt/2ᵏ that is at most √(2·η·length/|a|); all drift together, and forces are found only for those whose
+/// step ends.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <hedgerow/nbody/forces.h>
+#include <hedgerow/nbody/particles.h>
+
+namespace hedgerow {
+
+struct MotionOptions {
+    double accuracy = 1e-3;  ///< of forces, as ForceOptions states it
+    Softening softening = {};
+    double gravity = 1;  ///< the constant of gravity
+};
+
+/// Particles at a time, and what acts on them: all that a motion goes on from.
+struct MotionState {
+    double time = 0;
+    Particles particles;
+    std::vector<Vec3d> accelerations;
+    std::vector<double> potentials;  ///< per mass: −G·Σ m/r
+};
+
+/// What a motion conserves, but for the errors of steps and forces.
+struct Conserved {
+    double kinetic = 0, potential = 0;  ///< energies
+    Vec3d momentum, angular_momentum;
+
+    double energy() const { return kinetic + potential; }
+    /// Twice the kinetic over the potential energy: 1 in equilibrium.
+    double virial_ratio() const { return potential == 0 ? 0 : -2 * kinetic / potential; }
+};
+/// O(n).
+Conserved conserved(const MotionState& state);
+
+/// The lengths of block steps.
+struct BlockSteps {
+    double eta = 0.025;
+    int deepest = 16;  ///< the shortest step is dt/2^deepest
+};
+
+class Motion {
+public:
+    /// From particles at rest or moving, at time 0. Finds accelerations, as every step does: O(n).
+    ///
+    /// Throws InputError if the arrays of `start` have unlike lengths, and as `forces` does.
+    explicit Motion(Particles start, const MotionOptions& options = {}, Threads threads = {});
+    /// Goes on from a state, as a motion that had never been interrupted: the same bits.
+    explicit Motion(MotionState saved, const MotionOptions& options = {}, Threads threads = {});
+
+    /// One step of all particles.
+    void step(double dt);
+    /// Steps of a length of each particle's own, until all have come `dt` further. Returns how many forces
+    /// were found, of particles. Throws UsageError for particles without a length of softening.
+    std::uint64_t block_step(double dt, const BlockSteps& steps = {});
+
+    const MotionState& state() const { return state_; }
+
+private:
+    using Ids = std::vector<std::uint32_t>;
+    void accelerate();
+    void accelerate(const Ids& active);
+    void kick(double dt);
+    void kick(const Ids& active, const std::vector<int>& depth, double half_dt);
+    void drift(double dt);
+    int depth_of(std::size_t i, double dt, const BlockSteps& steps) const;
+
+    MotionState state_;
+    MotionOptions options_;
+    Threads threads_;
+    bool known_ = false;  // whether there are accelerations of a step before
+};
+
+}  // namespace hedgerow

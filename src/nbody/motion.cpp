@@ -1,0 +1,139 @@
+/// Leapfrog, in steps of one length or in block steps.
+#include <hedgerow/nbody/motion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <hedgerow/base/error.h>
+
+namespace hedgerow {
+
+Conserved conserved(const MotionState& state) {
+    Conserved sum;
+    const Particles& all = state.particles;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Vec3d momentum = all.velocities[i] * all.masses[i];
+        sum.kinetic += dot(momentum, all.velocities[i]) / 2;
+        sum.potential += all.masses[i] * state.potentials[i] / 2;
+        sum.momentum += momentum;
+        sum.angular_momentum += cross(all.places[i], momentum);
+    }
+    return sum;
+}
+
+Motion::Motion(Particles start, const MotionOptions& options, Threads threads)
+    : Motion(MotionState{0, std::move(start), {}, {}}, options, threads) {}
+
+Motion::Motion(MotionState saved, const MotionOptions& options, Threads threads)
+    : state_(std::move(saved)), options_(options), threads_(threads) {
+    const std::size_t n = state_.particles.size();
+    if (state_.particles.velocities.size() != n || state_.particles.masses.size() != n)
+        throw InputError(std::to_string(n) + " places, " +
+                         std::to_string(state_.particles.velocities.size()) + " velocities and " +
+                         std::to_string(state_.particles.masses.size()) +
+                         " masses: give one of each a particle");
+    known_ = state_.accelerations.size() == n && state_.potentials.size() == n;
+    if (known_) return;
+    state_.accelerations.assign(n, Vec3d()), state_.potentials.assign(n, 0);
+    accelerate();
+}
+
+void Motion::step(double dt) {
+    kick(dt / 2);
+    drift(dt);
+    state_.time += dt;
+    accelerate();
+    kick(dt / 2);
+}
+
+std::uint64_t Motion::block_step(double dt, const BlockSteps& steps) {
+    if (!(options_.softening.length > 0))
+        throw UsageError("block steps need a length of softening: their lengths are √(2·eta·length/|a|)");
+    const std::size_t n = state_.particles.size();
+    const std::uint64_t whole = std::uint64_t{1} << steps.deepest;  // ticks of the shortest step in dt
+    const double start = state_.time, tick = dt / static_cast<double>(whole);
+    std::vector<int> depth(n);
+    Ids active(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        active[i] = static_cast<std::uint32_t>(i);
+        depth[i] = depth_of(i, dt, steps);
+    }
+    std::uint64_t found = 0;
+    for (std::uint64_t now = 0; now < whole;) {
+        kick(active, depth, dt / 2);
+        // Drift to where the shortest of all steps ends: their ends are multiples of their lengths.
+        const int deepest = n > 0 ? *std::max_element(depth.begin(), depth.end()) : 0;
+        const std::uint64_t shortest = whole >> deepest;
+        now += shortest;
+        drift(tick * static_cast<double>(shortest));
+        state_.time = start + tick * static_cast<double>(now);
+        active.clear();
+        for (std::size_t i = 0; i < n; ++i)
+            if (now % (whole >> depth[i]) == 0) active.push_back(static_cast<std::uint32_t>(i));
+        accelerate(active);
+        kick(active, depth, dt / 2);
+        found += active.size();
+        // A step may grow shorter at any of its ends, and longer where the longer one begins.
+        for (const std::uint32_t i : active) {
+            int next = depth_of(i, dt, steps);
+            while (next < depth[i] && now % (whole >> next) != 0) ++next;
+            depth[i] = next;
+        }
+    }
+    state_.time = start + dt;
+    return found;
+}
+
+int Motion::depth_of(std::size_t i, double dt, const BlockSteps& steps) const {
+    const double size = length(state_.accelerations[i]);
+    const double most = std::sqrt(2 * steps.eta * options_.softening.length / size);
+    int depth = 0;
+    while (depth < steps.deepest && std::ldexp(dt, -depth) > most) ++depth;
+    return depth;
+}
+
+void Motion::accelerate() {
+    Ids all(state_.particles.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
+    accelerate(all);
+}
+void Motion::accelerate(const Ids& active) {
+    const Particles& all = state_.particles;
+    const Charges<double> charges{all.places, all.masses, options_.softening};
+    ForceOptions options{options_.accuracy};
+    std::vector<double> sizes;
+    if (known_)
+        for (const std::uint32_t i : active)
+            sizes.push_back(length(state_.accelerations[i]) / options_.gravity);
+    known_ = true;
+    options.sizes = sizes;
+    std::vector<PotentialAt<double>> found(active.size());
+    if (active.size() == all.size()) {
+        forces(charges, std::span(found), options, threads_);
+    } else {
+        std::vector<Vec3d> places;
+        std::vector<double> lengths(active.size(), options_.softening.length);
+        for (const std::uint32_t i : active) places.push_back(all.places[i]);
+        forces(charges, Targets<double>(places, lengths), std::span(found), options, threads_);
+    }
+    for (std::size_t k = 0; k < active.size(); ++k) {
+        state_.accelerations[active[k]] = found[k].gradient * options_.gravity;
+        state_.potentials[active[k]] = -found[k].potential * options_.gravity;
+    }
+}
+
+void Motion::kick(double dt) {
+    Particles& all = state_.particles;
+    for (std::size_t i = 0; i < all.size(); ++i) all.velocities[i] += state_.accelerations[i] * dt;
+}
+void Motion::kick(const Ids& active, const std::vector<int>& depth, double half_dt) {
+    for (const std::uint32_t i : active)
+        state_.particles.velocities[i] += state_.accelerations[i] * std::ldexp(half_dt, -depth[i]);
+}
+void Motion::drift(double dt) {
+    Particles& all = state_.particles;
+    for (std::size_t i = 0; i < all.size(); ++i) all.places[i] += all.velocities[i] * dt;
+}
+
+}  // namespace hedgerow

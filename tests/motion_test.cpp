@@ -1,0 +1,119 @@
+/// Particles that move: orders, what is conserved, block steps, and motions that go on from a state.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/nbody/motion.h>
+#include <hedgerow/scenes/particles.h>
+
+using namespace hedgerow;
+
+namespace {
+
+/// Two unlike masses on an ellipse about each other, from their greatest distance, 1 + e, on.
+Particles pair(double e) {
+    Particles two;
+    two.resize(2);
+    const double speed = std::sqrt((1 - e) / (1 + e));
+    two.masses = {0.75, 0.25};
+    two.places = {{-0.25 * (1 + e), 0, 0}, {0.75 * (1 + e), 0, 0}};
+    two.velocities = {{0, -0.25 * speed, 0}, {0, 0.75 * speed, 0}};
+    return two;
+}
+constexpr MotionOptions exact{.accuracy = 1e-9};
+
+TEST(Motion, OfAPairIsAnEllipse) {
+    // After a period of 2π they are back, but for an error that falls with the square of the step.
+    double before = 0;
+    for (const int steps : {200, 400, 800}) {
+        Motion motion(pair(0.3), exact);
+        for (int i = 0; i < steps; ++i) motion.step(2 * std::numbers::pi / steps);
+        const double error = length(motion.state().particles.places[1] - pair(0.3).places[1]);
+        EXPECT_LE(error, 400.0 / (steps * steps));
+        if (before > 0) {
+            EXPECT_NEAR(before / error, 4, 0.3);
+        }
+        before = error;
+    }
+}
+TEST(Motion, GoesBackTheWayItCame) {
+    Motion there(plummer(500), {.accuracy = 1e-9, .softening = {.length = 0.05}});
+    const Particles start = there.state().particles;
+    for (int i = 0; i < 50; ++i) there.step(0.01);
+    Particles turned = there.state().particles;
+    for (auto& v : turned.velocities) v = v * -1.0;
+    Motion back(turned, {.accuracy = 1e-9, .softening = {.length = 0.05}});
+    for (int i = 0; i < 50; ++i) back.step(0.01);
+    for (std::size_t i = 0; i < start.size(); ++i)
+        ASSERT_LE(length(back.state().particles.places[i] - start.places[i]), 1e-7);
+}
+TEST(Motion, ConservesEnergyAndMomenta) {
+    Motion motion(plummer(3000), {.accuracy = 1e-3, .softening = {.length = 0.02}});
+    const Conserved before = conserved(motion.state());
+    for (int i = 0; i < 64; ++i) motion.step(1.0 / 64);
+    const Conserved after = conserved(motion.state());
+    EXPECT_NEAR(after.energy() / before.energy(), 1, 1e-4);
+    EXPECT_LE(length(after.momentum - before.momentum), 1e-7);
+    EXPECT_LE(length(after.angular_momentum - before.angular_momentum), 1e-4);
+    EXPECT_NEAR(after.virial_ratio(), 1, 0.1);
+}
+TEST(Motion, InBlockStepsConservesTheSame) {
+    const MotionOptions options{.accuracy = 1e-4, .softening = {.length = 0.02}};
+    Motion motion(hernquist(2000), options), fixed(hernquist(2000), options);
+    const Conserved before = conserved(motion.state());
+    std::uint64_t found = 0;
+    for (int i = 0; i < 8; ++i) found += motion.block_step(1.0 / 8);
+    // The shortest steps of all particles would need many more forces.
+    EXPECT_DOUBLE_EQ(motion.state().time, 1);
+    EXPECT_GT(found, 8u * 2000u);
+    EXPECT_LT(found, 100u * 2000u);
+    const Conserved after = conserved(motion.state());
+    EXPECT_NEAR(after.energy() / before.energy(), 1, 2e-3);
+    EXPECT_LE(length(after.momentum - before.momentum), 1e-3);
+}
+TEST(Motion, InBlockStepsOfOneLengthIsTheSameMotion) {
+    const MotionOptions options{.accuracy = 1e-9, .softening = {.length = 0.1}};
+    Motion blocks(plummer(300), options), fixed(plummer(300), options);
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_EQ(blocks.block_step(0.001), 300u);
+        fixed.step(0.001);
+    }
+    for (std::size_t i = 0; i < 300; ++i)
+        EXPECT_EQ(blocks.state().particles.places[i], fixed.state().particles.places[i]);
+}
+TEST(Motion, GoesOnFromAStateWithTheSameBits) {
+    const MotionOptions options{.accuracy = 1e-3, .softening = {.length = 0.02}};
+    Motion whole(plummer(2000), options);
+    for (int i = 0; i < 5; ++i) whole.step(0.01);
+    Motion rest(whole.state(), options);
+    for (int i = 0; i < 5; ++i) whole.step(0.01), rest.step(0.01);
+    EXPECT_EQ(whole.state().particles.places, rest.state().particles.places);
+    EXPECT_EQ(whole.state().particles.velocities, rest.state().particles.velocities);
+    EXPECT_EQ(whole.state().accelerations, rest.state().accelerations);
+    EXPECT_EQ(whole.state().time, rest.state().time);
+}
+TEST(Motion, OfNoneAndOfOne) {
+    Motion none{Particles()};
+    none.step(0.1);
+    EXPECT_EQ(none.state().particles.size(), 0u);
+    Particles one;
+    one.resize(1);
+    one.masses[0] = 1, one.velocities[0] = {1, 0, 0};
+    Motion alone(one, {.softening = {.length = 0.1}});
+    alone.step(0.5);
+    EXPECT_EQ(alone.block_step(0.5), 1u);
+    EXPECT_EQ(alone.state().particles.places[0], Vec3d(1, 0, 0));
+}
+TEST(Motion, RefusesBadInput) {
+    Particles bad = plummer(10);
+    bad.masses.pop_back();
+    EXPECT_THROW(Motion{bad}, InputError);
+    bad = plummer(10);
+    bad.places[3][1] = std::nan("");
+    EXPECT_THROW(Motion{bad}, InputError);
+    EXPECT_THROW(Motion(plummer(10)).block_step(0.1), UsageError);
+    EXPECT_THROW(Motion(plummer(10), {.softening = {.length = -1}}), InputError);
+}
+
+}  // namespace
