@@ -49,12 +49,11 @@ endif()
 hedgerow_pkg_config(core "" ${core_packages})
 install(DIRECTORY include/hedgerow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT core
         FILES_MATCHING PATTERN "*.h"
-        PATTERN include/hedgerow/measure EXCLUDE PATTERN include/hedgerow/nbody EXCLUDE
+        PATTERN include/hedgerow/measure EXCLUDE
         PATTERN include/hedgerow/io EXCLUDE
         PATTERN include/hedgerow/scenes EXCLUDE)
 hedgerow_install(nbody)
 hedgerow_pkg_config(nbody hedgerow-core)
-hedgerow_install_headers(nbody nbody)
 hedgerow_install(any)
 hedgerow_pkg_config(any hedgerow-core)
 hedgerow_install(measure)

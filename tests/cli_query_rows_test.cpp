@@ -134,7 +134,10 @@ TEST_F(QueryRows, MoreAnswersThanWaitInMemoryAreInTheirOrder) {
     const auto queries = rows_of(file("a.npy"), {"query"});
     ASSERT_EQ(queries.size(), 10000 * set.size());
     ASSERT_GT(queries.size() * 16, std::size_t(1) << 25);
-    for (std::size_t i = 0; i < queries.size(); ++i) ASSERT_EQ(queries[i], double(i / set.size()));
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const std::size_t query = i / set.size();
+        ASSERT_EQ(queries[i], double(query));
+    }
 }
 
 TEST_F(QueryRows, MemoryDoesNotGrowWithTheRows) {
@@ -243,7 +246,10 @@ TEST_F(QueryRows, AnInterruptLeavesTheRowsThatWereFinished) {
         ASSERT_TRUE(fs::exists(unfinished));
         const auto rows = rows_of(unfinished, {"query"});
         ASSERT_GT(rows.size(), 0u);
-        for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_EQ(rows[i], double(i / 4));
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const std::size_t query = i / 4;
+            ASSERT_EQ(rows[i], double(query));
+        }
     }
 }
 

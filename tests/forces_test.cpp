@@ -37,8 +37,10 @@ Scene stars(const Particles& all) {
 }
 Scene lattice(int side) {
     Scene scene;
-    for (int i = 0; i < side * side * side; ++i)
-        scene.add(Vec3d(i % side, i / side % side, i / side / side), 1);
+    for (int i = 0; i < side * side * side; ++i) {
+        const int row = i / side, layer = row / side;
+        scene.add(Vec3d(i % side, row % side, layer), 1);
+    }
     return scene;
 }
 /// Two clusters, one 10^6 times as heavy and some times as small.
@@ -131,6 +133,7 @@ TEST(Forces, WhoseSizesAreKnownKeepTheirAccuracy) {
     auto found = forces_of(scene, 1e-2);
     for (const double accuracy : {1e-3, 1e-5, 1e-7}) {
         std::vector<double> sizes;
+        sizes.reserve(found.size());
         for (const auto& at : found) sizes.push_back(length(at.gradient));
         forces<double>(scene.view(), found, {accuracy, sizes});
         const ErrorsOf errors(scene, found);
@@ -236,6 +239,7 @@ TEST(Forces, OfFloatsOfAnyScale) {
         Scene scaled = scene;
         std::vector<Vec3f> places;
         std::vector<float> charges;
+        places.reserve(scene.places.size()), charges.reserve(scene.places.size());
         for (std::size_t i = 0; i < scene.places.size(); ++i) {
             places.emplace_back(scene.places[i] * std::ldexp(1.0, exponent));
             charges.push_back(static_cast<float>(std::ldexp(scene.charges[i], exponent)));

@@ -97,6 +97,7 @@ template <class I, class T>
 auto counts_within(const I& index, T radius) {
     return [&index, radius](const std::vector<Vec<T, 3>>& points, std::span<double> values) {
         std::vector<Sphere<T, 3>> balls;
+        balls.reserve(points.size());
         for (const auto& p : points) balls.push_back({p, radius});
         std::vector<std::size_t> counts(points.size());
         count_overlapping(index, balls, std::span(counts));

@@ -22,7 +22,7 @@ void with_number(NumberType type, const char* at, F f) {
         std::memcpy(&number, at, sizeof number);
         f(number);
     };
-    switch (type) {
+    switch (type) {  // NOLINT(bugprone-branch-clone): each gives another type
         case NumberType::flag:
             return f(*at != 0);
         case NumberType::id:

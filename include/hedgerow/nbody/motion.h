@@ -21,14 +21,6 @@ struct MotionOptions {
     double gravity = 1;  ///< the constant of gravity
 };
 
-/// Particles at a time, and what acts on them: all that a motion goes on from.
-struct MotionState {
-    double time = 0;
-    Particles particles;
-    std::vector<Vec3d> accelerations;
-    std::vector<double> potentials;  ///< per mass: −G·Σ m/r
-};
-
 /// What a motion conserves, but for the errors of steps and forces.
 struct Conserved {
     double kinetic = 0, potential = 0;  ///< energies

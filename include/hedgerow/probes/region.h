@@ -156,10 +156,9 @@ public:
                 Box<double, D> box = lattice.bounds(cell);
                 box.low = box.low - pad, box.high = box.high + pad;
                 if (!meets(box)) {
-                    if constexpr (!requires { lattice.most_skipped; })
-                        return true;
-                    else if (skipped++ < lattice.most_skipped)
-                        return true;
+                    bool skip = true;
+                    if constexpr (requires { lattice.most_skipped; }) skip = skipped++ < lattice.most_skipped;
+                    if (skip) return true;
                 }
             }
             return visit(cell).flow == Flow::go_on;

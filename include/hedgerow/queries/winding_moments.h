@@ -37,7 +37,10 @@ public:
 private:
     static constexpr std::size_t count = (degrees + 1) * (degrees + 1);
     /// A harmonic of degree n and order m, −n <= m <= n.
-    static constexpr std::size_t at(int n, int m) { return static_cast<std::size_t>(n * n + n + m); }
+    static constexpr std::size_t at(int n, int m) {
+        const int place = n * n + n + m;
+        return static_cast<std::size_t>(place);
+    }
     struct Harmonics {
         double re[count] = {}, im[count] = {};
     };
