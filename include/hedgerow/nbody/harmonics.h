@@ -14,7 +14,7 @@ template <std::floating_point T, int order>
 struct Harmonics {
     static constexpr std::size_t count = std::size_t(order + 1) * (order + 2) / 2;
     static constexpr std::size_t at(int n, int m) {
-        const int place = n * n + n + m;
+        const int place = n * (n + 1) / 2 + m;
         return static_cast<std::size_t>(place);
     }
 
