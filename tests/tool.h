@@ -38,9 +38,9 @@ inline ToolResult run(const std::string& arguments) {
     return run_shell(HEDGEROW_TOOL_PATH " " + arguments + " 2>&1");
 }
 
-/// Runs the tool and sends it SIGINT after so many milliseconds. Returns the exit code as a shell reports it:
-/// 130 also if the signal killed the process before it handled signals.
-inline int run_interrupted(std::vector<std::string> arguments, int milliseconds = 1500) {
+/// Runs the tool and sends it a signal after so many milliseconds. Returns the exit code as a shell reports it:
+/// 130 also if SIGINT killed the process before it handled signals.
+inline int run_interrupted(std::vector<std::string> arguments, int milliseconds = 1500, int signal = SIGINT) {
     const pid_t child = fork();
     if (child == 0) {
         std::signal(SIGINT, SIG_DFL);
@@ -52,7 +52,7 @@ inline int run_interrupted(std::vector<std::string> arguments, int milliseconds 
     }
     if (child < 0) return -1;
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-    kill(child, SIGINT);
+    kill(child, signal);
     int status = 0;
     waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

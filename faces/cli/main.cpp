@@ -84,6 +84,13 @@ constexpr Verb verbs[] = {
      "  hedgerow bench gen:hairball --quick --sets diffuse,random --instruction-set avx2\n\n"
      "the engine's rays a second, beside every peer that is present",
      add_bench},
+    {"nbody",
+     "Examples:\n  hedgerow nbody gen:plummer:100000 --forces --accuracy 1e-5 -o acceleration.npy\n"
+     "  hedgerow nbody gen:two-clusters:20000 --until 10 -o merger\n"
+     "  hedgerow nbody --resume --until 20 -o merger\n"
+     "  hedgerow nbody gen:hernquist:100000 --compare\n\n"
+     "forces between particles, their motion, and what each way to find them costs",
+     add_nbody},
     {"info",
      "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n"
      "  hedgerow info scan.ply --check\n\n"

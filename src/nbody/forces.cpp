@@ -21,18 +21,24 @@ namespace hedgerow {
 namespace {
 
 /// How an accuracy is reached: the order of multipoles, whether expansions and pairs are in float, at most
-/// what the rms error of the gradients is to the bound that each conversion keeps, and how long leaves are,
-/// so that pairs and conversions take about as long. Errors were measured on a cube, a lattice, Plummer's and
-/// Hernquist's spheres, a disc, two unlike clusters, and charges that cancel.
+/// what the rms error of the gradients is to the bound that each conversion keeps, how long leaves are, so
+/// that pairs and conversions take about as long, and below how many charges a direct sum is faster. Errors
+/// were measured on a cube, a lattice, Plummer's and Hernquist's spheres, a disc, two unlike clusters, and
+/// charges that cancel.
 struct Plan {
     double least_accuracy;
     int order;
     bool in_float;
     double error_per_bound;
     std::uint32_t leaf_size;
+    std::size_t least_charges;
 };
-constexpr Plan plans[] = {{3e-3, 3, true, 0.6, 48},   {2e-4, 4, true, 0.75, 48},  {1e-5, 6, true, 0.6, 64},
-                          {1e-6, 8, false, 0.85, 64}, {1e-8, 11, false, 0.4, 64}, {1e-9, 11, false, 0.7, 64}};
+constexpr Plan plans[] = {
+    {3e-3, 3, true, 0.6, 48, 1000},   {2e-4, 4, true, 0.75, 48, 1500},  {1e-5, 6, true, 0.6, 64, 2500},
+    {1e-6, 8, false, 0.85, 64, 6000}, {1e-8, 11, false, 0.4, 64, 8000}, {1e-9, 11, false, 0.7, 64, 12000},
+};
+/// Targets that are fewer are summed directly, since the charges' cells take longer.
+constexpr std::size_t least_targets = 256;
 constexpr double most_accuracy = 0.1;
 
 const Plan& plan_for(double accuracy) {
@@ -266,11 +272,12 @@ void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std:
     });
     // Down: each target's walk.
     const std::size_t n = found.size();
+    executor.expect(n);
     std::vector<FmmTask<R>> tasks;
     kernel.walk_above(sources.cells, cells, static_cast<std::uint32_t>(n / 128 + 1), tasks);
     executor.for_each_piece(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            kernel.walk_below(sources.cells, cells, tasks[i]), executor.look();
+            kernel.walk_below(sources.cells, cells, tasks[i]), executor.advance(cells.count[tasks[i].cell]);
     });
     // In the caller's order and units.
     const auto in_units = [](double x, double unit) { return static_cast<T>(x * unit); };
@@ -313,7 +320,12 @@ void forces_at(const Charges<T>& charges, const Targets<T>* targets, std::span<P
     const NbodyKernels* const kernels = nbody_kernels();
     const bool plain = kernels == nullptr && targets == nullptr && !detail::softened(charges) &&
                        found.size() >= 2000 && options.accuracy >= 1e-4;
-    if (charges.places.empty() || (kernels == nullptr && !plain))
+    // A direct sum in float errs by 2⁻²¹ a pair.
+    const bool direct_is_exact = std::same_as<T, double> || plan.in_float || kernels == nullptr;
+    const bool few = charges.places.empty() ||
+                     (direct_is_exact && (charges.places.size() < plan.least_charges ||
+                                          (targets != nullptr && targets->places.size() < least_targets)));
+    if (few || (kernels == nullptr && !plain))
         return direct_sum(charges,
                           targets != nullptr ? *targets : Targets<T>(charges.places, charges.lengths), found,
                           threads);

@@ -4,8 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include <hedgerow/ask/points.h>
 #include <hedgerow/base/error.h>
+#include <hedgerow/index.h>
+#include <hedgerow/primitives/point_cloud.h>
+#include <hedgerow/structures/kdtree/point_kdtree.h>
 
 namespace hedgerow {
 
@@ -20,6 +25,32 @@ Conserved conserved(const MotionState& state) {
         sum.angular_momentum += cross(all.places[i], momentum);
     }
     return sum;
+}
+
+double usual_softening(const Particles& all) {
+    constexpr std::size_t others = 8;
+    if (all.size() <= others) return 0;
+    const PointCloudView<double, 3> cloud(all.places);
+    const auto index = build<PointKdTree>(cloud);
+    std::vector<double> distances;
+    std::vector<Near<double, 3>> near;
+    for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 1000)) {
+        nearest(index, all.places[i], others + 1, near);
+        distances.push_back(std::sqrt(near.back().distance2));
+    }
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    return 0.28 * *middle;
+}
+double usual_step(const MotionState& state, double softening, double eta) {
+    std::vector<double> sizes;
+    for (const Vec3d& a : state.accelerations) sizes.push_back(length(a));
+    if (sizes.empty()) return 1;
+    const auto most =
+        sizes.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(sizes.size() - 1) * 0.999);
+    std::nth_element(sizes.begin(), most, sizes.end());
+    const double step = std::sqrt(2 * eta * softening / *most);
+    return step > 0 && step < 0x1p60 ? std::ldexp(1.0, std::ilogb(step)) : 1;
 }
 
 Motion::Motion(Particles start, const MotionOptions& options, Threads threads)

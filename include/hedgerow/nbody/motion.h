@@ -33,6 +33,14 @@ struct Conserved {
 /// O(n).
 Conserved conserved(const MotionState& state);
 
+/// A length of softening that smooths the grain of particles: 0.28 times the distance to the eighth nearest
+/// other particle, as it is in the middle of a thousand particles. For a Plummer sphere that is about the
+/// radius of half the mass over the cube root of the number. 0 for less than nine particles. O(n).
+double usual_softening(const Particles& particles);
+/// A length of step: √(2·η·length/|a|), for the acceleration that all but a thousandth of the particles stay
+/// below, rounded down to a power of two. 1 where nothing acts. O(n).
+double usual_step(const MotionState& state, double softening, double eta = 0.025);
+
 /// The lengths of block steps.
 struct BlockSteps {
     double eta = 0.025;

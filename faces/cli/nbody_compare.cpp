@@ -1,0 +1,183 @@
+/// hedgerow nbody --compare: what ways to find forces cost and how much they err, over numbers of particles.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/all.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/index.h>
+#include <hedgerow/nbody/barnes_hut.h>
+#include <hedgerow/nbody/forces.h>
+#include <hedgerow/nbody/plain_fmm.h>
+#include <hedgerow/primitives/point_cloud.h>
+
+#include "nbody.h"
+#include "report/table.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+using Found = std::vector<PotentialAt<double>>;
+
+/// A way to find the forces on all particles; `reference` ones are slow, and are not asked for many.
+struct Way {
+    std::string name;
+    std::size_t most;
+    std::function<Found(const Particles&)> find;
+};
+
+template <template <class, int> class Structure>
+Way barnes_hut(const std::string& structure, double angle) {
+    return {fmt::format("Barnes-Hut, {}, angle {:g}", structure, angle), 100000,
+            [angle](const Particles& all) {
+                const PointCloud<double, 3> cloud{all.places};
+                const auto index = build<Structure>(cloud);
+                const BarnesHut method(index, all.masses, angle);
+                Found found(all.size());
+                default_executor().for_each_piece(all.size(), 64, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i) found[i] = method(all.places[i]);
+                });
+                return found;
+            }};
+}
+std::vector<Way> all_ways() {
+    std::vector<Way> ways;
+    ways.push_back({"direct sum", 300000, [](const Particles& all) {
+                        Found found(all.size());
+                        direct_sum<double>({all.places, all.masses}, all.places, found);
+                        return found;
+                    }});
+    ways.push_back(barnes_hut<PointOrthtree>("point-octree", 0.7));
+    ways.push_back(barnes_hut<PointOrthtree>("point-octree", 0.4));
+    ways.push_back(barnes_hut<PointKdTree>("point-kdtree", 0.4));
+    ways.push_back({"fast multipoles, plain, order 4", 100000, [](const Particles& all) {
+                        const PointCloud<double, 3> cloud{all.places};
+                        return PlainFmm<4>(0.6)(build<PointOrthtree>(cloud, {.leaf_size = 32}), all.masses);
+                    }});
+    for (const double accuracy : {1e-2, 1e-3, 1e-5, 1e-7})
+        ways.push_back({fmt::format("forces within {:.0e}", accuracy), largest_scene_size,
+                        [accuracy](const Particles& all) {
+                            Found found(all.size());
+                            forces<double>({all.places, all.masses}, found, {.accuracy = accuracy});
+                            return found;
+                        }});
+    return ways;
+}
+
+/// The rms error of accelerations, each as a share of itself, at some of the particles.
+class Errors {
+public:
+    explicit Errors(const Particles& all) : step_(std::max<std::size_t>(1, all.size() / 1000)) {
+        std::vector<Vec3d> targets;
+        for (std::size_t i = 0; i < all.size(); i += step_) targets.push_back(all.places[i]);
+        want_.resize(targets.size());
+        direct_sum<double>({all.places, all.masses}, targets, want_);
+    }
+    double of(const Found& found) const {
+        double sum = 0;
+        for (std::size_t k = 0; k < want_.size(); ++k)
+            sum += length2(found[k * step_].gradient - want_[k].gradient) /
+                   std::max(length2(want_[k].gradient), 1e-300);
+        return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, want_.size())));
+    }
+
+private:
+    std::size_t step_;
+    Found want_;
+};
+
+struct Measured {
+    double seconds = 0, error = 0;
+};
+/// The best of some runs.
+Measured measured(const Way& way, const Particles& all, const Errors& errors) {
+    Measured best{std::numeric_limits<double>::infinity(), 0};
+    double spent = 0;
+    for (int run = 0; run < 5 && (run == 0 || spent < 0.5); ++run) {
+        const double began = now();
+        const Found found = way.find(all);
+        const double seconds = now() - began;
+        best.seconds = std::min(best.seconds, seconds), spent += seconds;
+        best.error = errors.of(found);
+    }
+    return best;
+}
+Particles first_of(const Particles& all, std::size_t count) {
+    Particles some = all;
+    some.resize(count);
+    return some;
+}
+
+}  // namespace
+
+int nbody_compare(const NbodyArguments& a) {
+    const Particles all = load_particles(a).particles;
+    if (all.size() < 2) throw InputError(a.scene + ": a comparison needs some particles");
+    std::vector<std::size_t> counts;
+    for (std::size_t n = all.size(); n >= std::min<std::size_t>(500, all.size()); n /= 4)
+        counts.insert(counts.begin(), n);
+    const std::vector<Way> ways = all_ways();
+    std::vector<std::vector<std::optional<Measured>>> results(ways.size());
+    {
+        ProgressLine line("comparing", a.quiet);
+        for (const std::size_t n : counts) {
+            const Particles some = first_of(all, n);
+            const Errors errors(some);
+            for (std::size_t w = 0; w < ways.size(); ++w) {
+                line.say(fmt::format("{} of {} particles", ways[w].name, n));
+                line.progress().look();
+                results[w].push_back(n <= ways[w].most ? std::optional(measured(ways[w], some, errors))
+                                                       : std::nullopt);
+            }
+        }
+    }
+    // Report times a particle, the error at the greatest number, and where each overtakes the direct sum.
+    Table table{
+        fmt::format("{}: microseconds a particle", a.scene),
+        "Errors are the rms of those of accelerations as shares of them. A way overtakes the direct sum from "
+        "the first number on at which it is faster.",
+        {"way"},
+        {}};
+    for (const std::size_t n : counts) table.columns.push_back(std::to_string(n));
+    table.columns.insert(table.columns.end(), {"rms error", "overtakes at"});
+    ordered_json json = ordered_json::array();
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+        std::vector<std::string> row{ways[w].name};
+        ordered_json of_way{{"way", ways[w].name}, {"results", ordered_json::array()}};
+        std::size_t overtakes = 0;  // 0: not
+        double error = 0;
+        for (std::size_t k = 0; k < counts.size(); ++k) {
+            const auto& result = results[w][k];
+            if (!result) {
+                row.emplace_back("");
+                continue;
+            }
+            error = result->error;
+            row.push_back(fmt::format("{:.3g}", result->seconds / static_cast<double>(counts[k]) * 1e6));
+            of_way["results"].push_back(
+                {{"particles", counts[k]}, {"seconds", result->seconds}, {"error", result->error}});
+            if (w > 0 && results[0][k] && result->seconds < results[0][k]->seconds) {
+                if (overtakes == 0) overtakes = counts[k];
+            } else if (w > 0 && results[0][k]) {
+                overtakes = 0;
+            }
+        }
+        row.push_back(fmt::format("{:.1e}", error));
+        row.push_back(overtakes > 0 ? std::to_string(overtakes) : "");
+        if (overtakes > 0) of_way["overtakes_direct_sum_at"] = overtakes;
+        table.rows.push_back(row), json.push_back(of_way);
+    }
+    if (a.json)
+        print_json({{"scene", a.scene}, {"ways", json}});
+    else
+        fmt::print("{}", text_of(table));
+    return 0;
+}
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,257 @@
+/// hedgerow nbody --until: moves particles, with snapshots, a log and pictures in a folder.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/io/particle_file.h>
+
+#include "density_picture.h"
+#include "nbody.h"
+#include "view.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::string_view no_pictures = "0x0";
+constexpr std::string_view log_columns =
+    "step,time,kinetic,potential,energy,virial_ratio,momentum,angular_momentum,forces,seconds";
+
+std::string numbered(std::string_view name, std::uint64_t step, std::string_view ending) {
+    return fmt::format("{}-{:07}{}", name, step, ending);
+}
+
+/// The folder of a run: options, snapshots by the number of their step, pictures and the log.
+class RunFolder {
+public:
+    explicit RunFolder(const std::string& path) : path_(path) {}
+
+    fs::path options() const { return path_ / "run.json"; }
+    fs::path log() const { return path_ / "log.csv"; }
+    fs::path snapshot(std::uint64_t step) const { return path_ / numbered("snapshot", step, ".npy"); }
+    fs::path picture(std::uint64_t step) const { return path_ / numbered("picture", step, ".png"); }
+
+    /// Throws UsageError if a run is in the folder already.
+    void expect_none() const {
+        if (fs::exists(options()))
+            throw UsageError(path_.string() +
+                             " holds a run; go on with it by --resume, or name another folder");
+    }
+    void make() const {
+        std::error_code failed;
+        fs::create_directories(path_, failed);
+        if (failed) throw OutputError(path_.string() + ": this folder cannot be made: " + failed.message());
+    }
+    /// The step of the last snapshot. Throws InputError if there is none.
+    std::uint64_t last_step() const {
+        std::uint64_t last = 0;
+        bool found = false;
+        std::error_code failed;
+        for (const auto& file : fs::directory_iterator(path_, failed)) {
+            const std::string name = file.path().filename().string();
+            unsigned long long step = 0;
+            int length = 0;
+            if (std::sscanf(name.c_str(), "snapshot-%llu.npy%n", &step, &length) == 1 &&
+                length == static_cast<int>(name.size()))
+                last = std::max<std::uint64_t>(last, step), found = true;
+        }
+        if (!found) throw InputError(path_.string() + ": there is no snapshot to go on from");
+        return last;
+    }
+    /// The log without the lines after a step.
+    std::string log_until(std::uint64_t step) const {
+        std::string kept, line;
+        std::ifstream old(log());
+        while (std::getline(old, line)) {
+            const bool head = line == log_columns;
+            if (head || (!old.eof() && std::strtoull(line.c_str(), nullptr, 10) <= step)) kept += line + "\n";
+        }
+        return kept;
+    }
+
+private:
+    fs::path path_;
+};
+
+/// What run.json holds: all that a run goes on with, beside its snapshots.
+ordered_json options_of(const NbodyArguments& a, const DensityFrame& frame) {
+    return {{"scene", a.scene},
+            {"seed", a.seed},
+            {"accuracy", a.accuracy},
+            {"softening", a.softening},
+            {"kernel", a.kernel},
+            {"gravity", a.gravity},
+            {"dt", a.dt},
+            {"block_steps", a.block_steps},
+            {"eta", a.eta},
+            {"every", a.every},
+            {"size", a.size},
+            {"frame",
+             {{"x", frame.middle[0]},
+              {"y", frame.middle[1]},
+              {"half_height", frame.half_height},
+              {"most", frame.most}}}};
+}
+void read_options(const fs::path& path, NbodyArguments& a, DensityFrame& frame) {
+    std::ifstream file(path);
+    if (!file) throw InputError(path.string() + ": there is no run to go on with");
+    try {
+        const auto options = ordered_json::parse(file);
+        a.scene = options.at("scene"), a.seed = options.at("seed"), a.accuracy = options.at("accuracy");
+        a.softening = options.at("softening"), a.kernel = options.at("kernel"),
+        a.gravity = options.at("gravity");
+        a.dt = options.at("dt"), a.block_steps = options.at("block_steps"), a.eta = options.at("eta");
+        a.every = options.at("every"), a.size = options.at("size");
+        const auto& of_frame = options.at("frame");
+        frame = {{of_frame.at("x"), of_frame.at("y")}, of_frame.at("half_height"), of_frame.at("most")};
+    } catch (const nlohmann::json::exception& fault) {
+        throw InputError(path.string() + ": " + fault.what());
+    }
+}
+
+class Recorder {
+public:
+    Recorder(const NbodyArguments& a, const RunFolder& folder, const DensityFrame& frame)
+        : folder_(folder), frame_(frame), began_(now()) {
+        if (a.size != no_pictures) std::tie(width_, height_) = parse_size(a.size);
+    }
+
+    void open_log(const std::string& kept) {
+        save_text(folder_.log(), kept.empty() ? std::string(log_columns) + "\n" : kept);
+        log_.open(folder_.log(), std::ios::app);
+    }
+    void line(std::uint64_t step, const MotionState& state, std::uint64_t found) {
+        const Conserved sums = conserved(state);
+        log_ << fmt::format("{},{},{},{},{},{},{},{},{},{:.3f}\n", step, state.time, sums.kinetic,
+                            sums.potential, sums.energy(), sums.virial_ratio(), length(sums.momentum),
+                            length(sums.angular_momentum), found, now() - began_);
+        log_.flush();
+        if (!log_) throw OutputError(folder_.log().string() + " cannot be written");
+    }
+    void snapshot(std::uint64_t step, const MotionState& state) {
+        save_state(folder_.snapshot(step), state);
+        last_ = step, any_ = true;
+        if (width_ == 0) return;
+        save_png(folder_.picture(step),
+                 density_picture(state.particles, frame_, width_, height_,
+                                 {fmt::format("t = {:.4g}", state.time),
+                                  fmt::format("{} particles", state.particles.size())}));
+    }
+    bool has(std::uint64_t step) const { return any_ && last_ == step; }
+
+private:
+    const RunFolder& folder_;
+    const DensityFrame& frame_;
+    std::ofstream log_;
+    double began_;
+    int width_ = 0, height_ = 0;
+    std::uint64_t last_ = 0;
+    bool any_ = false;
+};
+
+int print_summary(const NbodyArguments& a, const Conserved& first, const MotionState& state,
+                  std::uint64_t step, std::uint64_t found, double seconds) {
+    const Conserved last = conserved(state);
+    const double error =
+        first.energy() != 0 ? std::abs((last.energy() - first.energy()) / first.energy()) : 0;
+    if (a.json)
+        print_json({{"output", a.output},
+                    {"particles", state.particles.size()},
+                    {"time", state.time},
+                    {"step", step},
+                    {"dt", a.dt},
+                    {"softening", a.softening},
+                    {"energy", last.energy()},
+                    {"energy_error", error},
+                    {"virial_ratio", last.virial_ratio()},
+                    {"forces", found},
+                    {"seconds", seconds}});
+    else if (!a.quiet)
+        fmt::print(
+            "{}: {} particles to time {:g} by {}{:g} (softening {:.3g}, accuracy {:g})\n"
+            "energy {:.6g}, changed by {:.1e} of itself; virial ratio {:.3f}; "
+            "{:.3g} million forces in {:.1f} s\n",
+            a.output, state.particles.size(), state.time, a.block_steps ? "steps of at most " : "steps of ",
+            a.dt, a.softening, a.accuracy, last.energy(), error, last.virial_ratio(),
+            static_cast<double>(found) / 1e6, seconds);
+    return interrupted ? 130 : 0;
+}
+
+}  // namespace
+
+int nbody_run(NbodyArguments a) {
+    const RunFolder folder(a.output);
+    const double began = now();
+    DensityFrame frame;
+    MotionState start;
+    std::uint64_t step = 0;
+    std::string kept;
+    if (a.resume) {
+        read_options(folder.options(), a, frame);
+        step = folder.last_step();
+        start = load_state(folder.snapshot(step));
+        kept = folder.log_until(step);
+    } else {
+        folder.expect_none();
+        if (a.size != no_pictures) check_picture_memory(a.size, false);
+        start = load_particles(a);
+        folder.make();
+        a.softening = softening_of(a, start.particles).length;
+    }
+    // Find the first accelerations, and what follows from them.
+    const bool first = !a.resume;
+    const MotionOptions options{a.accuracy, softening_of(a, start.particles), a.gravity};
+    Motion motion(std::move(start), options);
+    const Conserved before = conserved(motion.state());
+    if (first) {
+        if (a.dt <= 0) a.dt = usual_step(motion.state(), a.softening, a.eta) * (a.block_steps ? 8 : 1);
+        if (a.every <= 0) a.every = a.until / 10;
+        if (a.size != no_pictures) {
+            const auto [width, height] = parse_size(a.size);
+            frame = DensityFrame::around(motion.state().particles, width, height);
+        }
+    }
+    Recorder recorder(a, folder, frame);
+    recorder.open_log(kept);
+    if (first) {
+        recorder.line(0, motion.state(), motion.state().particles.size());
+        recorder.snapshot(0, motion.state());
+        // Last, so that where there are options there is a snapshot to go on from.
+        save_text(folder.options(), options_of(a, frame).dump(2) + "\n");
+    }
+    // Step until the time is reached, or the run is interrupted.
+    const double left = std::ceil((a.until - motion.state().time) / a.dt - 1e-6);
+    const std::uint64_t end = step + (left > 0 ? static_cast<std::uint64_t>(left) : 0),
+                        between = std::max<std::uint64_t>(
+                            1, static_cast<std::uint64_t>(std::ceil(std::min(a.every / a.dt, 1e15) - 1e-6)));
+    std::uint64_t found = 0;
+    {
+        ProgressLine line("moving particles", a.quiet, "steps");
+        const Progress progress = line.progress();
+        const std::uint64_t from = step;
+        while (step < end && !interrupted) {
+            std::uint64_t of_step = motion.state().particles.size();
+            if (a.block_steps)
+                of_step = motion.block_step(a.dt, {.eta = a.eta});
+            else
+                motion.step(a.dt);
+            found += of_step, ++step;
+            recorder.line(step, motion.state(), of_step);
+            if (step % between == 0) recorder.snapshot(step, motion.state());
+            progress(step - from, end - from);
+        }
+        if (!recorder.has(step) && step > from) recorder.snapshot(step, motion.state());
+    }
+    return print_summary(a, before, motion.state(), step, found, now() - began);
+}
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,173 @@
+/// Tests `hedgerow nbody`: forces in files, runs with their folders, interrupted and killed ones,
+/// comparisons.
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/io/image.h>
+#include <hedgerow/io/npy.h>
+#include <hedgerow/io/particle_file.h>
+#include <hedgerow/nbody/forces.h>
+#include <hedgerow/nbody/motion.h>
+#include <hedgerow/scenes/particles.h>
+
+#include "tool.h"
+
+namespace {
+
+using namespace hedgerow;
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class Nbody : public ToolTest {
+protected:
+    /// The names in the folder of a run that begin so, sorted.
+    std::vector<std::string> named(const std::string& run, const std::string& first) const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(folder / run))
+            if (entry.path().filename().string().starts_with(first))
+                names.push_back(entry.path().filename().string());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+    /// The log without the times that steps took.
+    std::string log_of(const std::string& run) const {
+        std::ifstream log(folder / run / "log.csv");
+        std::string all, line;
+        while (std::getline(log, line)) all += line.substr(0, line.rfind(',')) + "\n";
+        return all;
+    }
+};
+
+TEST_F(Nbody, ForcesAreThoseOfTheLibrary) {
+    EXPECT_EQ(run("nbody gen:plummer:3000 --forces --accuracy 1e-5 --quiet -o " + file("a.npy")).code, 0);
+    EXPECT_EQ(run("nbody gen:plummer:3000 --forces --accuracy 1e-5 --quiet -o " + file("a.csv")).code, 0);
+    const Particles all = plummer(3000);
+    std::vector<PotentialAt<double>> want(all.size());
+    forces<double>({all.places, all.masses}, want, {.accuracy = 1e-5});
+    std::ifstream csv(file("a.csv"));
+    std::string line;
+    std::getline(csv, line);
+    EXPECT_EQ(line, "potential,ax,ay,az");
+    for (const auto& at : want) {
+        double found[4];
+        for (double& x : found) csv >> x, csv.get();
+        ASSERT_EQ(found[0], -at.potential);
+        ASSERT_EQ(Vec3d(found[1], found[2], found[3]), at.gradient);
+    }
+    // At other places, softened.
+    std::ofstream(file("places.csv")) << "x,y,z\n0,0,0\n1,2,3\n";
+    const auto r = run("nbody gen:plummer:3000 --forces --gravity 2 --softening 0.1 --from " +
+                       file("places.csv") + " --json -o " + file("b.json"));
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_EQ(json::parse(r.output)["targets"], 2);
+    const auto rows = json::parse(bytes_of(file("b.json")));
+    const std::vector<Vec3d> places{{0, 0, 0}, {1, 2, 3}};
+    std::vector<PotentialAt<double>> two(2);
+    forces<double>({all.places, all.masses, {.length = 0.1}}, Targets<double>(places), two);
+    EXPECT_EQ(rows[1]["ax"], 2 * two[1].gradient[0]);
+}
+TEST_F(Nbody, ARunHasSnapshotsPicturesAndALog) {
+    const auto r =
+        run("nbody gen:two-clusters:2000 --until 1 --dt 0.0625 --every 0.5 --size 200x100 --json -o " +
+            file("run"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const auto summary = json::parse(r.output);
+    EXPECT_EQ(summary["time"], 1);
+    EXPECT_EQ(summary["step"], 16);
+    EXPECT_LE(summary["energy_error"].get<double>(), 1e-3);
+    const std::vector<std::string> snapshots{"snapshot-0000000.npy", "snapshot-0000008.npy",
+                                             "snapshot-0000016.npy"};
+    EXPECT_EQ(named("run", "snapshot"), snapshots);
+    EXPECT_EQ(named("run", "picture").size(), 3u);
+    const Image picture = load_png(folder / "run/picture-0000016.png");
+    EXPECT_EQ(picture.width, 200);
+    EXPECT_GT(
+        std::count_if(picture.pixels.begin(), picture.pixels.end(), [](const auto& p) { return p[1] > 60; }),
+        200);
+    const MotionState last = load_state(folder / "run" / snapshots[2]);
+    EXPECT_EQ(last.time, 1);
+    EXPECT_EQ(last.particles.size(), 2000u);
+    // The same motion by the library.
+    Motion motion(two_clusters(2000), {.softening = {.length = summary["softening"]}});
+    for (int i = 0; i < 16; ++i) motion.step(0.0625);
+    EXPECT_EQ(last.particles.places, motion.state().particles.places);
+    const std::string log = log_of("run");
+    EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 18);
+}
+TEST_F(Nbody, AKilledRunGoesOnWithTheSameBits) {
+    const std::string options = "nbody gen:plummer:2000 --until 2 --dt 0.015625 --every 0.0625 --quiet -o ";
+    ASSERT_EQ(run(options + file("whole")).code, 0);
+    const auto snapshots = named("whole", "snapshot");
+    for (const int signal : {SIGKILL, SIGINT})
+        for (int milliseconds = 100;; milliseconds *= 2) {
+            fs::remove_all(folder / "part");
+            const int code = run_interrupted({"nbody", "gen:plummer:2000", "--until", "2", "--dt", "0.015625",
+                                              "--every", "0.0625", "--quiet", "-o", file("part")},
+                                             milliseconds, signal);
+            if (!fs::exists(folder / "part/run.json") && milliseconds < 20000) continue;
+            EXPECT_TRUE(code == 0 || code == 128 + signal) << code;
+            const auto r = run("nbody --resume --until 2 --quiet -o " + file("part"));
+            EXPECT_EQ(r.code, 0) << r.output;
+            EXPECT_EQ(bytes_of(folder / "part" / snapshots.back()),
+                      bytes_of(folder / "whole" / snapshots.back()));
+            EXPECT_EQ(log_of("part"), log_of("whole"));
+            break;
+        }
+    // And beyond.
+    ASSERT_EQ(run("nbody --resume --until 2.5 --quiet -o " + file("part")).code, 0);
+    EXPECT_EQ(load_state(folder / "part" / named("part", "snapshot").back()).time, 2.5);
+}
+TEST_F(Nbody, InBlockStepsOrWithoutPictures) {
+    const auto r = run("nbody gen:hernquist:1000 --until 0.5 --block-steps --dt 0.125 --size 0x0 --json -o " +
+                       file("run"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_EQ(json::parse(r.output)["step"], 4);
+    EXPECT_GT(json::parse(r.output)["forces"], 4000);
+    EXPECT_TRUE(named("run", "picture").empty());
+}
+TEST_F(Nbody, ComparesWays) {
+    const auto r = run("nbody gen:plummer:3000 --compare --json");
+    ASSERT_EQ(r.code, 0) << r.output;
+    const auto ways = json::parse(r.output)["ways"];
+    EXPECT_EQ(ways[0]["way"], "direct sum");
+    for (const auto& way : ways) {
+        ASSERT_FALSE(way["results"].empty());
+        EXPECT_LE(way["results"].back()["error"], 0.02) << way["way"];
+        EXPECT_GT(way["results"].back()["seconds"], 0);
+    }
+    const auto text = run("nbody gen:plummer:3000 --compare").output;
+    EXPECT_NE(text.find("forces within 1e-03"), std::string::npos);
+}
+TEST_F(Nbody, OfFewParticlesOrNone) {
+    for (const char* count : {"0", "1", "2"}) {
+        const std::string scene = std::string("gen:plummer:") + count;
+        const auto r = run("nbody " + scene + " --until 1 --dt 0.5 --quiet -o " + file(count));
+        EXPECT_EQ(r.code, 0) << r.output;
+        EXPECT_EQ(run("nbody " + scene + " --forces --quiet -o " + file("few.npy")).code, 0);
+    }
+}
+TEST_F(Nbody, RefusesBadInput) {
+    expect_usage("nbody gen:plummer:100", "say what to do");
+    expect_usage("nbody gen:plummer:100 --forces", "name the file");
+    expect_usage("nbody gen:plummer:100 --until 1", "name the folder");
+    expect_usage("nbody --until 1 -o " + file("x"), "name the particles");
+    expect_usage("nbody gen:cube --until 1 -o " + file("x"), "gen:plummer");
+    expect_usage("nbody gen:plummer:100 --until -1 -o " + file("x"), "--until -1");
+    expect_usage("nbody gen:plummer:100 --until 1 --dt 0 -o " + file("x"), "--dt 0");
+    expect_usage("nbody gen:plummer:100 --until 1 --size large -o " + file("x"), "large");
+    expect_usage("nbody gen:plummer:100 --forces --accuracy 2 -o " + file("a.npy"), "accuracy of 2");
+    expect_usage("nbody gen:plummer:100 --forces -o " + file("a.abc"), "abc");
+    expect_bad("nbody --resume --until 1 -o " + file("x"), "no run");
+    EXPECT_FALSE(fs::exists(folder / "x"));
+    std::ofstream(file("nan.csv")) << "x,y,z\n1,2,3\n1,nan,3\n";
+    expect_bad("nbody " + file("nan.csv") + " --forces -o " + file("a.npy"), "source 1 is nan");
+    ASSERT_EQ(run("nbody gen:plummer:10 --until 0.1 --quiet -o " + file("run")).code, 0);
+    expect_usage("nbody gen:plummer:10 --until 0.1 -o " + file("run"), "--resume");
+    // A snapshot that is cut short, and options that are damaged.
+    const fs::path last = folder / "run" / named("run", "snapshot").back();
+    fs::resize_file(last, fs::file_size(last) - 8);
+    expect_bad("nbody --resume --until 0.2 -o " + file("run"), last.filename().string());
+    std::ofstream(folder / "run/run.json") << "{";
+    expect_bad("nbody --resume --until 0.2 -o " + file("run"), "run.json");
+}
+
+}  // namespace
