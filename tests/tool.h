@@ -38,8 +38,8 @@ inline ToolResult run(const std::string& arguments) {
     return run_shell(HEDGEROW_TOOL_PATH " " + arguments + " 2>&1");
 }
 
-/// Runs the tool and sends it a signal after so many milliseconds. Returns the exit code as a shell reports it:
-/// 130 also if SIGINT killed the process before it handled signals.
+/// Runs the tool and sends it a signal after so many milliseconds. Returns the exit code as a shell reports
+/// it: 130 also if SIGINT killed the process before it handled signals.
 inline int run_interrupted(std::vector<std::string> arguments, int milliseconds = 1500, int signal = SIGINT) {
     const pid_t child = fork();
     if (child == 0) {
