@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <hedgerow/nbody/barnes_hut.h>
+#include <hedgerow/scenes/particles.h>
 #include <hedgerow/scenes/sets.h>
 
 #include "charges.h"
 #include "every_structure.h"
+#include "using.h"
 
 using namespace hedgerow;
 
@@ -79,6 +81,51 @@ TEST(BarnesHut, OfFewOrCoincidentPoints) {
     EXPECT_EQ(method({1, 2, 5}).potential, 50);
     EXPECT_EQ(method({1, 2, 5}).gradient, Vec3d(0, 0, -25));
     EXPECT_THROW((BarnesHut(index, std::span(charges).first(49))), InputError);
+}
+
+/// In vectors, from groups of targets: errors fall with the angle, and by quadrupoles.
+TEST(BarnesHutByGroups, NearsTheDirectSumAsTheAngleShrinks) {
+    const Particles all = plummer(5000);
+    const Charges<double> charges{all.places, all.masses};
+    std::vector<PotentialAt<double>> want(all.size()), found(all.size());
+    direct_sum<double>(charges, all.places, want);
+    const auto error = [&](const BarnesHutOptions& options) {
+        barnes_hut<double>(charges, found, options);
+        double error2 = 0;
+        for (std::size_t i = 0; i < found.size(); ++i)
+            error2 += length2(found[i].gradient - want[i].gradient) / length2(want[i].gradient) /
+                      static_cast<double>(found.size());
+        return std::sqrt(error2);
+    };
+    for (const auto set : instruction_sets()) {
+        const Using use(set);
+        double before = 1;
+        for (const double angle : {0.9, 0.6, 0.3}) {
+            const double by_quadrupoles = error({angle, true});
+            EXPECT_LE(by_quadrupoles, 0.1 * angle * angle * angle) << set;
+            EXPECT_LT(by_quadrupoles, before) << set;
+            if (set != "plain") {
+                EXPECT_LT(by_quadrupoles, 0.6 * error({angle, false})) << set;
+            }
+            before = by_quadrupoles;
+        }
+    }
+}
+TEST(BarnesHutByGroups, OfSoftenedAndOfCoincidentCharges) {
+    const Particles all = plummer(3000);
+    Charges<double> charges{all.places, all.masses, {SofteningKernel::spline, 0.1}};
+    std::vector<PotentialAt<double>> want(all.size()), found(all.size());
+    direct_sum<double>(charges, Targets<double>(all.places), want);
+    barnes_hut<double>(charges, found, {.opening_angle = 0.4});
+    for (std::size_t i = 0; i < found.size(); ++i)
+        ASSERT_LE(length(found[i].gradient - want[i].gradient), 0.02 * length(want[i].gradient) + 1e-3);
+    const std::vector<Vec3d> places(5000, Vec3d(1, 2, 3));
+    const std::vector<double> ones(5000, 1.0);
+    found.resize(5000);
+    barnes_hut<double>({places, ones}, found);
+    for (const auto& at : found) ASSERT_EQ(at.potential, 0);
+    for (const double angle : {0.0, 1.0, -1.0, std::nan("")})
+        EXPECT_THROW(barnes_hut<double>({places, ones}, found, {.opening_angle = angle}), UsageError);
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST_F(Nbody, InBlockStepsOrWithoutPictures) {
     EXPECT_TRUE(named("run", "picture").empty());
 }
 TEST_F(Nbody, ComparesWays) {
-    const auto r = run("nbody gen:plummer:3000 --compare --json");
+    const auto r = run("nbody gen:plummer:3000 --compare --json -o " + file("plot.svg"));
     ASSERT_EQ(r.code, 0) << r.output;
     const auto ways = json::parse(r.output)["ways"];
     EXPECT_EQ(ways[0]["way"], "direct sum");
@@ -134,8 +134,10 @@ TEST_F(Nbody, ComparesWays) {
         EXPECT_LE(way["results"].back()["error"], 0.02) << way["way"];
         EXPECT_GT(way["results"].back()["seconds"], 0);
     }
-    const auto text = run("nbody gen:plummer:3000 --compare").output;
-    EXPECT_NE(text.find("forces within 1e-03"), std::string::npos);
+    EXPECT_NE(bytes_of(file("plot.svg")).find("barnes_hut"), std::string::npos);
+    const auto text = run("nbody gen:plummer:1000 --compare").output;
+    EXPECT_NE(text.find("forces, within 1e-03"), std::string::npos);
+    expect_usage("nbody gen:plummer:1000 --compare -o " + file("plot.png"), ".svg");
 }
 TEST_F(Nbody, OfFewParticlesOrNone) {
     for (const char* count : {"0", "1", "2"}) {

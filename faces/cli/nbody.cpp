@@ -88,7 +88,8 @@ Run add_nbody(CLI::App& verb) {
     verb.add_option("scene", a->scene,
                     "particles: gen:plummer[:SIZE] and other stars, or a file of rows with columns x y z, "
                     "x y z mass, x y z vx vy vz mass, or a snapshot");
-    verb.add_option("-o,--output", a->output, "the file of forces, or the folder of the run");
+    verb.add_option("-o,--output", a->output,
+                    "the file of forces, the folder of the run, or the plot of the comparison (.svg)");
     verb.add_flag("--forces", a->forces, "write potential and acceleration of every particle");
     verb.add_option("--from", a->from, "with --forces: at the places of this file instead");
     verb.add_option("--format", a->format, "of the forces: npy, csv or json; else by the file's name");

@@ -16,6 +16,7 @@
 #include <hedgerow/primitives/point_cloud.h>
 
 #include "nbody.h"
+#include "report/plot.h"
 #include "report/table.h"
 
 namespace hedgerow::cli {
@@ -25,16 +26,19 @@ namespace {
 using nlohmann::ordered_json;
 using Found = std::vector<PotentialAt<double>>;
 
-/// A way to find the forces on all particles; `reference` ones are slow, and are not asked for many.
+/// A way to find the forces on all particles, and the method that it is one setting of. Slow ways are not
+/// asked for more than so many.
 struct Way {
-    std::string name;
+    std::string method, setting;
     std::size_t most;
     std::function<Found(const Particles&)> find;
+
+    std::string name() const { return setting.empty() ? method : method + ", " + setting; }
 };
 
 template <template <class, int> class Structure>
-Way barnes_hut(const std::string& structure, double angle) {
-    return {fmt::format("Barnes-Hut, {}, angle {:g}", structure, angle), 100000,
+Way one_by_one(const std::string& structure, double angle) {
+    return {"Barnes-Hut one by one, " + structure, fmt::format("angle {:g}", angle), 100000,
             [angle](const Particles& all) {
                 const PointCloud<double, 3> cloud{all.places};
                 const auto index = build<Structure>(cloud);
@@ -46,25 +50,37 @@ Way barnes_hut(const std::string& structure, double angle) {
                 return found;
             }};
 }
+template <int order>
+Way plain_multipoles() {
+    return {"fast multipoles, plain", fmt::format("order {}", order), 100000, [](const Particles& all) {
+                const PointCloud<double, 3> cloud{all.places};
+                return PlainFmm<order>(0.6)(build<PointOrthtree>(cloud, {.leaf_size = 32}), all.masses);
+            }};
+}
 std::vector<Way> all_ways() {
+    const auto charges = [](const Particles& all) { return Charges<double>{all.places, all.masses}; };
     std::vector<Way> ways;
-    ways.push_back({"direct sum", 300000, [](const Particles& all) {
+    ways.push_back({"direct sum", "", 300000, [charges](const Particles& all) {
                         Found found(all.size());
-                        direct_sum<double>({all.places, all.masses}, all.places, found);
+                        direct_sum<double>(charges(all), all.places, found);
                         return found;
                     }});
-    ways.push_back(barnes_hut<PointOrthtree>("point-octree", 0.7));
-    ways.push_back(barnes_hut<PointOrthtree>("point-octree", 0.4));
-    ways.push_back(barnes_hut<PointKdTree>("point-kdtree", 0.4));
-    ways.push_back({"fast multipoles, plain, order 4", 100000, [](const Particles& all) {
-                        const PointCloud<double, 3> cloud{all.places};
-                        return PlainFmm<4>(0.6)(build<PointOrthtree>(cloud, {.leaf_size = 32}), all.masses);
-                    }});
-    for (const double accuracy : {1e-2, 1e-3, 1e-5, 1e-7})
-        ways.push_back({fmt::format("forces within {:.0e}", accuracy), largest_scene_size,
-                        [accuracy](const Particles& all) {
+    for (const double angle : {0.7, 0.4}) ways.push_back(one_by_one<PointOrthtree>("point-octree", angle));
+    ways.push_back(one_by_one<PointKdTree>("point-kdtree", 0.4));
+    for (const double angle : {0.8, 0.55, 0.4, 0.28})
+        ways.push_back({"barnes_hut", fmt::format("angle {:g}", angle), largest_scene_size,
+                        [charges, angle](const Particles& all) {
                             Found found(all.size());
-                            forces<double>({all.places, all.masses}, found, {.accuracy = accuracy});
+                            barnes_hut<double>(charges(all), found, {.opening_angle = angle});
+                            return found;
+                        }});
+    ways.push_back(plain_multipoles<2>());
+    ways.push_back(plain_multipoles<4>());
+    for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9})
+        ways.push_back({"forces", fmt::format("within {:.0e}", accuracy), largest_scene_size,
+                        [charges, accuracy](const Particles& all) {
+                            Found found(all.size());
+                            forces<double>(charges(all), found, {.accuracy = accuracy});
                             return found;
                         }});
     return ways;
@@ -114,9 +130,36 @@ Particles first_of(const Particles& all, std::size_t count) {
     return some;
 }
 
+/// Time against error at the greatest number of particles, a line a method.
+LinePlot error_plot(const NbodyArguments& a, const std::vector<Way>& ways,
+                    const std::vector<std::vector<std::optional<Measured>>>& results,
+                    const std::vector<std::size_t>& counts) {
+    LinePlot plot{
+        fmt::format("{} particles of {}: seconds a particle against the error", counts.back(), a.scene),
+        "rms error of the accelerations",
+        Unit::seconds,
+        {},
+        {}};
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+        const auto& result = results[w].back();
+        if (!result || !(result->error > 0)) continue;
+        if (plot.series.empty() || plot.series.back().name != ways[w].method)
+            plot.series.push_back({ways[w].method, plot.series.size(), {}});
+        plot.series.back().points.emplace_back(result->error,
+                                               result->seconds / static_cast<double>(counts.back()));
+    }
+    for (Series& series : plot.series) std::sort(series.points.begin(), series.points.end());
+    return plot;
+}
+
 }  // namespace
 
 int nbody_compare(const NbodyArguments& a) {
+    if (!a.output.empty()) {
+        if (ending_of(a.output) != ".svg")
+            throw UsageError(a.output + ": the plot of a comparison is written as .svg");
+        check_writable(a.output);
+    }
     const Particles all = load_particles(a).particles;
     if (all.size() < 2) throw InputError(a.scene + ": a comparison needs some particles");
     std::vector<std::size_t> counts;
@@ -130,7 +173,7 @@ int nbody_compare(const NbodyArguments& a) {
             const Particles some = first_of(all, n);
             const Errors errors(some);
             for (std::size_t w = 0; w < ways.size(); ++w) {
-                line.say(fmt::format("{} of {} particles", ways[w].name, n));
+                line.say(fmt::format("{}, {} particles", ways[w].name(), n));
                 line.progress().look();
                 results[w].push_back(n <= ways[w].most ? std::optional(measured(ways[w], some, errors))
                                                        : std::nullopt);
@@ -148,8 +191,8 @@ int nbody_compare(const NbodyArguments& a) {
     table.columns.insert(table.columns.end(), {"rms error", "overtakes at"});
     ordered_json json = ordered_json::array();
     for (std::size_t w = 0; w < ways.size(); ++w) {
-        std::vector<std::string> row{ways[w].name};
-        ordered_json of_way{{"way", ways[w].name}, {"results", ordered_json::array()}};
+        std::vector<std::string> row{ways[w].name()};
+        ordered_json of_way{{"way", ways[w].name()}, {"results", ordered_json::array()}};
         std::size_t overtakes = 0;  // 0: not
         double error = 0;
         for (std::size_t k = 0; k < counts.size(); ++k) {
@@ -173,6 +216,7 @@ int nbody_compare(const NbodyArguments& a) {
         if (overtakes > 0) of_way["overtakes_direct_sum_at"] = overtakes;
         table.rows.push_back(row), json.push_back(of_way);
     }
+    if (!a.output.empty()) save_text(a.output, svg_of(error_plot(a, ways, results, counts)));
     if (a.json)
         print_json({{"scene", a.scene}, {"ways", json}});
     else

@@ -31,10 +31,11 @@ constexpr int im(int n, int m) {
     return n * n + 2 * m;
 }
 
-// Calls f(std::integral_constant<int, i>) for i = first ... last, unrolled.
+// Calls f(std::integral_constant<int, i>) for i = first ... last, unrolled. HEDGEROW_UNROLLED, the attributes
+// of such functions, says whether they become one piece of code; the file that includes this one defines it.
 template <int first, int last, class F>
 HWY_INLINE void unrolled(F f) {
-    if constexpr (first <= last) [&]<int... i>(std::integer_sequence<int, i...>) HWY_ATTR {
+    if constexpr (first <= last) [&]<int... i>(std::integer_sequence<int, i...>) HEDGEROW_UNROLLED {
             (f(std::integral_constant<int, first + i>()), ...);
         }
     (std::make_integer_sequence<int, last - first + 1>());
@@ -55,8 +56,8 @@ struct Turn {
 // X(n, m) *= turnᵐ, or by its inverse.
 template <int order, bool back, class F, class T, class V = hn::Vec<F>>
 HWY_INLINE void turn_about_z(F, V* x, const T& turn) {
-    unrolled<1, order>([&](auto n) HWY_ATTR {
-        unrolled<1, n>([&](auto m) HWY_ATTR {
+    unrolled<1, order>([&](auto n) HEDGEROW_UNROLLED {
+        unrolled<1, n>([&](auto m) HEDGEROW_UNROLLED {
             const V a = x[re(n, m)], b = x[im(n, m)], c = turn.c[m], s = turn.s[m];
             if constexpr (back) {
                 x[re(n, m)] = hn::MulAdd(b, s, hn::Mul(a, c));
@@ -75,15 +76,15 @@ inline constexpr SwapMatrices<order> swap_matrices{};
 template <int order, bool local, class F, class V = hn::Vec<F>>
 HWY_INLINE void swap_x_z(F f, V* x) {
     using T = hn::TFromD<F>;
-    unrolled<1, order>([&](auto n) HWY_ATTR {
+    unrolled<1, order>([&](auto n) HEDGEROW_UNROLLED {
         V out[2 * n + 1];
-        unrolled<0, n>([&](auto m) HWY_ATTR {
+        unrolled<0, n>([&](auto m) HEDGEROW_UNROLLED {
             constexpr int N = n, M = m;
-            const auto sum = [&](auto is_real) HWY_ATTR {
+            const auto sum = [&](auto is_real) HEDGEROW_UNROLLED {
                 constexpr bool real = is_real;
                 V all = hn::Zero(f);
                 bool first = true;
-                unrolled<0, N>([&](auto l) HWY_ATTR {
+                unrolled<0, N>([&](auto l) HEDGEROW_UNROLLED {
                     constexpr int L = l;
                     constexpr double b = local ? swap_matrices<order>.local(N, M, L, real)
                                                : swap_matrices<order>.multipole(N, M, L, real);
@@ -135,13 +136,13 @@ HWY_INLINE void convert(F f, V* multipole, V dx, V dy, V dz, V source_scale, V t
     // Convert along the axis.
     V turned[packed_count(q)];
     power = per_r;
-    unrolled<0, q>([&](auto k) HWY_ATTR {
-        unrolled<0, k>([&](auto l) HWY_ATTR {
+    unrolled<0, q>([&](auto k) HEDGEROW_UNROLLED {
+        unrolled<0, k>([&](auto l) HEDGEROW_UNROLLED {
             constexpr int K = k, L = l;
-            const auto sum = [&](auto is_real) HWY_ATTR {
+            const auto sum = [&](auto is_real) HEDGEROW_UNROLLED {
                 constexpr bool real = is_real;
                 V all = zero;
-                unrolled<L, p>([&](auto n) HWY_ATTR {
+                unrolled<L, p>([&](auto n) HEDGEROW_UNROLLED {
                     constexpr double c = ((K + L) % 2 == 0 ? 1 : -1) * factorial(n + K);
                     all = hn::MulAdd(hn::Set(f, T(c)), multipole[real ? re(n, L) : im(n, L)], all);
                 });

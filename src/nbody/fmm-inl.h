@@ -13,6 +13,7 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 
 #include "direct-inl.h"
 #include "moments-inl.h"
@@ -88,6 +89,32 @@ public:
         T local[of_local];
         std::copy_n(task.local.data(), of_local, local);
         walk(task.cell, local, mine, 0, 0, nullptr);
+    }
+
+    // The method of Barnes and Hut for the targets of a leaf together: a cell acts by its multipole, or as
+    // one charge, if its radius is less than so many times the least distance of its center from them.
+    void walk_group(std::uint32_t leaf, double opening_angle, bool by_multipoles) {
+        near_.clear(), small_.clear(), single_.clear();
+        stack_.assign(1, 0);
+        while (!stack_.empty()) {
+            const std::uint32_t source = stack_.back();
+            stack_.pop_back();
+            const double dx = sources_.cx[source] - targets_.cx[leaf],
+                         dy = sources_.cy[source] - targets_.cy[leaf],
+                         dz = sources_.cz[source] - targets_.cz[leaf];
+            const double distance = std::sqrt(dx * dx + dy * dy + dz * dz) - double(targets_.radius[leaf]),
+                         radius = double(sources_.radius[source]),
+                         soft = double(HWY_MAX(sources_.softest[source], targets_.softest[leaf]));
+            if (radius < opening_angle * distance && radius + soft < distance)
+                (by_multipoles ? small_ : single_).push_back(source);
+            else if (!sources_.is_leaf(source))
+                for (std::uint32_t i = 0; i < sources_.children[source]; ++i)
+                    stack_.push_back(sources_.child[source] + i);
+            else if (!alone_ || source != leaf || targets_.radius[leaf] > 0)
+                near_.push_back(source);
+        }
+        const T nothing[of_local] = {};
+        finish(leaf, nothing);
     }
 
 private:
@@ -327,7 +354,7 @@ private:
     void finish(std::uint32_t c, const T* local) {
         // Gather the near charges, as offsets from this leaf's center, in the unit of its expansion.
         const T per_unit = 1 / targets_.scale[c];
-        std::size_t sources = 0;
+        std::size_t sources = single_.size();
         for (const std::uint32_t near : near_) sources += sources_.count[near];
         const bool softened = !sources_.soft.empty();
         for (BareVector<T>* row : {&x_, &y_, &z_, &charge_, &soft_})
@@ -348,6 +375,12 @@ private:
             if (softened)
                 for (std::size_t i = 0; i < count; ++i) soft_[at + i] = sources_.soft[first + i] * per_unit;
             at += count;
+        }
+        for (const std::uint32_t single : single_) {
+            x_[at] = static_cast<T>(sources_.cx[single] - cx) * per_unit;
+            y_[at] = static_cast<T>(sources_.cy[single] - cy) * per_unit;
+            z_[at] = static_cast<T>(sources_.cz[single] - cz) * per_unit;
+            charge_[at] = sources_.multipoles[single * E::stride], soft_[at] = 0, ++at;
         }
         for (std::size_t i = at; i < at + row_padding; ++i) x_[i] = y_[i] = z_[i] = charge_[i] = soft_[i] = 0;
         // Sum over pairs.
@@ -419,6 +452,8 @@ private:
     // Of the target in hand: leaves that act on it by pairs, cells that act on its charges by their
     // multipoles, and leaves whose charges act on its local expansion.
     std::vector<std::uint32_t> near_, small_, large_leaves_;
+    // Cells that act as single charges, and those that a walk has yet to look at.
+    std::vector<std::uint32_t> single_, stack_;
     BareVector<T> x_, y_, z_, charge_, soft_, target_x_, target_y_, target_z_, target_soft_;
     std::vector<double> sums_;
 };

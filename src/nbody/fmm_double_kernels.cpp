@@ -1,6 +1,8 @@
 /// The fast multipole method in double, compiled for each instruction set: Highway's foreach_target includes
 /// this file once for each. The tables of kernels.cpp point to it.
 #if HEDGEROW_HAS_HIGHWAY
+// High orders are not unrolled into one piece of code, which is a sixth slower.
+#define HEDGEROW_UNROLLED HWY_ATTR
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nbody/fmm_double_kernels.cpp"

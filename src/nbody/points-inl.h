@@ -22,7 +22,7 @@ HWY_INLINE void for_each_singular_in_lanes(F f, V x, V y, V z, G g) {
     const V per_r2 = hn::Div(hn::Set(f, T(1)), r2);
     const V a = hn::Mul(x, per_r2), b = hn::Mul(y, per_r2), c = hn::Mul(z, per_r2);
     ComplexLanes<V> diagonal{hn::Sqrt(per_r2), hn::Zero(f)};
-    unrolled<0, order>([&](auto m) HWY_ATTR {
+    unrolled<0, order>([&](auto m) HEDGEROW_UNROLLED {
         constexpr int M = m;
         if constexpr (M > 0) {
             const V odd = hn::Set(f, T(2 * M - 1));
@@ -31,7 +31,7 @@ HWY_INLINE void for_each_singular_in_lanes(F f, V x, V y, V z, G g) {
         }
         ComplexLanes<V> before{hn::Zero(f), hn::Zero(f)}, now = diagonal;
         g(m, m, now);
-        unrolled<M + 1, order>([&](auto n) HWY_ATTR {
+        unrolled<M + 1, order>([&](auto n) HEDGEROW_UNROLLED {
             constexpr int N = n;
             const V of_now = hn::Mul(hn::Set(f, T(2 * N - 1)), c),
                     of_before = hn::Mul(hn::Set(f, T((N - 1) * (N - 1) - M * M)), per_r2);
@@ -47,7 +47,7 @@ HWY_INLINE void for_each_singular_in_lanes(F f, V x, V y, V z, G g) {
 // from them: L(k, l) = (−1)ᵏ·q·S(k, l).
 template <int q, class F, class V>
 HWY_INLINE void expand_at(F f, V charge, V x, V y, V z, V* sums) {
-    for_each_singular_in_lanes<q>(f, x, y, z, [&](auto k, auto l, ComplexLanes<V> s) HWY_ATTR {
+    for_each_singular_in_lanes<q>(f, x, y, z, [&](auto k, auto l, ComplexLanes<V> s) HEDGEROW_UNROLLED {
         const V signed_charge = k % 2 == 0 ? charge : hn::Neg(charge);
         sums[re(k, l)] = hn::MulAdd(signed_charge, s.re, sums[re(k, l)]);
         if constexpr (l > 0) sums[im(k, l)] = hn::MulAdd(signed_charge, s.im, sums[im(k, l)]);
@@ -61,11 +61,11 @@ template <int p, class F, class V, class T>
 HWY_INLINE void evaluate_multipole(F f, const T* multipole, V x, V y, V z, V& potential, V& gx, V& gy,
                                    V& gz) {
     potential = gx = gy = gz = hn::Zero(f);
-    for_each_singular_in_lanes<p + 1>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> s) HWY_ATTR {
+    for_each_singular_in_lanes<p + 1>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> s) HEDGEROW_UNROLLED {
         constexpr int N = n, M = m;
         constexpr T twice = M == 0 ? T(1) : T(2);
         // Adds twice · Re(conj(a + ib) · S).
-        const auto add = [&](V& sum, T a, T b) HWY_ATTR {
+        const auto add = [&](V& sum, T a, T b) HEDGEROW_UNROLLED {
             sum = hn::MulAdd(hn::Set(f, twice * a), s.re, sum);
             if constexpr (M > 0) sum = hn::MulAdd(hn::Set(f, twice * b), s.im, sum);
         };

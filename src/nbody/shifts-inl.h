@@ -26,7 +26,7 @@ HWY_INLINE void for_each_regular_in_lanes(F f, V x, V y, V z, G g) {
     using T = hn::TFromD<F>;
     const V r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
     ComplexLanes<V> diagonal{hn::Set(f, T(1)), hn::Zero(f)};
-    unrolled<0, order>([&](auto m) HWY_ATTR {
+    unrolled<0, order>([&](auto m) HEDGEROW_UNROLLED {
         constexpr int M = m;
         if constexpr (M > 0) {
             const V half = hn::Set(f, T(0.5) / T(M));
@@ -35,7 +35,7 @@ HWY_INLINE void for_each_regular_in_lanes(F f, V x, V y, V z, G g) {
         }
         ComplexLanes<V> before{hn::Zero(f), hn::Zero(f)}, now = diagonal;
         g(m, m, now);
-        unrolled<M + 1, order>([&](auto n) HWY_ATTR {
+        unrolled<M + 1, order>([&](auto n) HEDGEROW_UNROLLED {
             constexpr int N = n;
             constexpr T per = T(1) / T((N + M) * (N - M));
             const V of_now = hn::Mul(hn::Set(f, T(2 * N - 1) * per), z),
@@ -51,7 +51,7 @@ HWY_INLINE void for_each_regular_in_lanes(F f, V x, V y, V z, G g) {
 // Adds the charges in the lanes to sums of multipoles in lanes.
 template <int p, class F, class V>
 HWY_INLINE void expand_points(F f, V charge, V x, V y, V z, V* sums) {
-    for_each_regular_in_lanes<p>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> r) HWY_ATTR {
+    for_each_regular_in_lanes<p>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> r) HEDGEROW_UNROLLED {
         sums[re(n, m)] = hn::MulAdd(charge, r.re, sums[re(n, m)]);
         if constexpr (m > 0) sums[im(n, m)] = hn::MulAdd(charge, r.im, sums[im(n, m)]);
     });
@@ -80,7 +80,7 @@ struct Unpacked {
 };
 template <int order, class F, class V>
 HWY_INLINE void regular_in_lanes(F f, V x, V y, V z, V* packed) {
-    for_each_regular_in_lanes<order>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> r) HWY_ATTR {
+    for_each_regular_in_lanes<order>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> r) HEDGEROW_UNROLLED {
         packed[re(n, m)] = r.re;
         if constexpr (m > 0) packed[im(n, m)] = r.im;
     });
@@ -131,11 +131,11 @@ HWY_NOINLINE void shift_locals(F f, const V* whole, V x, V y, V z, V* part) {
 template <int q, class F, class V, class T>
 HWY_INLINE void evaluate_local(F f, const T* local, V x, V y, V z, V& potential, V& gx, V& gy, V& gz) {
     potential = gx = gy = gz = hn::Zero(f);
-    for_each_regular_in_lanes<q>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> r) HWY_ATTR {
+    for_each_regular_in_lanes<q>(f, x, y, z, [&](auto n, auto m, ComplexLanes<V> r) HEDGEROW_UNROLLED {
         constexpr int N = n, M = m;
         constexpr T twice = M == 0 ? T(1) : T(2);
         // Adds twice · Re(conj(R) · (a + ib)).
-        const auto add = [&](V& sum, T a, T b) HWY_ATTR {
+        const auto add = [&](V& sum, T a, T b) HEDGEROW_UNROLLED {
             sum = hn::MulAdd(hn::Set(f, twice * a), r.re, sum);
             if constexpr (M > 0) sum = hn::MulAdd(hn::Set(f, twice * b), r.im, sum);
         };

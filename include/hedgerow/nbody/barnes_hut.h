@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/nbody/direct_sum.h>
 #include <hedgerow/nbody/potential.h>
 #include <hedgerow/probes/point.h>
 #include <hedgerow/walks/fold.h>
@@ -122,5 +123,24 @@ private:
     Kernel kernel_;
     std::vector<Cell> cells_;
 };
+
+struct BarnesHutOptions {
+    /// A cell acts as a whole if its radius around its center of charge is less than so many times the least
+    /// distance from there to a group of targets. Above 0 and below 1.
+    double opening_angle = 0.5;
+    /// By its quadrupole too; else as one charge.
+    bool quadrupoles = true;
+};
+/// Writes the potential Σ q/r, or that of softened charges, and its gradient at each charge, of all others,
+/// by the method of Barnes and Hut in vectors: one walk for each leaf of an octree, with about 48 targets, in
+/// single precision (errors below 10⁻⁵ are out of reach). For masses; charges that cancel have poor centers.
+/// Forces do not add up to nothing. `forces` reaches any error in less time, and keeps it; this is the method
+/// of its name for those who need it. O(n log n); the same bits for any executor.
+///
+/// Throws as `forces` does, and UsageError for an angle out of its range. In the library `nbody`; T is float
+/// or double.
+template <std::floating_point T>
+void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found,
+                const BarnesHutOptions& options = {}, Threads threads = {});
 
 }  // namespace hedgerow

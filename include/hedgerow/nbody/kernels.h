@@ -63,8 +63,11 @@ struct FmmKernel {
                        std::vector<FmmTask<T>>& tasks);
     /// Finishes a task: finds potentials and gradients at all targets of its cell.
     void (*walk_below)(const FmmCells<T>& sources, FmmCells<T>& targets, const FmmTask<T>&);
+    /// The method of Barnes and Hut for the targets of leaves `first` to `end`, each leaf's together.
+    void (*walk_groups)(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t first,
+                        std::uint32_t end, double opening_angle, bool by_multipoles);
 };
-using FmmFloatKernels = std::array<FmmKernel<float>, 3>;
+using FmmFloatKernels = std::array<FmmKernel<float>, 4>;
 using FmmDoubleKernels = std::array<FmmKernel<double>, 2>;
 
 /// The kernels of one instruction set. Orders ascend.

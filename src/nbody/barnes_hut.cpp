@@ -1,0 +1,70 @@
+/// The method of Barnes and Hut in vectors: a walk for each leaf of targets.
+#include <hedgerow/nbody/barnes_hut.h>
+
+#include "sorted_charges.h"
+
+namespace hedgerow {
+namespace {
+
+constexpr std::uint32_t group = 48;
+constexpr std::size_t least_charges = 500;  // fewer are summed directly
+
+template <class T>
+void by_groups(const Charges<T>& charges, std::span<PotentialAt<T>> found, const BarnesHutOptions& options,
+               const FmmKernel<float>& kernel, const detail::Units& units, Executor& executor) {
+    detail::Sorted<float, T> sorted(charges, units, group, kernel, executor);
+    FmmCells<float>& cells = sorted.cells;
+    executor.for_each_piece(cells.size(), 64, [&](std::size_t begin, std::size_t end) {
+        kernel.walk_groups(cells, cells, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
+                           options.opening_angle, options.quadrupoles);
+        executor.look();
+    });
+    detail::hand_out(sorted, units, found, executor);
+}
+
+/// Without kernels: a walk for each target.
+template <class T>
+void one_by_one(const Charges<T>& charges, std::span<PotentialAt<T>> found, double opening_angle,
+                Executor& executor) {
+    const Index<PointOrthtree<T, 3>, PointCloudView<T, 3>> index(PointCloudView<T, 3>(charges.places), {},
+                                                                 executor);
+    std::vector<double> all(charges.charges.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<double>(charges.charges[i]);
+    const BarnesHut method(index, all, opening_angle);
+    executor.for_each_piece(found.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const PotentialAt<double> at = method(charges.places[i]);
+            found[i] = {static_cast<T>(at.potential), Vec<T, 3>(at.gradient)};
+        }
+    });
+}
+
+}  // namespace
+
+template <std::floating_point T>
+void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, const BarnesHutOptions& options,
+                Threads threads) {
+    if (!(options.opening_angle > 0 && options.opening_angle < 1))
+        throw UsageError("an opening angle of " + std::to_string(options.opening_angle) +
+                         " is not above 0 and below 1");
+    detail::expect_room(found.size(), charges.places.size());
+    const detail::Extremes<T> extremes(charges);  // throws for bad numbers
+    const NbodyKernels* const kernels = nbody_kernels();
+    if (found.size() < least_charges || (kernels == nullptr && detail::softened(charges)))
+        return direct_sum(charges, Targets<T>(charges.places, charges.lengths), found, threads);
+    Executor& executor = threads.over(found.size());
+    in_ieee_mode([&] {
+        IeeeExecutor ieee(executor);
+        if (kernels == nullptr)
+            one_by_one(charges, found, options.opening_angle, ieee);
+        else
+            by_groups(charges, found, options, (*kernels->fmm_float)[0], detail::Units(extremes), ieee);
+    });
+}
+
+template void barnes_hut(const Charges<float>&, std::span<PotentialAt<float>>, const BarnesHutOptions&,
+                         Threads);
+template void barnes_hut(const Charges<double>&, std::span<PotentialAt<double>>, const BarnesHutOptions&,
+                         Threads);
+
+}  // namespace hedgerow

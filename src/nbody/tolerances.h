@@ -1,0 +1,128 @@
+/// How large an error a conversion may make in each cell of targets, and how far its targets spread.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <hedgerow/parallel/executor.h>
+
+#include "cells.h"
+
+namespace hedgerow::detail {
+
+/// About the least gradient in a leaf: that of all other cells as single charges (Barnes and Hut), each
+/// farther away by the leaf's radius, or a hundredth of the sum of their sizes.
+template <class R>
+double strength_in(const FmmCells<R>& sources, const FmmCells<R>& targets, std::uint32_t leaf) {
+    thread_local std::vector<std::uint32_t> stack;
+    constexpr double opening_angle = 0.7;
+    const double own = static_cast<double>(targets.radius[leaf]);
+    double x = 0, y = 0, z = 0, size = 0;
+    stack.assign(1, 0);
+    while (!stack.empty()) {
+        const std::uint32_t other = stack.back();
+        stack.pop_back();
+        const double dx = sources.cx[other] - targets.cx[leaf], dy = sources.cy[other] - targets.cy[leaf],
+                     dz = sources.cz[other] - targets.cz[leaf];
+        const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+        if (!sources.is_leaf(other) &&
+            !(static_cast<double>(sources.reach[other]) < opening_angle * distance)) {
+            for (std::uint32_t i = 0; i < sources.children[other]; ++i)
+                stack.push_back(sources.child[other] + i);
+            continue;
+        }
+        if (!(distance > 0)) continue;
+        const double per_d2 = 1 / ((distance + own) * (distance + own)), along = per_d2 / distance;
+        const double charge = static_cast<double>(sources.multipoles[other * sources.multipole_stride]);
+        x += charge * along * dx, y += charge * along * dy, z += charge * along * dz;
+        size += static_cast<double>(sources.weight[other]) * per_d2;
+    }
+    return std::max(std::sqrt(x * x + y * y + z * z), 0.01 * size);
+}
+/// What counts of the errors in a cell: the mean of some power of them as shares of the gradients, so that a
+/// few targets that are far out or where gradients are small count as they should.
+constexpr double error_power = 4;
+
+/// The tolerance and the spread of a leaf whose gradients are known, of sizes in the units of the cells.
+template <class R, class F>
+void set_leaf_by(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
+    // No charge is farther away than the far side of all of them.
+    const double dx = sources.cx[0] - targets.cx[leaf], dy = sources.cy[0] - targets.cy[leaf],
+                 dz = sources.cz[0] - targets.cz[leaf];
+    const double farthest = std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(sources.radius[0]) +
+                            static_cast<double>(targets.radius[leaf]);
+    const double least = 0.01 * static_cast<double>(sources.weight[0]) / (farthest * farthest);
+    const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
+    const double per_radius = targets.radius[leaf] > 0 ? 1 / static_cast<double>(targets.radius[leaf]) : 0;
+    double inverse = 0, spread = 0;
+    for (std::size_t i = first; i < end; ++i) {
+        const double size = std::max(size_of(i), least), inverse2 = 1 / (size * size),
+                     x = static_cast<double>(targets.dx[i]) * per_radius,
+                     y = static_cast<double>(targets.dy[i]) * per_radius,
+                     z = static_cast<double>(targets.dz[i]) * per_radius, r2 = x * x + y * y + z * z;
+        double power = 1;
+        for (int k = 0; k < order; ++k) power *= r2;
+        inverse += inverse2 * inverse2, spread += inverse2 * inverse2 * power * power;
+    }
+    targets.spread[leaf] =
+        targets.radius[leaf] * static_cast<R>(std::pow(spread / inverse, 1 / (error_power * order)));
+    targets.tolerance[leaf] =
+        static_cast<R>(std::pow(static_cast<double>(targets.count[leaf]) / inverse, 1 / error_power));
+}
+/// The same by an estimate that is less than all gradients in the leaf.
+template <class R>
+void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order) {
+    targets.tolerance[leaf] = static_cast<R>(strength_in(sources, targets, leaf));
+    const R radius = targets.radius[leaf], per_radius = radius > 0 ? 1 / radius : 0;
+    const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
+    R spread = 0;
+    for (std::size_t i = first; i < end; ++i) {
+        const R x = targets.dx[i] * per_radius, y = targets.dy[i] * per_radius,
+                z = targets.dz[i] * per_radius;
+        const R r2 = x * x + y * y + z * z;
+        R power = 1;
+        for (int k = 0; k < order; ++k) power *= r2;
+        spread += power * power;
+    }
+    targets.spread[leaf] = radius * std::pow(spread / static_cast<R>(targets.count[leaf]),
+                                             static_cast<R>(1 / (error_power * order)));
+}
+/// Sets tolerances and spreads of all cells above the leaves, as if the targets of a cell were all on its far
+/// side, and takes the share of the tolerances that a conversion may err by.
+template <class R>
+void set_cells(FmmCells<R>& targets, double share, int order) {
+    for (std::size_t c = targets.size(); c-- > 0;) {
+        if (targets.is_leaf(c)) continue;
+        double count = 0, spread = 0, least = static_cast<double>(targets.tolerance[targets.child[c]]);
+        const std::uint32_t first = targets.child[c], end = first + targets.children[c];
+        for (std::uint32_t k = first; k < end; ++k)
+            least = std::min(least, static_cast<double>(targets.tolerance[k]));
+        for (std::uint32_t k = first; k < end; ++k) {
+            const double dx = targets.cx[k] - targets.cx[c], dy = targets.cy[k] - targets.cy[c],
+                         dz = targets.cz[k] - targets.cz[c];
+            const double far =
+                std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(targets.spread[k]);
+            const double inverse = least / static_cast<double>(targets.tolerance[k]);
+            const double weight = targets.count[k] * inverse * inverse * inverse * inverse;
+            count += weight;
+            spread += weight * std::pow(far / static_cast<double>(targets.radius[c]), error_power * order);
+        }
+        targets.tolerance[c] = static_cast<R>(least * std::pow(targets.count[c] / count, 1 / error_power));
+        targets.spread[c] =
+            std::min(targets.radius[c],
+                     targets.radius[c] * static_cast<R>(std::pow(spread / count, 1 / (error_power * order))));
+    }
+    for (R& tolerance : targets.tolerance) tolerance *= static_cast<R>(share);
+}
+template <class R, class F>
+void set_tolerances(FmmCells<R>& targets, double share, int order, Executor& executor, F set) {
+    executor.for_each_piece(targets.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c)
+            if (targets.is_leaf(c)) set(static_cast<std::uint32_t>(c));
+    });
+    set_cells(targets, share, order);
+}
+
+}  // namespace hedgerow::detail
