@@ -139,6 +139,18 @@ TEST_F(Nbody, ComparesWays) {
     EXPECT_NE(text.find("forces, within 1e-03"), std::string::npos);
     expect_usage("nbody gen:plummer:1000 --compare -o " + file("plot.png"), ".svg");
 }
+TEST_F(Nbody, DrawsWhatActsOnAParticle) {
+    const auto r = run("draw gen:disc:5000 --forces-at 1,1,0 --json -o " + file("a.svg"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    std::size_t particles = 0;
+    const auto facts = json::parse(r.output);
+    for (const auto& kind : facts["acting"]) particles += kind["particles"].get<std::size_t>();
+    EXPECT_EQ(particles, 5000u);
+    EXPECT_NE(bytes_of(file("a.svg")).find("one by one, on the target"), std::string::npos);
+    expect_usage("draw gen:disc:5000 --forces-at 1,1,0 -o " + file("a.png"), ".svg");
+    expect_usage("draw gen:cube --forces-at 1,1,0 -o " + file("b.svg"), "gen:plummer");
+    expect_bad("draw gen:disc:0 --forces-at 1,1,0 -o " + file("b.svg"), "no particle");
+}
 TEST_F(Nbody, OfFewParticlesOrNone) {
     for (const char* count : {"0", "1", "2"}) {
         const std::string scene = std::string("gen:plummer:") + count;

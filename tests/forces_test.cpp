@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/nbody/acting_cells.h>
 #include <hedgerow/nbody/forces.h>
 #include <hedgerow/scenes/particles.h>
 #include <hedgerow/scenes/random.h>
@@ -252,6 +253,28 @@ TEST(Forces, OfFloatsOfAnyScale) {
             in_double.push_back({static_cast<double>(at.potential), Vec3d(at.gradient)});
         EXPECT_LE(error_of(scaled, in_double), 1e-4) << exponent;
     }
+}
+/// Of each charge, the cells that act on it hold every other one, once.
+TEST(Forces, CellsThatActHoldEachChargeOnce) {
+    const Scene scene = stars(plummer(20000));
+    for (const auto set : instruction_sets()) {
+        const Using use(set);
+        for (const double accuracy : {1e-3, 1e-6})
+            for (const std::size_t i : {0u, 77u, 19999u}) {
+                const auto cells = acting_cells<double>(scene.view(), i, {.accuracy = accuracy});
+                std::size_t held = 0, pairs = 0;
+                for (const auto& cell : cells) {
+                    held += cell.count;
+                    if (cell.by == ActsBy::pairs) pairs += cell.count;
+                }
+                EXPECT_EQ(held, set == "plain" ? 0 : 20000) << set;  // its own leaf with it
+                if (set == "plain") continue;
+                EXPECT_GT(pairs, 0u);
+                EXPECT_LT(pairs, 15000u);
+                EXPECT_LT(cells.size(), 3000u);
+            }
+    }
+    EXPECT_TRUE(acting_cells<double>(scene.view(), 20000).empty());
 }
 TEST(Forces, RefuseBadInput) {
     Scene scene = cube(100);

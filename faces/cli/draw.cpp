@@ -158,7 +158,18 @@ Run add_draw(CLI::App& verb) {
         ->description(
             "of points, drawn as spheres; 0: by their number. With --field count: within which primitives "
             "are counted; 0: a twentieth of the scene's diagonal");
+    auto* const forces_at =
+        verb.add_option("--forces-at", a->forces_at,
+                        "x,y,z: of particles, the cells that act on the one nearest to this place, as SVG")
+            ->delimiter(',')
+            ->expected(3);
+    verb.add_option("--accuracy", a->accuracy, "of the forces")->needs(forces_at)->capture_default_str();
+    for (auto* other : {structure, beside, tree, slice, depth, ray, heat, field}) forces_at->excludes(other);
     return [a] {
+        if (!a->forces_at.empty()) {
+            check_writable(a->output);
+            return draw_forces(*a);
+        }
         return in_precision(*a, [&]<class T>(T) {
             check<T>(*a);
             return draw(*a, load<T>(*a));

@@ -22,7 +22,8 @@ struct DrawArguments : Common {
     std::string structure = "wide", slice, heat, field;
     std::vector<std::string> beside;
     ViewArguments view;
-    std::vector<double> ray;
+    std::vector<double> ray, forces_at;
+    double accuracy = 1e-3;
     bool frames = false, tree = false, log = false, stop_at_first = false;
     int levels = 0, width = 1024;
     std::optional<int> height;
@@ -53,6 +54,9 @@ int draw_wireframe(const DrawArguments& a, const Scene<T>& scene);
 /// scene.
 template <class T>
 int draw_heat(const DrawArguments& a, const Scene<T>& scene);
+
+/// Draws the cells that act on the particle that is nearest to --forces-at. Returns the exit code.
+int draw_forces(const DrawArguments& a);
 
 /// Draws a field over a plane through a scene in space: distances, winding numbers or counts. Returns the
 /// exit code. Throws InputError for scenes without such a field.

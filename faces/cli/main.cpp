@@ -69,8 +69,10 @@ constexpr Verb verbs[] = {
      "  hedgerow draw gen:segments2d:80 --structure bvh:builder=midpoint --beside bvh:builder=sweep -o "
      "two.svg\n"
      "  hedgerow draw gen:teapot-in-stadium --heat tests --scale 60 -o heat.png\n"
-     "  hedgerow draw gen:boulder --field signed-distance --slice z=0.5 -o distance.png\n\n"
-     "what a structure looks like, where rays spend their steps, and how far away a surface is",
+     "  hedgerow draw gen:boulder --field signed-distance --slice z=0.5 -o distance.png\n"
+     "  hedgerow draw gen:disc:20000 --forces-at 2,1,0 -o forces.svg\n\n"
+     "what a structure looks like, where rays spend their steps, how far away a surface is, what acts on a "
+     "particle",
      add_draw},
     {"compare",
      "Examples:\n  hedgerow compare dragon.ply\n  hedgerow compare gen:grass:20000 --html grass.html\n"

@@ -38,7 +38,7 @@ struct Way {
 
 template <template <class, int> class Structure>
 Way one_by_one(const std::string& structure, double angle) {
-    return {"Barnes-Hut one by one, " + structure, fmt::format("angle {:g}", angle), 100000,
+    return {"Barnes-Hut, plain, " + structure, fmt::format("angle {:g}", angle), 100000,
             [angle](const Particles& all) {
                 const PointCloud<double, 3> cloud{all.places};
                 const auto index = build<Structure>(cloud);
@@ -65,8 +65,8 @@ std::vector<Way> all_ways() {
                         direct_sum<double>(charges(all), all.places, found);
                         return found;
                     }});
-    for (const double angle : {0.7, 0.4}) ways.push_back(one_by_one<PointOrthtree>("point-octree", angle));
-    ways.push_back(one_by_one<PointKdTree>("point-kdtree", 0.4));
+    for (const double angle : {0.7, 0.4}) ways.push_back(one_by_one<PointOrthtree>("octree", angle));
+    ways.push_back(one_by_one<PointKdTree>("kd-tree", 0.4));
     for (const double angle : {0.8, 0.55, 0.4, 0.28})
         ways.push_back({"barnes_hut", fmt::format("angle {:g}", angle), largest_scene_size,
                         [charges, angle](const Particles& all) {

@@ -91,6 +91,27 @@ public:
         walk(task.cell, local, mine, 0, 0, nullptr);
     }
 
+    // Walks down to one target, and lists what acts on it.
+    void acting(std::uint32_t place, std::vector<CellThatActs>& found) {
+        Lists mine;
+        mine.undecided.push_back(0);
+        const auto list = [&](const std::vector<std::uint32_t>& cells, ActsBy by) {
+            for (const std::uint32_t cell : cells) found.push_back({cell, by});
+        };
+        for (std::uint32_t c = 0, depth = 0;; ++depth) {
+            Level& level = levels_[depth];
+            clear(level);
+            for (std::size_t k = 0; k < mine.undecided.size(); ++k) decide(c, mine.undecided[k], mine, level);
+            list(mine.far, ActsBy::conversion), list(large_leaves_, ActsBy::points);
+            list(small_, ActsBy::multipole), list(near_, ActsBy::pairs);
+            if (targets_.is_leaf(c)) return;
+            std::uint32_t i = 0;
+            while (place >= targets_.first[targets_.child[c] + i] + targets_.count[targets_.child[c] + i])
+                ++i;
+            mine = level.lists[i], c = targets_.child[c] + i;
+        }
+    }
+
     // The method of Barnes and Hut for the targets of a leaf together: a cell acts by its multipole, or as
     // one charge, if its radius is less than so many times the least distance of its center from them.
     void walk_group(std::uint32_t leaf, double opening_angle, bool by_multipoles) {
@@ -127,6 +148,10 @@ private:
         T local[most_children][of_local];
     };
 
+    void clear(Level& level) {
+        for (Lists& lists : level.lists) lists.far.clear(), lists.undecided.clear();
+        near_.clear(), small_.clear(), large_leaves_.clear();
+    }
     void walk(std::uint32_t c, T* local, Lists& mine, std::size_t depth, std::uint32_t most,
               std::vector<FmmTask<T>>* tasks) {
         const bool leaf = targets_.is_leaf(c);
@@ -136,8 +161,7 @@ private:
             return;
         }
         Level& level = levels_[depth];
-        for (Lists& lists : level.lists) lists.far.clear(), lists.undecided.clear();
-        near_.clear(), small_.clear(), large_leaves_.clear();
+        clear(level);
         for (std::size_t k = 0; k < mine.undecided.size(); ++k) decide(c, mine.undecided[k], mine, level);
         convert_all(c, mine.far, local);
         for (const std::uint32_t large : large_leaves_) expand_leaf(c, large, local);

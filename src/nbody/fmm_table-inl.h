@@ -27,10 +27,15 @@ void walk_groups(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t
     for (std::uint32_t c = first; c < end; ++c)
         if (targets.is_leaf(c)) walk.walk_group(c, opening_angle, by_multipoles);
 }
+template <class T, int p>
+void acting(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t place,
+            std::vector<CellThatActs>& found) {
+    Fmm<T, p>(sources, targets).acting(place, found);
+}
 template <class T, int... orders>
 constexpr std::array<FmmKernel<T>, sizeof...(orders)> fmm_table() {
     return {{{orders, Expansions<T, orders>::stride, Moments<T, orders>::upward, walk_above<T, orders>,
-              walk_below<T, orders>, walk_groups<T, orders>}...}};
+              walk_below<T, orders>, walk_groups<T, orders>, acting<T, orders>}...}};
 }
 
 }  // namespace hedgerow::HWY_NAMESPACE

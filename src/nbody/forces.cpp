@@ -1,4 +1,5 @@
 /// Forces within a stated error: the plan, the cells, and the steps of the fast multipole method over them.
+#include <hedgerow/nbody/acting_cells.h>
 #include <hedgerow/nbody/forces.h>
 
 #include <algorithm>
@@ -34,8 +35,8 @@ struct Plan {
     std::size_t least_charges;
 };
 constexpr Plan plans[] = {
-    {3e-3, 3, true, 0.6, 80, 1000},   {2e-4, 4, true, 0.75, 80, 1500},  {1e-5, 6, true, 0.6, 80, 2500},
-    {1e-6, 8, false, 0.85, 80, 6000}, {1e-8, 11, false, 0.4, 80, 8000}, {1e-9, 11, false, 0.7, 80, 12000},
+    {3e-3, 3, true, 0.75, 80, 1000}, {2e-4, 4, true, 1.0, 80, 1500},   {1e-5, 6, true, 0.75, 80, 2500},
+    {1e-6, 8, false, 1.0, 80, 6000}, {1e-8, 11, false, 0.4, 80, 8000}, {1e-9, 11, false, 0.8, 80, 12000},
 };
 /// Targets that are fewer are summed directly, since the charges' cells take longer.
 constexpr std::size_t least_targets = 256;
@@ -50,6 +51,20 @@ const Plan& plan_for(double accuracy) {
     throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-9 to 0.1");
 }
 
+template <class R, class T>
+void set_tolerances(const detail::Sorted<R, T>& sources, detail::Sorted<R, T>& at,
+                    const ForceOptions& options, const Plan& plan, int order_of_multipoles,
+                    const detail::Units& units, Executor& executor) {
+    const int order = order_of_multipoles + 1;  // of the errors
+    detail::set_tolerances(at.cells, options.accuracy / plan.error_per_bound, order, executor,
+                           [&](std::uint32_t leaf) {
+                               if (options.sizes.empty())
+                                   return detail::set_leaf(sources.cells, at.cells, leaf, order);
+                               detail::set_leaf_by(sources.cells, at.cells, leaf, order, [&](std::size_t i) {
+                                   return options.sizes[at.tree.items()[i]] / units.gradient();
+                               });
+                           });
+}
 /// At targets, or at the charges themselves.
 template <class R, class T>
 void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std::span<PotentialAt<T>> found,
@@ -64,31 +79,43 @@ void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std:
         std::fill(sources.cells.tolerance.begin(), sources.cells.tolerance.end(),
                   std::numeric_limits<R>::infinity());
     }
-    const auto& tree = others ? others->tree : sources.tree;
-    FmmCells<R>& cells = others ? others->cells : sources.cells;
-    const int order = kernel.order + 1;  // of the errors
-    detail::set_tolerances(cells, options.accuracy / plan.error_per_bound, order, executor,
-                           [&](std::uint32_t leaf) {
-                               if (options.sizes.empty())
-                                   return detail::set_leaf(sources.cells, cells, leaf, order);
-                               detail::set_leaf_by(sources.cells, cells, leaf, order, [&](std::size_t i) {
-                                   return options.sizes[tree.items()[i]] / units.gradient();
-                               });
-                           });
+    detail::Sorted<R, T>& at = others ? *others : sources;
+    set_tolerances(sources, at, options, plan, kernel.order, units, executor);
     // Down: each target's walk.
     const std::size_t n = found.size();
     executor.expect(n);
     std::vector<FmmTask<R>> tasks;
-    kernel.walk_above(sources.cells, cells, static_cast<std::uint32_t>(n / 128 + 1), tasks);
+    kernel.walk_above(sources.cells, at.cells, static_cast<std::uint32_t>(n / 128 + 1), tasks);
     executor.for_each_piece(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            kernel.walk_below(sources.cells, cells, tasks[i]), executor.advance(cells.count[tasks[i].cell]);
+            kernel.walk_below(sources.cells, at.cells, tasks[i]),
+                executor.advance(at.cells.count[tasks[i].cell]);
     });
-    detail::hand_out(others ? *others : sources, units, found, executor);
+    detail::hand_out(at, units, found, executor);
 }
 template <class Kernels>
 const auto& of_order(const Kernels& kernels, int order) {
     return *std::find_if(kernels.begin(), kernels.end(), [&](const auto& k) { return k.order >= order; });
+}
+
+template <class R, class T>
+std::vector<ActingCell> cells_acting_on(const Charges<T>& charges, std::size_t i, const Plan& plan,
+                                        const ForceOptions& options, const FmmKernel<R>& kernel,
+                                        const detail::Units& units) {
+    detail::Sorted<R, T> all(charges, units, plan.leaf_size, kernel, serial_executor());
+    set_tolerances(all, all, options, plan, kernel.order, units, serial_executor());
+    const auto items = all.tree.items();
+    const auto place = std::find(items.begin(), items.end(), static_cast<PrimitiveId>(i)) - items.begin();
+    std::vector<CellThatActs> found;
+    kernel.acting(all.cells, all.cells, static_cast<std::uint32_t>(place), found);
+    std::vector<ActingCell> acting;
+    for (const CellThatActs& one : found) {
+        Box3d box;
+        const std::size_t first = all.cells.first[one.cell], count = all.cells.count[one.cell];
+        for (std::size_t k = first; k < first + count; ++k) box.expand(Vec3d(charges.places[items[k]]));
+        acting.push_back({box, count, one.by});
+    }
+    return acting;
 }
 
 /// Without kernels: as the method is described.
@@ -154,6 +181,23 @@ void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<Pote
     forces_at<T>(charges, &targets, found, options, threads);
 }
 
+template <std::floating_point T>
+std::vector<ActingCell> acting_cells(const Charges<T>& charges, std::size_t i, const ForceOptions& options) {
+    const Plan& plan = plan_for(options.accuracy);
+    const detail::Extremes<T> extremes(charges);  // throws for bad numbers
+    const NbodyKernels* const kernels = nbody_kernels();
+    if (kernels == nullptr || i >= charges.places.size()) return {};
+    return in_ieee_mode([&] {
+        const auto by = [&](const auto& kernel) {
+            return cells_acting_on(charges, i, plan, options, kernel, detail::Units(extremes));
+        };
+        return plan.in_float ? by(of_order(*kernels->fmm_float, plan.order))
+                             : by(of_order(*kernels->fmm_double, plan.order));
+    });
+}
+
+template std::vector<ActingCell> acting_cells(const Charges<float>&, std::size_t, const ForceOptions&);
+template std::vector<ActingCell> acting_cells(const Charges<double>&, std::size_t, const ForceOptions&);
 template void forces(const Charges<float>&, std::span<PotentialAt<float>>, const ForceOptions&, Threads);
 template void forces(const Charges<double>&, std::span<PotentialAt<double>>, const ForceOptions&, Threads);
 template void forces(const Charges<float>&, const Targets<float>&, std::span<PotentialAt<float>>,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hedgerow/base/instruction_set.h>
+#include <hedgerow/nbody/acting_cells.h>
 #include <hedgerow/nbody/softening.h>
 
 namespace hedgerow {
@@ -50,6 +51,10 @@ struct FmmTask {
     std::vector<std::uint32_t> undecided;
     std::vector<T> local;
 };
+struct CellThatActs {
+    std::uint32_t cell;
+    ActsBy by;
+};
 /// The fast multipole method of one order (src/nbody/fmm-inl.h).
 template <class T>
 struct FmmKernel {
@@ -66,6 +71,9 @@ struct FmmKernel {
     /// The method of Barnes and Hut for the targets of leaves `first` to `end`, each leaf's together.
     void (*walk_groups)(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t first,
                         std::uint32_t end, double opening_angle, bool by_multipoles);
+    /// Appends the cells that act on the target in a place of the rows.
+    void (*acting)(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t place,
+                   std::vector<CellThatActs>&);
 };
 using FmmFloatKernels = std::array<FmmKernel<float>, 4>;
 using FmmDoubleKernels = std::array<FmmKernel<double>, 2>;
