@@ -1,15 +1,18 @@
-/// Forces between particles on one thread: pairs by direct sums of every instruction set, forces of a stated
-/// accuracy, and octrees of points.
+/// Forces between particles on one thread: pairs by direct sums, forces of a stated accuracy with their
+/// errors, Barnes and Hut, each by every instruction set, and octrees of points.
 ///
 ///   nbody_benchmark [COUNT]      particles; default 1,000,000
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 
 #include <hedgerow/base/instruction_set.h>
 #include <hedgerow/index.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
+#include <hedgerow/nbody/barnes_hut.h>
 #include <hedgerow/nbody/forces.h>
+#include <hedgerow/scenes/particles.h>
 #include <hedgerow/scenes/sets.h>
 #include <hedgerow/structures/orthtree/orthtree.h>
 #include <hedgerow/structures/orthtree/point_orthtree.h>
@@ -21,15 +24,37 @@ namespace {
 
 constexpr int repeats = 5;
 
-/// Prints the cycles that a contender takes a unit of work.
-void print(const Contest& contest, std::size_t units, const char* unit) {
+std::string format(const char* pattern, double number) {
+    char text[64];
+    std::snprintf(text, sizeof text, pattern, number);
+    return text;
+}
+/// The rms error of gradients as shares of themselves, at a thousand charges.
+double error_of(std::span<const Vec3d> places, const std::vector<double>& charges,
+                const std::vector<PotentialAt<double>>& found) {
+    const std::size_t step = std::max<std::size_t>(1, places.size() / 1000);
+    std::vector<Vec3d> targets;
+    for (std::size_t i = 0; i < places.size(); i += step) targets.push_back(places[i]);
+    std::vector<PotentialAt<double>> want(targets.size());
+    direct_sum<double>({places, charges}, targets, want, serial_executor());
+    double sum = 0;
+    for (std::size_t k = 0; k < want.size(); ++k)
+        sum += length2(found[k * step].gradient - want[k].gradient) / length2(want[k].gradient);
+    return std::sqrt(sum / static_cast<double>(want.size()));
+}
+
+/// Prints the cycles that a contender takes a unit of work, and its error, if that is asked.
+void print(const Contest& contest, std::size_t units, const char* unit,
+           const std::function<double()>& error = {}) {
     const auto times =
         measured_in_turn(repeats, contest, Clock::thread, [](const std::string&) { return true; });
     const double rate = clock_rate();
     for (std::size_t i = 0; i < times.size(); ++i) {
         const double seconds = times[i].median / static_cast<double>(units);
-        std::printf("  %-34s %9.3f ns %9.2f cycles a %s\n", contest.names[i].c_str(), seconds * 1e9,
+        std::printf("  %-34s %9.3f ns %9.2f cycles a %s", contest.names[i].c_str(), seconds * 1e9,
                     seconds * rate * 1e9, unit);
+        if (error) contest.contenders[i](), std::printf(", rms error %.1e", error());
+        std::printf("\n");
     }
 }
 
@@ -69,6 +94,7 @@ int main(int argc, char** argv) {
                 avx512_rate().c_str(), compiler().c_str(), repeats);
     const auto floats = points<float>(count);
     const auto doubles = points<double>(count);
+    const Particles stars = plummer(count);
 
     const std::size_t sources = std::min<std::size_t>(count, 20000),
                       targets = std::min<std::size_t>(sources, 4096);
@@ -80,20 +106,29 @@ int main(int argc, char** argv) {
     add_direct_sums(sums, "double", few_doubles, targets);
     print(sums, sources * targets, "pair");
 
-    std::printf("forces: %zu charges of the unit cube\n", count);
-    Contest methods;
-    const std::vector<double> charges(count, 1.0);
-    std::vector<PotentialAt<double>> found(count);
-    for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
-        char name[32];
-        std::snprintf(name, sizeof name, "accuracy %.0e", accuracy);
-        methods.add(name, [&, accuracy] {
-            use_instruction_set(instruction_sets().front());
-            forces<double>({doubles.points, charges}, found, {.accuracy = accuracy}, serial_executor());
-            return static_cast<std::size_t>(found[0].potential);
-        });
+    const std::vector<double> charges(count, 1.0 / static_cast<double>(count));
+    for (const auto& [scene, places] :
+         {std::pair<const char*, std::span<const Vec3d>>("unit cube", doubles.points),
+          {"Plummer sphere", stars.places}}) {
+        std::printf("forces: %zu charges of a %s\n", count, scene);
+        Contest methods;
+        std::vector<PotentialAt<double>> found(count);
+        for (const std::string_view set : instruction_sets()) {
+            if (set == "plain" || set == "sse4") continue;
+            for (const double accuracy : {1e-2, 1e-3, 1e-4, 3e-5, 1e-6, 1e-7})
+                methods.add(std::string(set) + format(", within %.0e", accuracy), [&, set, accuracy] {
+                    use_instruction_set(set);
+                    forces<double>({places, charges}, found, {.accuracy = accuracy}, serial_executor());
+                    return static_cast<std::size_t>(found[0].potential);
+                });
+            methods.add(std::string(set) + ", barnes_hut, angle 0.55", [&, set] {
+                use_instruction_set(set);
+                barnes_hut<double>({places, charges}, found, {.opening_angle = 0.55}, serial_executor());
+                return static_cast<std::size_t>(found[0].potential);
+            });
+        }
+        print(methods, count, "charge", [&] { return error_of(places, charges, found); });
     }
-    print(methods, count, "charge");
 
     std::printf("builds: %zu points of the unit cube\n", count);
     Contest trees;
