@@ -107,9 +107,10 @@ int main(int argc, char** argv) {
     print(sums, sources * targets, "pair");
 
     const std::vector<double> charges(count, 1.0 / static_cast<double>(count));
-    for (const auto& [scene, places] :
+    for (const auto& [scene, all_places] :
          {std::pair<const char*, std::span<const Vec3d>>("unit cube", doubles.points),
           {"Plummer sphere", stars.places}}) {
+        const std::span<const Vec3d> places = all_places;
         std::printf("forces: %zu charges of a %s\n", count, scene);
         Contest methods;
         std::vector<PotentialAt<double>> found(count);

@@ -114,7 +114,7 @@ public:
 
     // The method of Barnes and Hut for the targets of a leaf together: a cell acts by its multipole, or as
     // one charge, if its radius is less than so many times the least distance of its center from them.
-    void walk_group(std::uint32_t leaf, double opening_angle, bool by_multipoles) {
+    void walk_group(std::uint32_t leaf, double angle, bool by_multipoles) {
         near_.clear(), small_.clear(), single_.clear();
         stack_.assign(1, 0);
         while (!stack_.empty()) {
@@ -126,7 +126,7 @@ public:
             const double distance = std::sqrt(dx * dx + dy * dy + dz * dz) - double(targets_.radius[leaf]),
                          radius = double(sources_.radius[source]),
                          soft = double(HWY_MAX(sources_.softest[source], targets_.softest[leaf]));
-            if (radius < opening_angle * distance && radius + soft < distance)
+            if (radius < angle * distance && radius + soft < distance)
                 (by_multipoles ? small_ : single_).push_back(source);
             else if (!sources_.is_leaf(source))
                 for (std::uint32_t i = 0; i < sources_.children[source]; ++i)

@@ -58,9 +58,12 @@ void set_tolerances(const detail::Sorted<R, T>& sources, detail::Sorted<R, T>& a
     const int order = order_of_multipoles + 1;  // of the errors
     detail::set_tolerances(at.cells, options.accuracy / plan.error_per_bound, order, executor,
                            [&](std::uint32_t leaf) {
-                               if (options.sizes.empty())
-                                   return detail::set_leaf(sources.cells, at.cells, leaf, order);
-                               detail::set_leaf_by(sources.cells, at.cells, leaf, order, [&](std::size_t i) {
+                               if (options.sizes.empty()) {
+                                   const double estimate = detail::strength_in(sources.cells, at.cells, leaf);
+                                   return detail::set_leaf(sources.cells, at.cells, leaf, order,
+                                                           [&](std::size_t) { return estimate; });
+                               }
+                               detail::set_leaf(sources.cells, at.cells, leaf, order, [&](std::size_t i) {
                                    return options.sizes[at.tree.items()[i]] / units.gradient();
                                });
                            });

@@ -45,9 +45,10 @@ double strength_in(const FmmCells<R>& sources, const FmmCells<R>& targets, std::
 /// few targets that are far out or where gradients are small count as they should.
 constexpr double error_power = 4;
 
-/// The tolerance and the spread of a leaf whose gradients are known, of sizes in the units of the cells.
+/// Sets the tolerance and the spread of a leaf. size_of tells about the size of the gradient at each target,
+/// in the units of the cells.
 template <class R, class F>
-void set_leaf_by(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
+void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
     // No charge is farther away than the far side of all of them.
     const double dx = sources.cx[0] - targets.cx[leaf], dy = sources.cy[0] - targets.cy[leaf],
                  dz = sources.cz[0] - targets.cz[leaf];
@@ -56,38 +57,23 @@ void set_leaf_by(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t
     const double least = 0.01 * static_cast<double>(sources.weight[0]) / (farthest * farthest);
     const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
     const double per_radius = targets.radius[leaf] > 0 ? 1 / static_cast<double>(targets.radius[leaf]) : 0;
-    double inverse = 0, spread = 0;
+    const auto size = [&](std::size_t i) { return std::max(size_of(i), least); };
+    double smallest = size(first);
+    for (std::size_t i = first; i < end; ++i) smallest = std::min(smallest, size(i));
+    double weights = 0, spread = 0;
     for (std::size_t i = first; i < end; ++i) {
-        const double size = std::max(size_of(i), least), inverse2 = 1 / (size * size),
+        const double inverse = smallest > 0 ? smallest / size(i) : 1, inverse2 = inverse * inverse,
                      x = static_cast<double>(targets.dx[i]) * per_radius,
                      y = static_cast<double>(targets.dy[i]) * per_radius,
                      z = static_cast<double>(targets.dz[i]) * per_radius, r2 = x * x + y * y + z * z;
         double power = 1;
         for (int k = 0; k < order; ++k) power *= r2;
-        inverse += inverse2 * inverse2, spread += inverse2 * inverse2 * power * power;
+        weights += inverse2 * inverse2, spread += inverse2 * inverse2 * power * power;
     }
     targets.spread[leaf] =
-        targets.radius[leaf] * static_cast<R>(std::pow(spread / inverse, 1 / (error_power * order)));
-    targets.tolerance[leaf] =
-        static_cast<R>(std::pow(static_cast<double>(targets.count[leaf]) / inverse, 1 / error_power));
-}
-/// The same by an estimate that is less than all gradients in the leaf.
-template <class R>
-void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order) {
-    targets.tolerance[leaf] = static_cast<R>(strength_in(sources, targets, leaf));
-    const R radius = targets.radius[leaf], per_radius = radius > 0 ? 1 / radius : 0;
-    const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
-    R spread = 0;
-    for (std::size_t i = first; i < end; ++i) {
-        const R x = targets.dx[i] * per_radius, y = targets.dy[i] * per_radius,
-                z = targets.dz[i] * per_radius;
-        const R r2 = x * x + y * y + z * z;
-        R power = 1;
-        for (int k = 0; k < order; ++k) power *= r2;
-        spread += power * power;
-    }
-    targets.spread[leaf] = radius * std::pow(spread / static_cast<R>(targets.count[leaf]),
-                                             static_cast<R>(1 / (error_power * order)));
+        targets.radius[leaf] * static_cast<R>(std::pow(spread / weights, 1 / (error_power * order)));
+    targets.tolerance[leaf] = static_cast<R>(
+        smallest * std::pow(static_cast<double>(targets.count[leaf]) / weights, 1 / error_power));
 }
 /// Sets tolerances and spreads of all cells above the leaves, as if the targets of a cell were all on its far
 /// side, and takes the share of the tolerances that a conversion may err by.
@@ -104,7 +90,10 @@ void set_cells(FmmCells<R>& targets, double share, int order) {
                          dz = targets.cz[k] - targets.cz[c];
             const double far =
                 std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(targets.spread[k]);
-            const double inverse = least / static_cast<double>(targets.tolerance[k]);
+            const double tolerance = static_cast<double>(targets.tolerance[k]),
+                         inverse = least > 0       ? least / tolerance
+                                   : tolerance > 0 ? 0
+                                                   : 1;
             const double weight = targets.count[k] * inverse * inverse * inverse * inverse;
             count += weight;
             spread += weight * std::pow(far / static_cast<double>(targets.radius[c]), error_power * order);
