@@ -37,6 +37,21 @@ protected:
     }
 };
 
+/// In a cube that repeats, with snapshots in HDF5, from the last of which the run goes on.
+TEST_F(Nbody, RunsInAPeriodicCube) {
+    const std::string options = "--period 1 --dt 0.01 --every 0.02 --size 0x0 --quiet ";
+    const std::string snapshots = HEDGEROW_HAS_HDF5 ? "--snapshots hdf5 " : "";
+    EXPECT_EQ(run("nbody gen:cold-cube:500 --until 0.06 " + options + snapshots + "-o " + file("whole")).code,
+              0);
+    EXPECT_EQ(run("nbody gen:cold-cube:500 --until 0.03 " + options + snapshots + "-o " + file("run")).code,
+              0);
+    EXPECT_EQ(run("nbody --resume --until 0.06 --quiet -o " + file("run")).code, 0);
+    EXPECT_EQ(log_of("run"), log_of("whole"));
+    EXPECT_EQ(named("run", "snapshot").size(), 5u);  // after 0, 2, 3, 4 and 6 steps
+    EXPECT_EQ(run("nbody gen:cold-cube:500 --period 1 --forces --quiet -o " + file("a.csv")).code, 0);
+    expect_usage("nbody gen:cold-cube:50 --period 0 --forces -o " + file("a.csv"), "--period");
+    expect_usage("nbody gen:cold-cube:50 --period 1 --compare", "--period");
+}
 TEST_F(Nbody, ForcesAreThoseOfTheLibrary) {
     EXPECT_EQ(run("nbody gen:plummer:3000 --forces --accuracy 1e-5 --quiet -o " + file("a.npy")).code, 0);
     EXPECT_EQ(run("nbody gen:plummer:3000 --forces --accuracy 1e-5 --quiet -o " + file("a.csv")).code, 0);

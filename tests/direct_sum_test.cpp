@@ -115,7 +115,8 @@ TYPED_TEST(DirectSums, PointsInOnePlaceDoNothingToEachOther) {
         scene.places.assign(20, {});
         EXPECT_EQ(sums_of(scene, scene.places)[0].potential, 0);
         scene.places[7] = {0, 0, 2};
-        EXPECT_EQ(sums_of(scene, scene.places)[7].potential, T(9.5));
+        // Within the bound of a pair: processors' estimates of roots differ.
+        EXPECT_NEAR(static_cast<double>(sums_of(scene, scene.places)[7].potential), 9.5, 9.5 * 0x1p-21);
         EXPECT_NEAR(static_cast<double>(sums_of(scene, scene.places)[7].gradient[2]), -4.75, 1e-5);
     }
 }

@@ -15,6 +15,8 @@ using namespace hedgerow;
 
 namespace {
 
+constexpr bool has_hdf5 = HEDGEROW_HAS_HDF5;
+
 using testing_io::TempFolder;
 
 TEST(ParticleFile, KeepsAStateToTheLastBit) {
@@ -22,7 +24,8 @@ TEST(ParticleFile, KeepsAStateToTheLastBit) {
     Motion motion(plummer(1000), {.softening = {.length = 0.1}});
     motion.step(0.3);
     const MotionState& state = motion.state();
-    for (const char* name : {"a.npy", "a.csv", "a.json"}) {
+    for (const char* name : {"a.npy", "a.csv", "a.json", "a.hdf5", "a.h5"}) {
+        if (!has_hdf5 && std::string(name).find(".h") != std::string::npos) continue;
         save_state(folder / name, state);
         const MotionState read = load_state(folder / name);
         EXPECT_EQ(read.time, state.time) << name;
@@ -68,6 +71,124 @@ TEST(ParticleFile, RefusesBadInput) {
     save_state(folder / "a.npy", state);
     std::filesystem::resize_file(folder / "a.npy", std::filesystem::file_size(folder / "a.npy") - 1);
     EXPECT_THROW(load_state(folder / "a.npy"), InputError);
+}
+
+// ---- HDF5 in GADGET's layout
+
+/// Runs a program of Python's on a file. Skips the test where Python lacks a module that it uses.
+#define EXPECT_PYTHON(module, program, path)                                                                 \
+    do {                                                                                                     \
+        if (std::system("/usr/bin/python3 -c 'import " module "' 2>/dev/null") != 0)                         \
+            GTEST_SKIP() << "no Python with the module " module;                                             \
+        std::ofstream(folder / "read.py") << (program);                                                      \
+        EXPECT_EQ(std::system(("/usr/bin/python3 " + (folder / "read.py").string() + " " + (path)).c_str()), \
+                  0);                                                                                        \
+    } while (false)
+
+MotionState moved() {
+    Motion motion(plummer(500), {.softening = {.length = 0.1}});
+    motion.step(0.25);
+    return motion.state();
+}
+TEST(Gadget, H5pyReadsWhatIsSaved) {
+    if (!has_hdf5) GTEST_SKIP() << "no HDF5";
+    const TempFolder folder;
+    const MotionState state = moved();
+    save_state(folder / "a.hdf5", state, 3);
+    std::ofstream(folder / "want.txt") << std::hexfloat << state.particles.places[7][1] << "\n"
+                                       << state.particles.masses[3] << "\n"
+                                       << state.potentials[499] << "\n";
+    EXPECT_PYTHON("h5py", R"(
+import h5py, sys
+want = [float.fromhex(line) for line in open(sys.argv[1].replace('a.hdf5', 'want.txt'))]
+with h5py.File(sys.argv[1]) as f:
+    header, stars = f['Header'].attrs, f['PartType1']
+    assert list(header['NumPart_ThisFile']) == [0, 500, 0, 0, 0, 0]
+    assert list(header['NumPart_Total']) == [0, 500, 0, 0, 0, 0]
+    assert header['Time'] == 0.25 and header['BoxSize'] == 3 and header['NumFilesPerSnapshot'] == 1
+    assert stars['Coordinates'].shape == stars['Velocities'].shape == stars['Acceleration'].shape == (500, 3)
+    assert stars['Coordinates'].dtype == 'f8' and stars['ParticleIDs'].dtype.kind == 'u'
+    assert len(set(stars['ParticleIDs'])) == 500
+    assert [stars['Coordinates'][7, 1], stars['Masses'][3], stars['Potential'][499]] == want
+)",
+                  (folder / "a.hdf5").string());
+}
+TEST(Gadget, YtReadsWhatIsSaved) {
+    if (!has_hdf5) GTEST_SKIP() << "no HDF5";
+    const TempFolder folder;
+    save_state(folder / "a.hdf5", moved());
+    EXPECT_PYTHON("yt", R"(
+import yt, sys
+yt.set_log_level(50)
+snapshot = yt.load(sys.argv[1], bounding_box=[[-100, 100]] * 3)
+everything = snapshot.all_data()
+assert len(everything['PartType1', 'Masses']) == 500
+assert abs(float(everything['PartType1', 'Masses'].sum().in_units('code_mass')) - 1) < 1e-12
+assert abs(float(snapshot.current_time.in_units('code_time')) - 0.25) < 1e-12
+)",
+                  (folder / "a.hdf5").string());
+}
+/// As other codes write them: single precision, several types of particles, masses in the table.
+TEST(Gadget, SnapshotsOfOthersAreRead) {
+    if (!has_hdf5) GTEST_SKIP() << "no HDF5";
+    const TempFolder folder;
+    EXPECT_PYTHON("h5py", R"(
+import h5py, sys
+with h5py.File(sys.argv[1], 'w') as f:
+    header = f.create_group('Header').attrs
+    header['NumPart_ThisFile'] = [0, 2, 0, 0, 1, 0]
+    header['MassTable'] = [0, 0.5, 0, 0, 0, 0]
+    header['NumFilesPerSnapshot'] = 1
+    header['Time'] = 1.5
+    halo, stars = f.create_group('PartType1'), f.create_group('PartType4')
+    halo.create_dataset('Coordinates', data=[[1, 2, 3], [4, 5, 6]], dtype='f4')
+    halo.create_dataset('Velocities', data=[[0, 0, 1], [0, 1, 0]], dtype='f4', chunks=(1, 3), compression='gzip')
+    stars.create_dataset('Coordinates', data=[[7, 8, 9]], dtype='f8')
+    stars.create_dataset('Velocities', data=[[0, 0, 0]], dtype='f8')
+    stars.create_dataset('Masses', data=[2], dtype='f8')
+)",
+                  (folder / "a.hdf5").string());
+    const MotionState state = load_state(folder / "a.hdf5");
+    EXPECT_EQ(state.time, 1.5);
+    EXPECT_EQ(state.particles.places, (std::vector<Vec3d>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}));
+    EXPECT_EQ(state.particles.velocities[1], Vec3d(0, 1, 0));
+    EXPECT_EQ(state.particles.masses, (std::vector{0.5, 0.5, 2.0}));
+    EXPECT_TRUE(state.accelerations.empty());
+}
+TEST(Gadget, RefusesBadFiles) {
+    if (!has_hdf5) {
+        EXPECT_THROW(save_state("a.hdf5", MotionState()), UsageError);
+        GTEST_SKIP() << "no HDF5";
+    }
+    const TempFolder folder;
+    EXPECT_THROW(load_state(folder / "missing.hdf5"), InputError);
+    EXPECT_THROW(load_state(folder.file("text.hdf5", "x,y,z\n1,2,3\n")), InputError);
+    EXPECT_THROW(save_state(folder / "no/a.hdf5", moved()), OutputError);
+    // Cut short anywhere.
+    save_state(folder / "a.hdf5", moved());
+    const std::string whole = testing_io::contents(folder / "a.hdf5");
+    for (std::size_t size = 0; size < whole.size(); size += 997)
+        EXPECT_THROW(load_state(folder.file("b.hdf5", whole.substr(0, size))), InputError) << size;
+    // None are a snapshot too.
+    save_state(folder / "none.hdf5", MotionState());
+    EXPECT_EQ(load_state(folder / "none.hdf5").particles.size(), 0u);
+    EXPECT_PYTHON("h5py", R"(
+import h5py, sys
+for name, change in {
+    'other': lambda f: f.__delitem__('Header'),
+    'parts': lambda f: f['Header'].attrs.__setitem__('NumFilesPerSnapshot', 4),
+    'rows': lambda f: f['Header'].attrs.__setitem__('NumPart_ThisFile', [0, 501, 0, 0, 0, 0]),
+    'less': lambda f: f['PartType1'].__delitem__('Velocities'),
+    'words': lambda f: f['Header'].attrs.__setitem__('Time', 'noon'),
+    'huge': lambda f: (f['PartType1'].__delitem__('Masses'), f['PartType1'].create_dataset('Masses', (1 << 40,), 'f8', chunks=(1,))),
+}.items():
+    path = sys.argv[1].replace('a.hdf5', name + '.hdf5')
+    open(path, 'wb').write(open(sys.argv[1], 'rb').read())
+    with h5py.File(path, 'r+') as f: change(f)
+)",
+                  (folder / "a.hdf5").string());
+    for (const char* name : {"other", "parts", "rows", "less", "words", "huge"})
+        EXPECT_THROW(load_state(folder / (std::string(name) + ".hdf5")), InputError) << name;
 }
 
 }  // namespace

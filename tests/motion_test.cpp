@@ -93,6 +93,27 @@ TEST(Motion, GoesOnFromAStateWithTheSameBits) {
     EXPECT_EQ(whole.state().accelerations, rest.state().accelerations);
     EXPECT_EQ(whole.state().time, rest.state().time);
 }
+/// In a cube that repeats: particles leave by one face and come back by the other, energy and momentum are
+/// kept, and even particles at rest clump.
+TEST(Motion, InAPeriodicCube) {
+    const MotionOptions options{.accuracy = 1e-4, .softening = {.length = 0.02}, .period = 1};
+    Motion motion(cold_cube(1000), options);
+    const Conserved before = conserved(motion.state());
+    for (int i = 0; i < 60; ++i) motion.step(1.0 / 128);
+    const Conserved after = conserved(motion.state());
+    EXPECT_NEAR(after.energy(), before.energy(), 0.002 * after.kinetic);
+    EXPECT_GT(after.kinetic, 0.01);
+    EXPECT_LE(length(after.momentum), 1e-6);
+    for (const Vec3d& p : motion.state().particles.places)
+        for (int k = 0; k < 3; ++k) EXPECT_TRUE(p[k] >= 0 && p[k] < 1);
+    // Through a face, alone.
+    Particles one;
+    one.resize(1);
+    one.places[0] = {0.9, 0.1, 0.5}, one.velocities[0] = {0.4, -0.4, 0}, one.masses[0] = 1;
+    Motion through(one, options);
+    through.step(0.5);
+    EXPECT_LE(length(through.state().particles.places[0] - Vec3d(0.1, 0.9, 0.5)), 1e-6);
+}
 TEST(Motion, OfNoneAndOfOne) {
     Motion none{Particles()};
     none.step(0.1);

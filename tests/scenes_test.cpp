@@ -139,7 +139,8 @@ TEST(Scenes, HaveTheBitsTheyAlwaysHad) {
         {"interior", 0x5e64906f6b485afa},       {"boulder", 0x4b056bc5cfacadd0},
         {"plummer", 0x17c339c94a3995ee},        {"hernquist", 0xc8065dc27a617b72},
         {"uniform-sphere", 0xd1f528a1a1a8038f}, {"cold-collapse", 0x9054953ebd5bc9e2},
-        {"disc", 0x43f2f3ba947bd62b},           {"two-clusters", 0x77600ee8dd56b5e6},
+        {"cold-cube", 0xbe25505ea67a5056},      {"disc", 0x43f2f3ba947bd62b},
+        {"two-clusters", 0x77600ee8dd56b5e6},
     };
     for (const SceneInfo& info : scene_list()) {
         const std::uint64_t size = std::min<std::uint64_t>(info.default_size, 10'000);

@@ -43,7 +43,7 @@ double median(std::vector<double> all, double share) {
 
 }  // namespace
 
-DensityFrame DensityFrame::around(const Particles& all, int width, int height) {
+DensityFrame DensityFrame::around(const Particles& all, int width, int height, double period) {
     DensityFrame frame;
     std::vector<double> across[2], distances;
     for (const Vec3d& p : all.places)
@@ -56,6 +56,10 @@ DensityFrame DensityFrame::around(const Particles& all, int width, int height) {
             std::max(std::abs(p[0] - frame.middle[0]) / wide, std::abs(p[1] - frame.middle[1])));
     frame.half_height = 1.4 * median(distances, 0.9);
     if (!(frame.half_height > 0)) frame.half_height = 1;
+    if (period > 0) {
+        frame.middle = {period / 2, period / 2};
+        frame.half_height = period / 2 * std::max(1.0, static_cast<double>(height) / width);
+    }
     const auto mass = projected(all, frame, width, height);
     frame.most = mass.empty() ? 0 : 4 * *std::max_element(mass.begin(), mass.end());
     if (!(frame.most > 0)) frame.most = 1;

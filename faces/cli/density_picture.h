@@ -15,8 +15,9 @@ struct DensityFrame {
     double half_height = 1;
     double most = 1;  ///< the mass per pixel of the last colour
 
-    /// A frame around nine tenths of the particles. The last colour is four times the greatest density in it.
-    static DensityFrame around(const Particles& particles, int width, int height);
+    /// A frame around nine tenths of the particles, or around a cube of a period, if it is above 0. The last
+    /// colour is four times the greatest density in it.
+    static DensityFrame around(const Particles& particles, int width, int height, double period = 0);
 };
 
 /// Colours tell the logarithm of the mass in a pixel. Particles are spots of some pixels where they are few.

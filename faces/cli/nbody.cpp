@@ -39,7 +39,7 @@ int nbody_forces(const NbodyArguments& a) {
     const Particles& all = state.particles;
     NbodyArguments given = a;
     given.softening = std::max(0.0, a.softening);  // as points, unless a length is given
-    const Charges<double> charges{all.places, all.masses, softening_of(given, all)};
+    const Charges<double> charges{all.places, all.masses, softening_of(given, all), {}, a.period};
     std::vector<Vec3d> targets;
     if (!a.from.empty()) {
         ProgressLine line("loading " + a.from, a.quiet, "bytes");
@@ -102,6 +102,9 @@ Run add_nbody(CLI::App& verb) {
         ->capture_default_str();
     CLI::Option* const every =
         verb.add_option("--every", a->every, "the time between snapshots; else a tenth of the whole");
+    verb.add_option("--snapshots", a->snapshots, "their format: npy, or hdf5 as GADGET lays it out")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"npy", "hdf5"}));
     verb.add_flag("--resume", a->resume, "go on from the last snapshot in the folder of -o");
     verb.add_option("--size", a->size, "of the pictures, WIDTHxHEIGHT; 0x0: no pictures")
         ->capture_default_str();
@@ -116,21 +119,26 @@ Run add_nbody(CLI::App& verb) {
     verb.add_option("--kernel", a->kernel, "of the softening")
         ->capture_default_str()
         ->check(CLI::IsMember({"wendland", "spline"}));
+    CLI::Option* const period = verb.add_option(
+        "--period", a->period, "the side of a cube in which all repeats along each axis; else nothing does");
     verb.add_option("--gravity", a->gravity, "the constant of gravity")->capture_default_str();
     verb.add_option("--threads", a->threads, "0: all")->capture_default_str();
     add_reporting(verb, *a);
-    return [a, until, dt, every, softening] {
+    return [a, until, dt, every, softening, period] {
         const auto expect = [](const CLI::Option* option, double number, bool good, const char* what) {
             if (option->count() > 0 && !good)
                 throw UsageError(fmt::format("{} {:g}: give {}", option->get_name(), number, what));
         };
         expect(until, a->until, a->until >= 0, "a time of 0 or more");
         expect(softening, a->softening, a->softening >= 0, "a length of 0 or more");
+        expect(period, a->period, a->period > 0, "a length above 0");
         expect(dt, a->dt, a->dt > 0, "a time above 0");
         expect(every, a->every, a->every > 0, "a time above 0");
         if (!(a->eta > 0)) throw UsageError(fmt::format("--eta {:g}: give a number above 0", a->eta));
         const int tasks = int(a->forces) + int(a->compare) + int(a->until >= 0);
         if (tasks != 1) throw UsageError("say what to do: one of --forces, --until TIME and --compare");
+        if (a->compare && a->period > 0)
+            throw UsageError("--compare knows no periodic cubes: Barnes-Hut does not; leave --period out");
         if (a->scene.empty() && !a->resume)
             throw UsageError("name the particles: gen:plummer:10000, or a file");
         if (a->output.empty() && !a->compare)

@@ -34,10 +34,12 @@ std::string numbered(std::string_view name, std::uint64_t step, std::string_view
 class RunFolder {
 public:
     explicit RunFolder(const std::string& path) : path_(path) {}
+    /// Snapshots are .npy unless told otherwise.
+    void hold(const std::string& snapshots) { ending_ = "." + snapshots; }
 
     fs::path options() const { return path_ / "run.json"; }
     fs::path log() const { return path_ / "log.csv"; }
-    fs::path snapshot(std::uint64_t step) const { return path_ / numbered("snapshot", step, ".npy"); }
+    fs::path snapshot(std::uint64_t step) const { return path_ / numbered("snapshot", step, ending_); }
     fs::path picture(std::uint64_t step) const { return path_ / numbered("picture", step, ".png"); }
 
     /// Throws UsageError if a run is in the folder already.
@@ -60,8 +62,8 @@ public:
             const std::string name = file.path().filename().string();
             unsigned long long step = 0;
             int length = 0;
-            if (std::sscanf(name.c_str(), "snapshot-%llu.npy%n", &step, &length) == 1 &&
-                length == static_cast<int>(name.size()))
+            if (std::sscanf(name.c_str(), "snapshot-%llu%n", &step, &length) == 1 &&
+                name.substr(static_cast<std::size_t>(length)) == ending_)
                 last = std::max<std::uint64_t>(last, step), found = true;
         }
         if (!found) throw InputError(path_.string() + ": there is no snapshot to go on from");
@@ -80,6 +82,7 @@ public:
 
 private:
     fs::path path_;
+    std::string ending_ = ".npy";
 };
 
 /// What run.json holds: all that a run goes on with, beside its snapshots.
@@ -90,10 +93,12 @@ ordered_json options_of(const NbodyArguments& a, const DensityFrame& frame) {
             {"softening", a.softening},
             {"kernel", a.kernel},
             {"gravity", a.gravity},
+            {"period", a.period},
             {"dt", a.dt},
             {"block_steps", a.block_steps},
             {"eta", a.eta},
             {"every", a.every},
+            {"snapshots", a.snapshots},
             {"size", a.size},
             {"frame",
              {{"x", frame.middle[0]},
@@ -109,8 +114,10 @@ void read_options(const fs::path& path, NbodyArguments& a, DensityFrame& frame) 
         a.scene = options.at("scene"), a.seed = options.at("seed"), a.accuracy = options.at("accuracy");
         a.softening = options.at("softening"), a.kernel = options.at("kernel"),
         a.gravity = options.at("gravity");
+        a.period = options.value("period", 0.0);
         a.dt = options.at("dt"), a.block_steps = options.at("block_steps"), a.eta = options.at("eta");
         a.every = options.at("every"), a.size = options.at("size");
+        a.snapshots = options.value("snapshots", "npy");
         const auto& of_frame = options.at("frame");
         frame = {{of_frame.at("x"), of_frame.at("y")}, of_frame.at("half_height"), of_frame.at("most")};
     } catch (const nlohmann::json::exception& fault) {
@@ -121,7 +128,7 @@ void read_options(const fs::path& path, NbodyArguments& a, DensityFrame& frame) 
 class Recorder {
 public:
     Recorder(const NbodyArguments& a, const RunFolder& folder, const DensityFrame& frame)
-        : folder_(folder), frame_(frame), began_(now()) {
+        : folder_(folder), frame_(frame), period_(a.period), began_(now()) {
         if (a.size != no_pictures) std::tie(width_, height_) = parse_size(a.size);
     }
 
@@ -138,7 +145,7 @@ public:
         if (!log_) throw OutputError(folder_.log().string() + " cannot be written");
     }
     void snapshot(std::uint64_t step, const MotionState& state) {
-        save_state(folder_.snapshot(step), state);
+        save_state(folder_.snapshot(step), state, period_);
         last_ = step, any_ = true;
         if (width_ == 0) return;
         save_png(folder_.picture(step),
@@ -152,7 +159,7 @@ private:
     const RunFolder& folder_;
     const DensityFrame& frame_;
     std::ofstream log_;
-    double began_;
+    double period_, began_;
     int width_ = 0, height_ = 0;
     std::uint64_t last_ = 0;
     bool any_ = false;
@@ -161,8 +168,9 @@ private:
 int print_summary(const NbodyArguments& a, const Conserved& first, const MotionState& state,
                   std::uint64_t step, std::uint64_t found, double seconds) {
     const Conserved last = conserved(state);
-    const double error =
-        first.energy() != 0 ? std::abs((last.energy() - first.energy()) / first.energy()) : 0;
+    // The potential's mean in a periodic cube is 0, and the energy may be anything.
+    const double unit = a.period > 0 ? last.kinetic : std::abs(first.energy());
+    const double error = unit > 0 ? std::abs(last.energy() - first.energy()) / unit : 0;
     if (a.json)
         print_json({{"output", a.output},
                     {"particles", state.particles.size()},
@@ -178,18 +186,18 @@ int print_summary(const NbodyArguments& a, const Conserved& first, const MotionS
     else if (!a.quiet)
         fmt::print(
             "{}: {} particles to time {:g} by {}{:g} (softening {:.3g}, accuracy {:g})\n"
-            "energy {:.6g}, changed by {:.1e} of itself; virial ratio {:.3f}; "
+            "energy {:.6g}, changed by {:.1e} of {}; virial ratio {:.3f}; "
             "{:.3g} million forces in {:.1f} s\n",
             a.output, state.particles.size(), state.time, a.block_steps ? "steps of at most " : "steps of ",
-            a.dt, a.softening, a.accuracy, last.energy(), error, last.virial_ratio(),
-            static_cast<double>(found) / 1e6, seconds);
+            a.dt, a.softening, a.accuracy, last.energy(), error, a.period > 0 ? "the kinetic one" : "itself",
+            last.virial_ratio(), static_cast<double>(found) / 1e6, seconds);
     return interrupted ? 130 : 0;
 }
 
 }  // namespace
 
 int nbody_run(NbodyArguments a) {
-    const RunFolder folder(a.output);
+    RunFolder folder(a.output);
     const double began = now();
     DensityFrame frame;
     MotionState start;
@@ -197,11 +205,13 @@ int nbody_run(NbodyArguments a) {
     std::string kept;
     if (a.resume) {
         read_options(folder.options(), a, frame);
+        folder.hold(a.snapshots);
         step = folder.last_step();
         start = load_state(folder.snapshot(step));
         kept = folder.log_until(step);
     } else {
         folder.expect_none();
+        folder.hold(a.snapshots);
         if (a.size != no_pictures) check_picture_memory(a.size, false);
         start = load_particles(a);
         folder.make();
@@ -209,7 +219,7 @@ int nbody_run(NbodyArguments a) {
     }
     // Find the first accelerations, and what follows from them.
     const bool first = !a.resume;
-    const MotionOptions options{a.accuracy, softening_of(a, start.particles), a.gravity};
+    const MotionOptions options{a.accuracy, softening_of(a, start.particles), a.gravity, a.period};
     Motion motion(std::move(start), options);
     const Conserved before = conserved(motion.state());
     if (first) {
@@ -217,7 +227,7 @@ int nbody_run(NbodyArguments a) {
         if (a.every <= 0) a.every = a.until / 10;
         if (a.size != no_pictures) {
             const auto [width, height] = parse_size(a.size);
-            frame = DensityFrame::around(motion.state().particles, width, height);
+            frame = DensityFrame::around(motion.state().particles, width, height, a.period);
         }
     }
     Recorder recorder(a, folder, frame);

@@ -9,6 +9,8 @@
 #include <hedgerow/io/point_file.h>
 #include <hedgerow/io/rows.h>
 
+#include "gadget.h"
+
 namespace hedgerow {
 namespace {
 
@@ -69,6 +71,7 @@ std::size_t read_rows(const std::filesystem::path& path, const Progress& progres
 }  // namespace
 
 MotionState load_state(const std::filesystem::path& path, const Progress& progress) {
+    if (detail::names_hdf5(path)) return detail::load_gadget(path);
     MotionState state;
     std::size_t columns = 3;
     bool in_rows = true;
@@ -88,7 +91,8 @@ MotionState load_state(const std::filesystem::path& path, const Progress& progre
     return state;
 }
 
-void save_state(const std::filesystem::path& path, const MotionState& state) {
+void save_state(const std::filesystem::path& path, const MotionState& state, double period) {
+    if (detail::names_hdf5(path)) return detail::save_gadget(path, state, period);
     std::vector<Column> columns;
     for (const char* name : state_columns) columns.push_back({name, NumberType::f64});
     const Particles& all = state.particles;

@@ -47,6 +47,8 @@ void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, cons
     if (!(options.opening_angle > 0 && options.opening_angle < 1))
         throw UsageError("an opening angle of " + std::to_string(options.opening_angle) +
                          " is not above 0 and below 1");
+    if (charges.period > 0)
+        throw UsageError("this method of Barnes and Hut does not know periodic cubes: use forces");
     detail::expect_room(found.size(), charges.places.size());
     const detail::Extremes<T> extremes(charges);  // throws for bad numbers
     const NbodyKernels* const kernels = nbody_kernels();

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include <hedgerow/base/bare_vector.h>
+#include <hedgerow/geometry/vec.h>
 #include <hedgerow/nbody/kernels.h>
+
+#include "tides.h"
 
 namespace hedgerow {
 
@@ -30,11 +33,18 @@ struct FmmCells {
     std::vector<std::uint32_t> levels;  ///< the first cell of each level, and the number of cells
     BareVector<T> multipoles;           ///< packed numbers of each cell, `multipole_stride` apart
     std::size_t multipole_stride = 0;
+    // In a periodic cube its side, and where its near images are; else nothing, and the cells themselves.
+    double side = 0;
+    std::vector<Vec3d> images{Vec3d()};
     // What is found, by charge.
     BareVector<double> potential, gx, gy, gz;
+    BareVector<double> tides;  ///< if they are wanted: six rows (`TideRows`)
+    detail::TideRows tide_rows() { return {tides.data(), potential.size()}; }
 
     std::size_t size() const { return first.size(); }
     bool is_leaf(std::size_t c) const { return children[c] == 0; }
+    /// A cell as a source, where it is itself.
+    FmmSource itself(std::uint32_t c) const { return {c, static_cast<std::uint32_t>(images.size() / 2)}; }
 };
 
 }  // namespace hedgerow

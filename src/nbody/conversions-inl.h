@@ -14,22 +14,12 @@
 
 #include <hedgerow/nbody/swap_matrices.h>
 
+#include "packed.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-// Numbers of harmonics up to a degree, packed: of each degree n the real part of m = 0, then both parts of m
-// = 1 ... n.
-constexpr int packed_count(int order) {
-    return (order + 1) * (order + 1);
-}
-constexpr int re(int n, int m) {
-    return n * n + (m == 0 ? 0 : 2 * m - 1);
-}
-constexpr int im(int n, int m) {
-    return n * n + 2 * m;
-}
 
 // Calls f(std::integral_constant<int, i>) for i = first ... last, unrolled. HEDGEROW_UNROLLED, the attributes
 // of such functions, says whether they become one piece of code; the file that includes this one defines it.

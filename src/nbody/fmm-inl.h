@@ -15,9 +15,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "any_order-inl.h"
 #include "direct-inl.h"
 #include "moments-inl.h"
 #include "points-inl.h"
+#include "tides-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
@@ -78,10 +80,9 @@ public:
 
     // Walks from the root to all cells of at most `most` targets or without children, and makes each a task.
     void walk_above(std::uint32_t most, std::vector<FmmTask<T>>& tasks) {
-        Lists root;
-        root.undecided.push_back(0);
+        Lists all = root();
         T local[of_local] = {};
-        walk(0, local, root, 0, most, &tasks);
+        walk(0, local, all, 0, most, &tasks);
     }
     void walk_below(const FmmTask<T>& task) {
         Lists mine;
@@ -93,10 +94,9 @@ public:
 
     // Walks down to one target, and lists what acts on it.
     void acting(std::uint32_t place, std::vector<CellThatActs>& found) {
-        Lists mine;
-        mine.undecided.push_back(0);
-        const auto list = [&](const std::vector<std::uint32_t>& cells, ActsBy by) {
-            for (const std::uint32_t cell : cells) found.push_back({cell, by});
+        Lists mine = root();
+        const auto list = [&](const std::vector<FmmSource>& cells, ActsBy by) {
+            for (const FmmSource cell : cells) found.push_back({cell, by});
         };
         for (std::uint32_t c = 0, depth = 0;; ++depth) {
             Level& level = levels_[depth];
@@ -127,12 +127,12 @@ public:
                          radius = double(sources_.radius[source]),
                          soft = double(HWY_MAX(sources_.softest[source], targets_.softest[leaf]));
             if (radius < angle * distance && radius + soft < distance)
-                (by_multipoles ? small_ : single_).push_back(source);
+                by_multipoles ? small_.push_back(sources_.itself(source)) : single_.push_back(source);
             else if (!sources_.is_leaf(source))
                 for (std::uint32_t i = 0; i < sources_.children[source]; ++i)
                     stack_.push_back(sources_.child[source] + i);
             else if (!alone_ || source != leaf || targets_.radius[leaf] > 0)
-                near_.push_back(source);
+                near_.push_back(sources_.itself(source));
         }
         const T nothing[of_local] = {};
         finish(leaf, nothing);
@@ -141,13 +141,22 @@ public:
 private:
     // The sources that act on a target as a whole, and those that are undecided against it.
     struct Lists {
-        std::vector<std::uint32_t> far, undecided;
+        std::vector<FmmSource> far, undecided;
     };
     struct alignas(64) Level {
         Lists lists[most_children];
         T local[most_children][of_local];
     };
 
+    // What is undecided against the root of targets: the root of sources, and its images in a periodic cube.
+    Lists root() const {
+        Lists lists;
+        lists.undecided = {sources_.itself(0)};
+        for (std::uint32_t i = 0; i < sources_.images.size(); ++i)
+            if (const FmmSource image(0, i); image != sources_.itself(0))
+                add(lists, image, 1, far_apart(targets_, 0, sources_, 0, 1, sources_.images[i]));
+        return lists;
+    }
     void clear(Level& level) {
         for (Lists& lists : level.lists) lists.far.clear(), lists.undecided.clear();
         near_.clear(), small_.clear(), large_leaves_.clear();
@@ -164,7 +173,7 @@ private:
         clear(level);
         for (std::size_t k = 0; k < mine.undecided.size(); ++k) decide(c, mine.undecided[k], mine, level);
         convert_all(c, mine.far, local);
-        for (const std::uint32_t large : large_leaves_) expand_leaf(c, large, local);
+        for (const FmmSource large : large_leaves_) expand_leaf(c, large, local);
         if (leaf) return finish(c, local);
         hand_down(c, local, level);
         for (std::uint32_t i = 0; i < targets_.children[c]; ++i)
@@ -173,63 +182,69 @@ private:
 
     // Opens one cell of an undecided pair, the target c and a source, and tests its children against the
     // other.
-    void decide(std::uint32_t c, std::uint32_t source, Lists& mine, Level& level) {
+    void decide(std::uint32_t c, FmmSource acting, Lists& mine, Level& level) {
+        const std::uint32_t source = acting.cell();
         const bool leaf = targets_.is_leaf(c), source_leaf = sources_.is_leaf(source);
         const std::uint32_t child = targets_.child[c], children = targets_.children[c];
-        if (alone_ && source == c && !leaf) {
+        const Vec3d& shift = sources_.images[acting.image()];
+        if (is_itself(c, acting) && !leaf) {
             for (std::uint32_t i = 0; i < children; ++i)
-                add(level.lists[i], child, children,
-                    far_apart(targets_, child + i, sources_, child, children));
+                add(level.lists[i], acting.with(child), children,
+                    far_apart(targets_, child + i, sources_, child, children, shift));
             return;
         }
         const T radius = targets_.radius[c], other = sources_.radius[source];
-        const bool source_larger = other > radius || (other == radius && source > c);
+        const bool source_larger = other > radius || (other == radius && acting > sources_.itself(c));
         if (source_larger ? source_leaf : leaf) {
-            beside_leaf(c, source, source_larger, mine, level);
+            beside_leaf(c, acting, source_larger, mine, level);
         } else if (source_larger) {
             const std::uint32_t first = sources_.child[source], count = sources_.children[source];
-            add(mine, first, count, far_apart(targets_, c, sources_, first, count));
+            add(mine, acting.with(first), count, far_apart(targets_, c, sources_, first, count, shift));
         } else {
-            const unsigned far = far_apart(sources_, source, targets_, child, children);
-            for (std::uint32_t i = 0; i < children; ++i) add(level.lists[i], source, 1, far >> i & 1u);
+            const unsigned far = far_apart(sources_, source, targets_, child, children, -shift);
+            for (std::uint32_t i = 0; i < children; ++i) add(level.lists[i], acting, 1, far >> i & 1u);
         }
     }
     // Decides about a leaf and a smaller cell, of which one is the target. If the leaf is the one whose
     // expansions would not converge, its charges are taken one by one. Opening the cell would not help: its
     // parts are each acceptable in the end, but lie on one side, and their errors add up.
-    void beside_leaf(std::uint32_t c, std::uint32_t source, bool source_larger, Lists& mine, Level& level) {
-        const bool by_points = source_larger ? apart_by_points(sources_, source, targets_, c)
-                                             : apart_by_points(targets_, c, sources_, source);
+    void beside_leaf(std::uint32_t c, FmmSource acting, bool source_larger, Lists& mine, Level& level) {
+        const std::uint32_t source = acting.cell();
+        const Vec3d& shift = sources_.images[acting.image()];
+        const bool by_points = source_larger ? apart_by_points(sources_, source, targets_, c, -shift)
+                                             : apart_by_points(targets_, c, sources_, source, shift);
         if (by_points) {
-            (source_larger ? large_leaves_ : small_).push_back(source);
+            (source_larger ? large_leaves_ : small_).push_back(acting);
         } else if (targets_.is_leaf(c) && sources_.is_leaf(source)) {
             // Charges in one place do nothing to each other, however many they are.
-            if (!alone_ || source != c || targets_.radius[c] > 0) near_.push_back(source);
+            if (!is_itself(c, acting) || targets_.radius[c] > 0) near_.push_back(acting);
         } else if (source_larger) {
             for (std::uint32_t i = 0; i < targets_.children[c]; ++i)
-                level.lists[i].undecided.push_back(source);
+                level.lists[i].undecided.push_back(acting);
         } else {
             for (std::uint32_t j = 0; j < sources_.children[source]; ++j)
-                mine.undecided.push_back(sources_.child[source] + j);
+                mine.undecided.push_back(acting.with(sources_.child[source] + j));
         }
     }
-    // Adds cells to those that are far, if their bits are set, else to those that are undecided.
-    static void add(Lists& lists, std::uint32_t first, std::uint32_t count, unsigned far) {
+    bool is_itself(std::uint32_t c, FmmSource acting) const { return alone_ && acting == sources_.itself(c); }
+    // Adds cells, from a first one on, to those that are far, if their bits are set, else to those that are
+    // undecided.
+    static void add(Lists& lists, FmmSource first, std::uint32_t count, unsigned far) {
         for (std::uint32_t j = 0; j < count; ++j)
-            (far >> j & 1u ? lists.far : lists.undecided).push_back(first + j);
+            (far >> j & 1u ? lists.far : lists.undecided).push_back(first.with(first.cell() + j));
     }
 
     // Which of some cells, at most eight, may act on another by their multipoles, and it on them: the errors
     // of both are within the tolerances. Bits are those of the cells. The arithmetic of a pair is the same
-    // from both sides.
+    // from both sides; `shift` is that of the cells.
     static unsigned far_apart(const FmmCells<T>& ones, std::uint32_t one, const FmmCells<T>& cells,
-                              std::uint32_t first, std::uint32_t count) {
+                              std::uint32_t first, std::uint32_t count, const Vec3d& shift) {
         const Eight f;
         alignas(64) T x[most_children], y[most_children], z[most_children];
         for (std::uint32_t i = 0; i < most_children; ++i) {
-            x[i] = static_cast<T>(cells.cx[first + i] - ones.cx[one]);
-            y[i] = static_cast<T>(cells.cy[first + i] - ones.cy[one]);
-            z[i] = static_cast<T>(cells.cz[first + i] - ones.cz[one]);
+            x[i] = static_cast<T>(cells.cx[first + i] - ones.cx[one] + shift[0]);
+            y[i] = static_cast<T>(cells.cy[first + i] - ones.cy[one] + shift[1]);
+            z[i] = static_cast<T>(cells.cz[first + i] - ones.cz[one] + shift[2]);
         }
         unsigned far = 0;
         for (std::uint32_t i = 0; i < count; i += static_cast<std::uint32_t>(hn::Lanes(f))) {
@@ -257,10 +272,11 @@ private:
     // Whether a cell may act on each charge of a leaf by its multipole, and they on it. Worth it if the cell
     // has some charges.
     static bool apart_by_points(const FmmCells<T>& leaves, std::uint32_t leaf, const FmmCells<T>& cells,
-                                std::uint32_t c) {
+                                std::uint32_t c, const Vec3d& shift) {
         if (cells.count[c] < q * q / 4) return false;
-        const double dx = cells.cx[c] - leaves.cx[leaf], dy = cells.cy[c] - leaves.cy[leaf],
-                     dz = cells.cz[c] - leaves.cz[leaf];
+        const double dx = cells.cx[c] - leaves.cx[leaf] + shift[0],
+                     dy = cells.cy[c] - leaves.cy[leaf] + shift[1],
+                     dz = cells.cz[c] - leaves.cz[leaf] + shift[2];
         const T distance = static_cast<T>(std::sqrt(dx * dx + dy * dy + dz * dz));
         const T both = leaves.radius[leaf] + cells.radius[c];
         if (!(both < T(opening_angle) * distance &&
@@ -301,8 +317,16 @@ private:
         return {of_source, of_target};
     }
 
+    // How far a target's center is from that of a source.
+    HWY_INLINE Vec3d offset(std::uint32_t c, FmmSource acting) const {
+        const Vec3d& shift = sources_.images[acting.image()];
+        const std::uint32_t source = acting.cell();
+        return {targets_.cx[c] - sources_.cx[source] - shift[0],
+                targets_.cy[c] - sources_.cy[source] - shift[1],
+                targets_.cz[c] - sources_.cz[source] - shift[2]};
+    }
     // Adds what far cells do to a cell's local expansion.
-    void convert_all(std::uint32_t c, const std::vector<std::uint32_t>& far, T* local) const {
+    void convert_all(std::uint32_t c, const std::vector<FmmSource>& far, T* local) const {
         if (far.empty()) return;
         const F f;
         constexpr std::size_t most_lanes = 64 / sizeof(T);
@@ -318,11 +342,11 @@ private:
                     rows[j] = nothing, x[j] = scale[j] = 1, y[j] = z[j] = 0;
                     continue;
                 }
-                const std::uint32_t source = far[i + j];
+                const std::uint32_t source = far[i + j].cell();
+                const Vec3d from = offset(c, far[i + j]);
                 rows[j] = sources_.multipoles.data() + source * E::stride;
-                x[j] = static_cast<T>(targets_.cx[c] - sources_.cx[source]);
-                y[j] = static_cast<T>(targets_.cy[c] - sources_.cy[source]);
-                z[j] = static_cast<T>(targets_.cz[c] - sources_.cz[source]);
+                x[j] = static_cast<T>(from[0]), y[j] = static_cast<T>(from[1]);
+                z[j] = static_cast<T>(from[2]);
                 scale[j] = sources_.scale[source];
             }
             V multipoles[E::stride];
@@ -334,15 +358,16 @@ private:
     }
 
     // Adds what the charges of a leaf do to a cell's local expansion.
-    void expand_leaf(std::uint32_t c, std::uint32_t leaf, T* local) const {
+    void expand_leaf(std::uint32_t c, FmmSource acting, T* local) const {
         const F f;
+        const std::uint32_t leaf = acting.cell();
         V sums[of_local];
         for (V& sum : sums) sum = hn::Zero(f);
         const T per_unit = 1 / targets_.scale[c];
         const V unit = hn::Set(f, per_unit);
-        const V x = hn::Set(f, static_cast<T>(targets_.cx[c] - sources_.cx[leaf])),
-                y = hn::Set(f, static_cast<T>(targets_.cy[c] - sources_.cy[leaf])),
-                z = hn::Set(f, static_cast<T>(targets_.cz[c] - sources_.cz[leaf]));
+        const Vec3d apart = offset(c, acting);
+        const V x = hn::Set(f, static_cast<T>(apart[0])), y = hn::Set(f, static_cast<T>(apart[1])),
+                z = hn::Set(f, static_cast<T>(apart[2]));
         const std::size_t first = sources_.first[leaf], end = first + sources_.count[leaf];
         for (std::size_t i = first; i < end; i += hn::Lanes(f)) {
             const auto here = hn::FirstN(f, end - i);
@@ -376,25 +401,37 @@ private:
 
     // What near leaves and the local expansion do to the charges of a leaf.
     void finish(std::uint32_t c, const T* local) {
-        // Gather the near charges, as offsets from this leaf's center, in the unit of its expansion.
         const T per_unit = 1 / targets_.scale[c];
+        const std::size_t sources = gather(c, near_, per_unit);
+        sum_pairs_and_expansions(c, local, sources, per_unit);
+        if (targets_.tides.empty()) return;
+        // Small cells act pair by pair here.
+        near_.insert(near_.end(), small_.begin(), small_.end());
+        add_tides(c, local, gather(c, near_, per_unit), per_unit);
+    }
+    // Gathers the charges of cells, and single ones, as offsets from a leaf's center, in the unit of its
+    // expansion. Returns how many they are.
+    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit) {
         std::size_t sources = single_.size();
-        for (const std::uint32_t near : near_) sources += sources_.count[near];
+        for (const FmmSource near : cells) sources += sources_.count[near.cell()];
         const bool softened = !sources_.soft.empty();
         for (BareVector<T>* row : {&x_, &y_, &z_, &charge_, &soft_})
             if (row->size() < sources + row_padding) row->resize(2 * sources + row_padding);
         std::size_t at = 0;
         const double cx = targets_.cx[c], cy = targets_.cy[c], cz = targets_.cz[c];
-        for (const std::uint32_t near : near_) {
+        for (const FmmSource near : cells) {
             // Offsets are computed as those of targets are: charges in one place have equal ones.
-            const std::size_t first = sources_.first[near], count = sources_.count[near];
-            const auto gather = [&](const BareVector<double>& from, double center, BareVector<T>& to) {
+            const std::size_t first = sources_.first[near.cell()], count = sources_.count[near.cell()];
+            const Vec3d& shift = sources_.images[near.image()];
+            const auto gather = [&](const BareVector<double>& from, double center, double image,
+                                    BareVector<T>& to) {
                 const double* const place = from.data() + first;
                 T* const offset = to.data() + at;
                 for (std::size_t i = 0; i < count; ++i)
-                    offset[i] = static_cast<T>(place[i] - center) * per_unit;
+                    offset[i] = static_cast<T>(place[i] - center + image) * per_unit;
             };
-            gather(sources_.x, cx, x_), gather(sources_.y, cy, y_), gather(sources_.z, cz, z_);
+            gather(sources_.x, cx, shift[0], x_), gather(sources_.y, cy, shift[1], y_);
+            gather(sources_.z, cz, shift[2], z_);
             std::copy_n(sources_.charge.data() + first, count, charge_.data() + at);
             if (softened)
                 for (std::size_t i = 0; i < count; ++i) soft_[at + i] = sources_.soft[first + i] * per_unit;
@@ -407,7 +444,11 @@ private:
             charge_[at] = sources_.multipoles[single * E::stride], soft_[at] = 0, ++at;
         }
         for (std::size_t i = at; i < at + row_padding; ++i) x_[i] = y_[i] = z_[i] = charge_[i] = soft_[i] = 0;
-        // Sum over pairs.
+        return sources;
+    }
+    // Sums over pairs with the charges that are gathered, and adds the expansions.
+    void sum_pairs_and_expansions(std::uint32_t c, const T* local, std::size_t sources, T per_unit) {
+        const bool softened = !sources_.soft.empty();
         const std::size_t first = targets_.first[c], count = targets_.count[c], row = count + row_padding;
         for (BareVector<T>* part : {&target_x_, &target_y_, &target_z_, &target_soft_})
             if (part->size() < row) part->resize(2 * row);
@@ -434,7 +475,7 @@ private:
             evaluate_local<q>(f, local, hn::LoadU(f, target_x_.data() + i),
                               hn::LoadU(f, target_y_.data() + i), hn::LoadU(f, target_z_.data() + i), far[0],
                               far[1], far[2], far[3]);
-            for (const std::uint32_t small : small_) add_small(c, small, i, far);
+            for (const FmmSource small : small_) add_small(c, small, i, far);
             alignas(64) T out[4][most_lanes];
             for (int k = 0; k < 4; ++k) hn::Store(far[k], f, out[k]);
             for (std::size_t j = 0; j < hn::Lanes(f) && i + j < count; ++j) {
@@ -449,19 +490,50 @@ private:
         }
     }
 
+    // Adds tidal tensors: of the charges that are gathered, and of the local expansion.
+    void add_tides(std::uint32_t c, const T* local, std::size_t sources, T per_unit) {
+        const std::size_t first = targets_.first[c], count = targets_.count[c];
+        const bool softened = !sources_.soft.empty();
+        sums_.assign(6 * count, 0.0);
+        const detail::TideRows pairs(sums_.data(), count), found = targets_.tide_rows().from(first);
+        direct_tides<T>(
+            {x_.data(), y_.data(), z_.data(), charge_.data(), sources, softened ? soft_.data() : nullptr},
+            {target_x_.data(), target_y_.data(), target_z_.data(), count, nullptr, nullptr, nullptr, nullptr,
+             softened ? target_soft_.data() : nullptr},
+            sources_.softening, pairs);
+        const double unit = static_cast<double>(per_unit), unit2 = unit * unit;
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t k = 0; k < 6; ++k) found.row[k][i] = 0;
+            found.add(i, pairs[i] * (unit2 * unit));
+        }
+        constexpr std::size_t at_once = 256;
+        alignas(64) double place[3][at_once + row_padding];
+        for (std::size_t i = 0; i < count; i += at_once) {
+            const std::size_t here = HWY_MIN(at_once, count - i);
+            for (std::size_t j = 0; j < here + row_padding; ++j) {
+                const std::size_t t = HWY_MIN(i + j, count - 1);
+                place[0][j] = static_cast<double>(target_x_[t]);
+                place[1][j] = static_cast<double>(target_y_[t]);
+                place[2][j] = static_cast<double>(target_z_[t]);
+            }
+            detail::add_local_tides(local, q, place[0], place[1], place[2], here, unit2, add_local,
+                                    found.from(i));
+        }
+    }
+
     // Adds what a small cell does to targets of a leaf, from number i on.
-    HWY_INLINE void add_small(std::uint32_t c, std::uint32_t small, std::size_t i, V* far) const {
+    HWY_INLINE void add_small(std::uint32_t c, FmmSource acting, std::size_t i, V* far) const {
         const F f;
+        const std::uint32_t small = acting.cell();
+        const Vec3d apart = offset(c, acting);
         const T per_unit = 1 / sources_.scale[small], ratio = targets_.scale[c] * per_unit;
-        const auto from = [&](double center, double of_small, const BareVector<T>& places) HWY_ATTR {
+        const auto from = [&](double center, const BareVector<T>& places) HWY_ATTR {
             return hn::MulAdd(hn::LoadU(f, places.data() + i), hn::Set(f, ratio),
-                              hn::Set(f, static_cast<T>(center - of_small) * per_unit));
+                              hn::Set(f, static_cast<T>(center) * per_unit));
         };
         V found[4];
-        evaluate_multipole<p>(f, sources_.multipoles.data() + small * E::stride,
-                              from(targets_.cx[c], sources_.cx[small], target_x_),
-                              from(targets_.cy[c], sources_.cy[small], target_y_),
-                              from(targets_.cz[c], sources_.cz[small], target_z_), found[0], found[1],
+        evaluate_multipole<p>(f, sources_.multipoles.data() + small * E::stride, from(apart[0], target_x_),
+                              from(apart[1], target_y_), from(apart[2], target_z_), found[0], found[1],
                               found[2], found[3]);
         for (int k = 0; k < 4; ++k) {
             const V potential = hn::Mul(found[k], hn::Set(f, per_unit));
@@ -475,7 +547,7 @@ private:
     std::vector<Level> levels_;
     // Of the target in hand: leaves that act on it by pairs, cells that act on its charges by their
     // multipoles, and leaves whose charges act on its local expansion.
-    std::vector<std::uint32_t> near_, small_, large_leaves_;
+    std::vector<FmmSource> near_, small_, large_leaves_;
     // Cells that act as single charges, and those that a walk has yet to look at.
     std::vector<std::uint32_t> single_, stack_;
     BareVector<T> x_, y_, z_, charge_, soft_, target_x_, target_y_, target_z_, target_soft_;

@@ -15,6 +15,7 @@
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/structures/orthtree/point_orthtree.h>
 
+#include "far_images.h"
 #include "sorted_charges.h"
 #include "tolerances.h"
 
@@ -41,14 +42,21 @@ constexpr Plan plans[] = {
 /// Targets that are fewer are summed directly, since the charges' cells take longer.
 constexpr std::size_t least_targets = 256;
 constexpr double most_accuracy = 0.1;
+/// In a periodic cube gradients are small sums of large parts, whose errors and roundings count so many
+/// times; and cubes of even charge have a moment of degree 4, which the lowest order lacks in all images
+/// alike.
+constexpr double errors_in_cube = 2, least_in_cube = 2e-3;
 
-const Plan& plan_for(double accuracy) {
-    if (accuracy <= most_accuracy)
-        for (const Plan& plan : plans)
-            if (accuracy >= plan.least_accuracy) return plan;
+const Plan& plan_for(double accuracy, bool periodic) {
     char given[32];
     std::snprintf(given, sizeof given, "%g", accuracy);
-    throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-9 to 0.1");
+    const Plan& finest = plans[std::size(plans) - 1];
+    if (!(accuracy >= finest.least_accuracy && accuracy <= most_accuracy))
+        throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-9 to 0.1");
+    const double needed = periodic ? std::min(accuracy / errors_in_cube, least_in_cube) : accuracy;
+    for (const Plan& plan : plans)
+        if (needed >= plan.least_accuracy) return plan;
+    return finest;
 }
 
 template <class R, class T>
@@ -56,17 +64,29 @@ void set_tolerances(const detail::Sorted<R, T>& sources, detail::Sorted<R, T>& a
                     const ForceOptions& options, const Plan& plan, int order_of_multipoles,
                     const detail::Units& units, Executor& executor) {
     const int order = order_of_multipoles + 1;  // of the errors
-    detail::set_tolerances(at.cells, options.accuracy / plan.error_per_bound, order, executor,
-                           [&](std::uint32_t leaf) {
-                               if (options.sizes.empty()) {
-                                   const double estimate = detail::strength_in(sources.cells, at.cells, leaf);
-                                   return detail::set_leaf(sources.cells, at.cells, leaf, order,
-                                                           [&](std::size_t) { return estimate; });
-                               }
-                               detail::set_leaf(sources.cells, at.cells, leaf, order, [&](std::size_t i) {
-                                   return options.sizes[at.tree.items()[i]] / units.gradient();
-                               });
-                           });
+    const double counts = plan.error_per_bound * (sources.cells.side > 0 ? errors_in_cube : 1);
+    detail::set_tolerances(at.cells, options.accuracy / counts, order, executor, [&](std::uint32_t leaf) {
+        if (options.sizes.empty()) {
+            const double estimate = detail::strength_in(sources.cells, at.cells, leaf);
+            return detail::set_leaf(sources.cells, at.cells, leaf, order,
+                                    [&](std::size_t) { return estimate; });
+        }
+        detail::set_leaf(sources.cells, at.cells, leaf, order,
+                         [&](std::size_t i) { return options.sizes[at.tree.items()[i]] / units.gradient(); });
+    });
+}
+/// Adds what the far images in a periodic cube do.
+template <class R>
+void add_far_images(const FmmCells<R>& sources, FmmCells<R>& at, double accuracy, Executor& executor) {
+    const std::size_t charges = sources.x.size() - row_padding, targets = at.potential.size();
+    const detail::FarImages images(sources.side, detail::far_order(accuracy),
+                                   {sources.x.data(), sources.y.data(), sources.z.data(), charges},
+                                   sources.charge.data(), executor);
+    images.act({at.x.data(), at.y.data(), at.z.data(), targets, at.potential.data(), at.gx.data(),
+                at.gy.data(), at.gz.data()},
+               executor);
+    if (!at.tides.empty())
+        images.bend({at.x.data(), at.y.data(), at.z.data(), targets}, at.tide_rows(), executor);
 }
 /// At targets, or at the charges themselves.
 template <class R, class T>
@@ -84,6 +104,7 @@ void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std:
     }
     detail::Sorted<R, T>& at = others ? *others : sources;
     set_tolerances(sources, at, options, plan, kernel.order, units, executor);
+    at.cells.tides.resize(6 * options.tides.size());
     // Down: each target's walk.
     const std::size_t n = found.size();
     executor.expect(n);
@@ -94,7 +115,9 @@ void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std:
             kernel.walk_below(sources.cells, at.cells, tasks[i]),
                 executor.advance(at.cells.count[tasks[i].cell]);
     });
+    if (sources.cells.side > 0) add_far_images(sources.cells, at.cells, options.accuracy, executor);
     detail::hand_out(at, units, found, executor);
+    detail::hand_out(at, units, options.tides, executor);
 }
 template <class Kernels>
 const auto& of_order(const Kernels& kernels, int order) {
@@ -114,8 +137,10 @@ std::vector<ActingCell> cells_acting_on(const Charges<T>& charges, std::size_t i
     std::vector<ActingCell> acting;
     for (const CellThatActs& one : found) {
         Box3d box;
-        const std::size_t first = all.cells.first[one.cell], count = all.cells.count[one.cell];
-        for (std::size_t k = first; k < first + count; ++k) box.expand(Vec3d(charges.places[items[k]]));
+        const std::size_t first = all.cells.first[one.cell.cell()], count = all.cells.count[one.cell.cell()];
+        const Vec3d shift = all.cells.images[one.cell.image()] / units.length;
+        for (std::size_t k = first; k < first + count; ++k)
+            box.expand(Vec3d(charges.places[items[k]]) + shift);
         acting.push_back({box, count, one.by});
     }
     return acting;
@@ -134,29 +159,45 @@ void plain_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, Ex
 }
 
 template <class T>
-void forces_at(const Charges<T>& charges, const Targets<T>* targets, std::span<PotentialAt<T>> found,
+void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::span<PotentialAt<T>> found,
                const ForceOptions& options, Threads threads) {
-    const Plan& plan = plan_for(options.accuracy);
-    detail::expect_room(found.size(), targets != nullptr ? targets->places.size() : charges.places.size());
-    detail::Extremes<T> extremes(charges);  // throws for bad numbers
-    if (targets != nullptr) extremes.expand(*targets);
+    const Plan& plan = plan_for(options.accuracy, given.period > 0);
+    detail::expect_room(found.size(),
+                        given_targets != nullptr ? given_targets->places.size() : given.places.size());
+    detail::Extremes<T> extremes(given);  // throws for bad numbers
+    if (given_targets != nullptr) extremes.expand(*given_targets, given);
     if (!options.sizes.empty() && options.sizes.size() != found.size())
         throw InputError(std::to_string(options.sizes.size()) + " sizes of gradients for " +
                          std::to_string(found.size()) + " targets: give one each, or none");
+    const bool with_tides = !options.tides.empty();
+    if (with_tides) detail::expect_room(options.tides.size(), found.size());
     if (found.empty()) return;
+    // Bring all places into the cube, if there is one.
+    const detail::PlacesInCube<T> in_cube(given.places, given.period),
+        targets_in_cube(given_targets != nullptr ? given_targets->places : Strided<Vec<T, 3>>(),
+                        given.period);
+    Charges<T> charges = given;
+    charges.places = in_cube.places();
+    std::optional<Targets<T>> other;
+    if (given_targets != nullptr) other.emplace(targets_in_cube.places(), given_targets->lengths);
+    const Targets<T>* const targets = other ? &*other : nullptr;
     Executor& executor = threads.over(found.size());
     const NbodyKernels* const kernels = nbody_kernels();
     const bool plain = kernels == nullptr && targets == nullptr && !detail::softened(charges) &&
-                       found.size() >= 2000 && options.accuracy >= 1e-4;
+                       !(charges.period > 0) && !with_tides && found.size() >= 2000 &&
+                       options.accuracy >= 1e-4;
     // A direct sum in float errs by 2⁻²¹ a pair.
     const bool direct_is_exact = std::same_as<T, double> || plan.in_float || kernels == nullptr;
-    const bool few = charges.places.empty() ||
-                     (direct_is_exact && (charges.places.size() < plan.least_charges ||
-                                          (targets != nullptr && targets->places.size() < least_targets)));
-    if (few || (kernels == nullptr && !plain))
-        return direct_sum(charges,
-                          targets != nullptr ? *targets : Targets<T>(charges.places, charges.lengths), found,
-                          threads);
+    // Near images and tides make it slower.
+    const bool few =
+        charges.places.empty() || (direct_is_exact && !with_tides && !(charges.period > 0) &&
+                                   (charges.places.size() < plan.least_charges ||
+                                    (targets != nullptr && targets->places.size() < least_targets)));
+    if (few || (kernels == nullptr && !plain)) {
+        const Targets<T> at = targets != nullptr ? *targets : Targets<T>(charges.places, charges.lengths);
+        if (with_tides) direct_tides(charges, at, options.tides, threads);
+        return direct_sum(charges, at, found, threads);
+    }
     in_ieee_mode([&] {
         IeeeExecutor ieee(executor);
         const auto by = [&](const auto& kernel) {
@@ -185,9 +226,12 @@ void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<Pote
 }
 
 template <std::floating_point T>
-std::vector<ActingCell> acting_cells(const Charges<T>& charges, std::size_t i, const ForceOptions& options) {
-    const Plan& plan = plan_for(options.accuracy);
-    const detail::Extremes<T> extremes(charges);  // throws for bad numbers
+std::vector<ActingCell> acting_cells(const Charges<T>& given, std::size_t i, const ForceOptions& options) {
+    const Plan& plan = plan_for(options.accuracy, given.period > 0);
+    const detail::Extremes<T> extremes(given);  // throws for bad numbers
+    const detail::PlacesInCube<T> in_cube(given.places, given.period);
+    Charges<T> charges = given;
+    charges.places = in_cube.places();
     const NbodyKernels* const kernels = nbody_kernels();
     if (kernels == nullptr || i >= charges.places.size()) return {};
     return in_ieee_mode([&] {

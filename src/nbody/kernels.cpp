@@ -3,6 +3,7 @@
 #include <hedgerow/nbody/kernels.h>
 
 #if HEDGEROW_HAS_HIGHWAY
+#define HEDGEROW_UNROLLED HWY_ATTR
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nbody/kernels.cpp"
@@ -11,6 +12,7 @@
 #include <hwy/highway.h>
 
 #if HWY_TARGET != HWY_SCALAR
+#include "any_order-inl.h"
 #include "direct-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,8 +21,8 @@ namespace hedgerow::HWY_NAMESPACE {
 extern const FmmFloatKernels fmm_float_kernels;    // in fmm_float_kernels.cpp
 extern const FmmDoubleKernels fmm_double_kernels;  // in fmm_double_kernels.cpp
 
-inline constexpr NbodyKernels nbody_kernels{direct<float>, direct<double>, &fmm_float_kernels,
-                                            &fmm_double_kernels};
+inline constexpr NbodyKernels nbody_kernels{direct<float>,       direct<double>, &fmm_float_kernels,
+                                            &fmm_double_kernels, add_multipole,  add_local};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

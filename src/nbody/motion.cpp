@@ -12,6 +12,8 @@
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/structures/kdtree/point_kdtree.h>
 
+#include "rows.h"
+
 namespace hedgerow {
 
 Conserved conserved(const MotionState& state) {
@@ -131,7 +133,7 @@ void Motion::accelerate() {
 }
 void Motion::accelerate(const Ids& active) {
     const Particles& all = state_.particles;
-    const Charges<double> charges{all.places, all.masses, options_.softening};
+    const Charges<double> charges{all.places, all.masses, options_.softening, {}, options_.period};
     ForceOptions options{options_.accuracy};
     std::vector<double> sizes;
     if (known_)
@@ -164,7 +166,12 @@ void Motion::kick(const Ids& active, const std::vector<int>& depth, double half_
 }
 void Motion::drift(double dt) {
     Particles& all = state_.particles;
-    for (std::size_t i = 0; i < all.size(); ++i) all.places[i] += all.velocities[i] * dt;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        Vec3d& place = all.places[i];
+        place += all.velocities[i] * dt;
+        if (options_.period > 0)
+            for (int k = 0; k < 3; ++k) place[k] = detail::in_period(place[k], options_.period);
+    }
 }
 
 }  // namespace hedgerow

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/nbody/direct_sum.h>
@@ -27,42 +28,11 @@ T to_unit(T largest) {
     return largest > 0 ? std::ldexp(T(1), std::clamp(-std::ilogb(largest) - 1, -most, most)) : T(1);
 }
 
-/// The greatest coordinate and the greatest charge, by size. Throws InputError as `direct_sum` does.
+/// Of the cube that repeats, as it is in T.
 template <class T>
-struct Extremes {
-    T coordinate = 0, charge = 0;
-
-    explicit Extremes(const Charges<T>& charges) {
-        const std::size_t n = charges.places.size();
-        expect_one_charge_each(charges.charges.size(), n);
-        if (!(charges.softening.length >= 0 && charges.softening.length <= 0x1p480))
-            throw InputError("a length of softening of " + std::to_string(charges.softening.length) +
-                             ": give 0 or more");
-        expect_lengths(charges.lengths, n, "the length of source");
-        for (std::size_t i = 0; i < n; ++i) {
-            expand(charges.places[i], "a coordinate of source", i);
-            charge = std::max(charge, std::abs(sound_number(charges.charges[i], "the charge of source", i)));
-        }
-    }
-    void expand(const Targets<T>& targets) {
-        for (std::size_t i = 0; i < targets.places.size(); ++i)
-            expand(targets.places[i], "a coordinate of target", i);
-        expect_lengths(targets.lengths, targets.places.size(), "the length of target");
-    }
-
-private:
-    void expand(const Vec<T, 3>& p, const char* what, std::size_t i) {
-        for (int k = 0; k < 3; ++k) coordinate = std::max(coordinate, std::abs(sound_number(p[k], what, i)));
-    }
-    static void expect_lengths(const Strided<T>& lengths, std::size_t n, const char* what) {
-        if (!lengths.empty() && lengths.size() != n)
-            throw InputError(std::to_string(lengths.size()) + " lengths of softening for " +
-                             std::to_string(n) + " places: give one each, or none");
-        for (std::size_t i = 0; i < lengths.size(); ++i)
-            if (sound_number(lengths[i], what, i) < 0)
-                throw InputError(std::string(what) + " " + std::to_string(i) + " is below 0");
-    }
-};
+double side_of(const Charges<T>& charges) {
+    return static_cast<double>(static_cast<T>(charges.period));
+}
 template <class T>
 bool softened(const Charges<T>& charges) {
     return charges.softening.length > 0 || !charges.lengths.empty();
@@ -79,6 +49,88 @@ T reach_of(const Targets<T>& targets, const Softening& softening, std::size_t i)
     if (targets.lengths.empty()) return 0;
     return static_cast<T>(softening.reach(static_cast<double>(targets.lengths[i])));
 }
+
+/// The greatest coordinate and the greatest charge, by size. Throws InputError as `direct_sum` does.
+template <class T>
+struct Extremes {
+    T coordinate = 0, charge = 0;
+
+    explicit Extremes(const Charges<T>& charges) {
+        const std::size_t n = charges.places.size();
+        expect_one_charge_each(charges.charges.size(), n);
+        if (!(charges.period >= 0 && charges.period <= double(largest_coordinate<T>)))
+            throw InputError("a period of " + std::to_string(charges.period) +
+                             ": give the side of the cube, or 0");
+        if (!(charges.softening.length >= 0 && charges.softening.length <= 0x1p480))
+            throw InputError("a length of softening of " + std::to_string(charges.softening.length) +
+                             ": give 0 or more");
+        expect_lengths(charges.lengths, n, "the length of source");
+        T longest = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            longest = std::max(longest, reach_of(charges, i));
+            expand(charges.places[i], "a coordinate of source", i);
+            charge = std::max(charge, std::abs(sound_number(charges.charges[i], "the charge of source", i)));
+        }
+        expand_to_period(charges, longest);
+    }
+    /// Of targets of the charges.
+    void expand(const Targets<T>& targets, const Charges<T>& charges) {
+        T longest = 0;
+        expect_lengths(targets.lengths, targets.places.size(), "the length of target");
+        for (std::size_t i = 0; i < targets.places.size(); ++i) {
+            expand(targets.places[i], "a coordinate of target", i);
+            longest = std::max(longest, reach_of(targets, charges.softening, i));
+        }
+        expand_to_period(charges, longest);
+    }
+
+private:
+    // In a cube that repeats, places are brought into it; charges that are softened may not reach around it.
+    void expand_to_period(const Charges<T>& charges, T longest) {
+        if (!(charges.period > 0)) return;
+        if (static_cast<double>(longest) > charges.period)
+            throw InputError("a charge is softened as far as " + std::to_string(longest) +
+                             ", beyond the period of " + std::to_string(charges.period));
+        coordinate = static_cast<T>(charges.period);
+    }
+    void expand(const Vec<T, 3>& p, const char* what, std::size_t i) {
+        for (int k = 0; k < 3; ++k) coordinate = std::max(coordinate, std::abs(sound_number(p[k], what, i)));
+    }
+    static void expect_lengths(const Strided<T>& lengths, std::size_t n, const char* what) {
+        if (!lengths.empty() && lengths.size() != n)
+            throw InputError(std::to_string(lengths.size()) + " lengths of softening for " +
+                             std::to_string(n) + " places: give one each, or none");
+        for (std::size_t i = 0; i < lengths.size(); ++i)
+            if (sound_number(lengths[i], what, i) < 0)
+                throw InputError(std::string(what) + " " + std::to_string(i) + " is below 0");
+    }
+};
+/// A coordinate in a cube that repeats: from 0 to the side.
+template <class T>
+T in_period(T x, T side) {
+    const T in = x - side * std::floor(x / side);
+    return in >= 0 && in < side ? in : T(0);
+}
+/// Places in a cube that repeats: those in it. Else the places themselves.
+template <class T>
+class PlacesInCube {
+public:
+    PlacesInCube(const Strided<Vec<T, 3>>& places, double period) : places_(places) {
+        if (!(period > 0)) return;
+        const T side = static_cast<T>(period);
+        in_cube_.resize(places.size());
+        for (std::size_t i = 0; i < places.size(); ++i)
+            for (int k = 0; k < 3; ++k) in_cube_[i][k] = in_period(places[i][k], side);
+        places_ = in_cube_;
+    }
+    PlacesInCube(const PlacesInCube&) = delete;
+    PlacesInCube& operator=(const PlacesInCube&) = delete;
+    const Strided<Vec<T, 3>>& places() const { return places_; }
+
+private:
+    std::vector<Vec<T, 3>> in_cube_;
+    Strided<Vec<T, 3>> places_;
+};
 inline void expect_room(std::size_t room, std::size_t targets) {
     if (room != targets)
         throw InputError("room for " + std::to_string(room) + " answers to " + std::to_string(targets) +

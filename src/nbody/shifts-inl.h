@@ -68,9 +68,9 @@ struct Unpacked {
     template <class F>
     HWY_INLINE Unpacked(F f, const V* packed) {
         for (int n = 0; n <= order; ++n) {
-            re[full(n, 0)] = packed[HWY_NAMESPACE::re(n, 0)], im[full(n, 0)] = hn::Zero(f);
+            re[full(n, 0)] = packed[hedgerow::re(n, 0)], im[full(n, 0)] = hn::Zero(f);
             for (int m = 1; m <= n; ++m) {
-                const V a = packed[HWY_NAMESPACE::re(n, m)], b = packed[HWY_NAMESPACE::im(n, m)];
+                const V a = packed[hedgerow::re(n, m)], b = packed[hedgerow::im(n, m)];
                 re[full(n, m)] = a, im[full(n, m)] = b;
                 re[full(n, -m)] = m % 2 == 0 ? a : hn::Neg(a);
                 im[full(n, -m)] = m % 2 == 0 ? hn::Neg(b) : b;

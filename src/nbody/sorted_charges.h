@@ -13,6 +13,7 @@
 #include <hedgerow/structures/orthtree/point_orthtree.h>
 
 #include "cells.h"
+#include "far_images.h"
 #include "rows.h"
 
 namespace hedgerow::detail {
@@ -105,6 +106,10 @@ struct Sorted {
               [&](PrimitiveId i) { return static_cast<double>(charges.charges[i]) * units.charge; },
               [&](PrimitiveId i) { return reach_of(charges, i); }) {
         cells.softening = charges.softening.kernel;
+        if (charges.period > 0) {
+            cells.side = side_of(charges) * units.length;
+            cells.images = near_image_places(cells.side);
+        }
     }
     /// Targets of charges, as if they were charges of 1.
     Sorted(const Targets<T>& targets, const Charges<T>& charges, const Units& units, std::uint32_t leaf_size,
@@ -120,6 +125,9 @@ private:
            const FmmKernel<R>& kernel, Executor& executor, Charge charge_of, Reach reach)
         : tree(PointOrthtree<T, 3>::build(PointCloudView<T, 3>(places), {.leaf_size = leaf_size}, executor)) {
         number_cells(tree, leaf_size, cells);
+        if (cells.size() > FmmSource::most_cells)
+            throw InputError(std::to_string(places.size()) + " charges are more than fit in " +
+                             std::to_string(FmmSource::most_cells) + " cells");
         make_room(cells, places.size(), kernel.multipole_stride);
         if (are_softened) cells.soft.resize(places.size() + row_padding, R(0));
         executor.for_each_piece(places.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
@@ -144,6 +152,15 @@ private:
     }
 };
 
+/// Writes tidal tensors in the caller's order and units.
+template <class R, class T>
+void hand_out(Sorted<R, T>& sorted, const Units& units, std::span<Tides> found, Executor& executor) {
+    const TideRows rows = sorted.cells.tide_rows();
+    const double unit = units.gradient() * units.length;
+    executor.for_each_piece(found.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) found[sorted.tree.items()[i]] = rows[i] * unit;
+    });
+}
 /// Writes what was found in the caller's order and units.
 template <class R, class T>
 void hand_out(const Sorted<R, T>& sorted, const Units& units, std::span<PotentialAt<T>> found,

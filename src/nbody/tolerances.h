@@ -6,40 +6,63 @@
 #include <cstdint>
 #include <vector>
 
+#include <hedgerow/geometry/vec.h>
 #include <hedgerow/parallel/executor.h>
 
 #include "cells.h"
 
 namespace hedgerow::detail {
 
+/// How far a cell of sources is from one of targets; in a periodic cube, its nearest image.
+template <class R>
+Vec3d offset(const FmmCells<R>& sources, std::uint32_t source, const FmmCells<R>& targets,
+             std::uint32_t target) {
+    const Vec3d apart(sources.cx[source] - targets.cx[target], sources.cy[source] - targets.cy[target],
+                      sources.cz[source] - targets.cz[target]);
+    if (!(sources.side > 0)) return apart;
+    const auto nearest = [&](double x) { return x - sources.side * std::round(x / sources.side); };
+    return {nearest(apart[0]), nearest(apart[1]), nearest(apart[2])};
+}
 /// About the least gradient in a leaf: that of all other cells as single charges (Barnes and Hut), each
-/// farther away by the leaf's radius, or a hundredth of the sum of their sizes.
+/// farther away by the leaf's radius, or a hundredth of the sum of their sizes. In a periodic cube what cells
+/// do nearly cancels: so that it does here, cells are small, not moved away, and nearest images do less along
+/// an axis the nearer they are to its turning point, where the next image does as much.
 template <class R>
 double strength_in(const FmmCells<R>& sources, const FmmCells<R>& targets, std::uint32_t leaf) {
     thread_local std::vector<std::uint32_t> stack;
-    constexpr double opening_angle = 0.7;
+    const bool periodic = sources.side > 0;
+    const double opening_angle = periodic ? 1.0 : 0.7;
+    const std::vector<R>& extents = periodic ? sources.radius : sources.reach;
     const double own = static_cast<double>(targets.radius[leaf]);
-    double x = 0, y = 0, z = 0, size = 0;
+    const double per_side = periodic ? 1 / sources.side : 0;
+    Vec3d sum;
+    double size = 0;
     stack.assign(1, 0);
     while (!stack.empty()) {
         const std::uint32_t other = stack.back();
         stack.pop_back();
-        const double dx = sources.cx[other] - targets.cx[leaf], dy = sources.cy[other] - targets.cy[leaf],
-                     dz = sources.cz[other] - targets.cz[leaf];
-        const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-        if (!sources.is_leaf(other) &&
-            !(static_cast<double>(sources.reach[other]) < opening_angle * distance)) {
+        const Vec3d apart = offset(sources, other, targets, leaf);
+        const double distance = length(apart);
+        if (!sources.is_leaf(other) && !(static_cast<double>(extents[other]) < opening_angle * distance)) {
             for (std::uint32_t i = 0; i < sources.children[other]; ++i)
                 stack.push_back(sources.child[other] + i);
             continue;
         }
         if (!(distance > 0)) continue;
-        const double per_d2 = 1 / ((distance + own) * (distance + own)), along = per_d2 / distance;
+        // What is softened acts about as Plummer's charges do.
+        const double soft = static_cast<double>(std::max(sources.softest[other], targets.softest[leaf])) / 3,
+                     softened = std::sqrt(distance * distance + soft * soft), far = softened + own,
+                     per_d2 = 1 / (far * far),
+                     along = (periodic ? 1 / (softened * softened) : per_d2) / softened;
         const double charge = static_cast<double>(sources.multipoles[other * sources.multipole_stride]);
-        x += charge * along * dx, y += charge * along * dy, z += charge * along * dz;
+        const auto between = [&](double x) {
+            const double t = 2 * std::abs(x) * per_side;
+            return x * (1 - t * t * t);
+        };
+        sum += Vec3d(between(apart[0]), between(apart[1]), between(apart[2])) * (charge * along);
         size += static_cast<double>(sources.weight[other]) * per_d2;
     }
-    return std::max(std::sqrt(x * x + y * y + z * z), 0.01 * size);
+    return std::max(length(sum), 0.01 * size);
 }
 /// What counts of the errors in a cell: the mean of some power of them as shares of the gradients, so that a
 /// few targets that are far out or where gradients are small count as they should.
@@ -49,11 +72,11 @@ constexpr double error_power = 4;
 /// in the units of the cells.
 template <class R, class F>
 void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
-    // No charge is farther away than the far side of all of them.
-    const double dx = sources.cx[0] - targets.cx[leaf], dy = sources.cy[0] - targets.cy[leaf],
-                 dz = sources.cz[0] - targets.cz[leaf];
-    const double farthest = std::sqrt(dx * dx + dy * dy + dz * dz) + static_cast<double>(sources.radius[0]) +
-                            static_cast<double>(targets.radius[leaf]);
+    // No charge is farther away than the far side of all of them; in a cube, those of its own images are.
+    const double farthest =
+        std::max(length(offset(sources, 0, targets, leaf)) + static_cast<double>(sources.radius[0]) +
+                     static_cast<double>(targets.radius[leaf]),
+                 sources.side / 2);
     const double least = 0.01 * static_cast<double>(sources.weight[0]) / (farthest * farthest);
     const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
     const double per_radius = targets.radius[leaf] > 0 ? 1 / static_cast<double>(targets.radius[leaf]) : 0;

@@ -87,6 +87,8 @@ constexpr SceneInfo scenes[] = {
               [](U n, U seed, const P& p) { return uniform_sphere(n, seed, p); }),
     particles("cold-collapse", "stars: a uniform sphere at rest, which falls into its center",
               [](U n, U seed, const P& p) { return cold_collapse(n, seed, p); }),
+    particles("cold-cube", "stars: the unit cube at rest, which clumps where it repeats",
+              [](U n, U seed, const P& p) { return cold_cube(n, seed, p); }),
     particles("disc", "stars: a thin disc that turns",
               [](U n, U seed, const P& p) { return disc(n, seed, p); }),
     particles("two-clusters", "stars: two Plummer spheres that fall into each other",

@@ -90,6 +90,9 @@ Star of_uniform_sphere(Random& random) {
 Star of_cold_collapse(Random& random) {
     return {in_ball(random, 1), Vec3d()};
 }
+Star of_cold_cube(Random& random) {
+    return {random.in_cube<3>(), Vec3d()};
+}
 Star of_disc(Random& random) {
     // Kuzmin's disc is M(r) = 1 − 1/√(1 + r²), and v² = r²·(1 + r²)^(−3/2).
     const double most = 1 - 1 / std::sqrt(101.0), left = 1 - random.uniform() * most;
@@ -135,6 +138,9 @@ Particles uniform_sphere(std::uint64_t size, std::uint64_t seed, const Progress&
 }
 Particles cold_collapse(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     return stars(of_cold_collapse, size, seed, progress);
+}
+Particles cold_cube(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
+    return stars(of_cold_cube, size, seed, progress);
 }
 Particles disc(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
     return stars(of_disc, size, seed, progress);

@@ -1,4 +1,4 @@
-/// Particles, and the state of a motion, from and to files of rows.
+/// Particles, and the state of a motion, from and to files of rows and snapshots.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,9 @@
 
 namespace hedgerow {
 
-/// Reads particles from a file of rows (`.npy`, `.csv`, `.json`, as `open_rows` in io/rows.h; or a point
-/// cloud, as `load_points`). Its columns are one of
+/// Reads particles from a snapshot in HDF5 as GADGET lays it out (`.hdf5`, `.h5`; in one file; particles of
+/// all types, one after the other), or from a file of rows (`.npy`, `.csv`, `.json`, as `open_rows` in
+/// io/rows.h; or a point cloud, as `load_points`). Its columns are one of
 ///
 /// - `x y z`: particles at rest, of equal masses, 1 together;
 /// - `x y z mass`: particles at rest;
@@ -22,8 +23,10 @@ namespace hedgerow {
 /// Cancelled if `progress` is cancelled. O(size of the file).
 MotionState load_state(const std::filesystem::path& path, const Progress& progress = {});
 
-/// Writes a state: a row a particle, with the columns above, in double. The file appears once it is finished,
-/// whole. Throws OutputError if it cannot be written, UsageError if its extension names no format. O(n).
-void save_state(const std::filesystem::path& path, const MotionState& state);
+/// Writes a state: a row a particle, with the columns above, in double; or, to `.hdf5` and `.h5`, a snapshot
+/// as GADGET's of particles of type 1, with the side of a periodic cube as its BoxSize. The file appears once
+/// it is finished, whole. Throws OutputError if it cannot be written, UsageError if its extension names no
+/// format or one that the build lacks. O(n).
+void save_state(const std::filesystem::path& path, const MotionState& state, double period = 0);
 
 }  // namespace hedgerow

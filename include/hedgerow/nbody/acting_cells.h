@@ -22,9 +22,10 @@ struct ActingCell {
     std::size_t count;
     ActsBy by;
 };
-/// The cells that act on charge number i in `forces`: each other charge is in one of them, once. For pictures
-/// and for learning: O(n). Empty where no kernel answers (instruction set "plain"), and for an i that is not
-/// below the number of charges. Throws as `forces` does.
+/// The cells that act on charge number i in `forces`: each other charge is in one of them, once; in a
+/// periodic cube each near image of one, too. For pictures and for learning: O(n). Empty where no kernel
+/// answers (instruction set "plain"), and for an i that is not below the number of charges. Throws as
+/// `forces` does.
 template <std::floating_point T>
 std::vector<ActingCell> acting_cells(const Charges<T>& charges, std::size_t i,
                                      const ForceOptions& options = {});

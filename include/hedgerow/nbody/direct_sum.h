@@ -17,6 +17,12 @@ struct Charges {
     Strided<T> charges;  ///< one for each place
     Softening softening = {};
     Strided<T> lengths = {};  ///< each charge's own length of softening; empty: that of `softening`
+    /// The side of the cube in which all repeats, along each axis without an end; 0: nothing repeats.
+    ///
+    /// All images of the charges act then, and as much of the opposite charge that is spread evenly, so that
+    /// the mean of the potential is 0 (for charges that cancel: as in a box of tinfoil; for masses: in a
+    /// universe whose mean density does not act). Places may lie in any images of the cube.
+    double period = 0;
 };
 /// Places at which charges act, in the caller's array.
 template <std::floating_point T>
@@ -47,5 +53,11 @@ struct Targets {
 template <std::floating_point T>
 void direct_sum(const Charges<T>& sources, const Targets<T>& targets, std::span<PotentialAt<T>> found,
                 Threads threads = {});
+
+/// Writes the tidal tensor of the charges at each target, likewise, pair by pair in double. O(sources ·
+/// targets), some ten times as slow: what those of `forces` are compared with.
+template <std::floating_point T>
+void direct_tides(const Charges<T>& sources, const Targets<T>& targets, std::span<Tides> found,
+                  Threads threads = {});
 
 }  // namespace hedgerow

@@ -14,6 +14,9 @@ struct ForceOptions {
     /// About the size of each gradient, if it is known, as of a step before: less to compute, and cells are
     /// taken as a whole as far as the accuracy allows. Empty: it is estimated.
     Strided<double> sizes = {};
+    /// Room for the tidal tensor at each target, if it is wanted. Its errors, as shares of Σ |q|/r³, are
+    /// about those of gradients as shares of Σ |q|/r². It takes about half as long again.
+    std::span<Tides> tides = {};
 };
 
 /// Writes the potential Σ q/r, or that of softened charges, and its gradient at each charge, of all others,
@@ -24,8 +27,9 @@ struct ForceOptions {
 /// nothing but for roundings: 10⁻⁶ of the sum of their sizes where single precision suffices for the
 /// accuracy, else 10⁻¹³. Charges in one place do nothing to each other. O(n); the same bits for any executor.
 ///
-/// Throws InputError if there is not one charge and one element of `found` a place, for numbers that are not
-/// finite or beyond 2⁶⁰ (in double 2⁴⁸⁰), and UsageError for an accuracy out of its range.
+/// Throws InputError if there is not one charge and one element of `found` (and of `tides`) a place, for
+/// numbers that are not finite or beyond 2⁶⁰ (in double 2⁴⁸⁰), and UsageError for an accuracy out of its
+/// range.
 ///
 /// In the library `nbody`; T is float or double.
 template <std::floating_point T>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -43,16 +44,31 @@ inline constexpr T coincident2 = sizeof(T) == 4 ? T(0x1p-80) : T(0x1p-640);
 
 template <class T>
 struct FmmCells;
+/// A cell of charges that acts, itself or an image of it in a periodic cube.
+class FmmSource {
+public:
+    static constexpr std::uint32_t most_cells = 1u << 25;
+
+    constexpr FmmSource(std::uint32_t cell, std::uint32_t image) : code_(image * most_cells + cell) {}
+    constexpr std::uint32_t cell() const { return code_ % most_cells; }
+    constexpr std::uint32_t image() const { return code_ / most_cells; }
+    /// Another cell of the same image.
+    constexpr FmmSource with(std::uint32_t other) const { return {other, image()}; }
+    friend constexpr auto operator<=>(FmmSource, FmmSource) = default;
+
+private:
+    std::uint32_t code_;
+};
 /// A target's walk that any thread may go on with: the cells that are undecided against it, and its local
 /// expansion.
 template <class T>
 struct FmmTask {
     std::uint32_t cell;
-    std::vector<std::uint32_t> undecided;
+    std::vector<FmmSource> undecided;
     std::vector<T> local;
 };
 struct CellThatActs {
-    std::uint32_t cell;
+    FmmSource cell;
     ActsBy by;
 };
 /// The fast multipole method of one order (src/nbody/fmm-inl.h).
@@ -75,6 +91,13 @@ struct FmmKernel {
     void (*acting)(const FmmCells<T>& sources, FmmCells<T>& targets, std::uint32_t place,
                    std::vector<CellThatActs>&);
 };
+/// Adds the multipole of charges of an order, or the potentials and gradients of a local expansion of an
+/// order, at most `most_order_at_run_time`. Numbers of harmonics are packed: of each degree n the real part
+/// of m = 0, then both parts of m = 1 to n. Rows of what is found may be written as far as they are readable.
+using AddMultipole = void (*)(const ChargeRows<double>&, int order, double* multipole);
+using AddLocal = void (*)(const double* local, int order, const TargetRows<double>&);
+inline constexpr int most_order_at_run_time = 20;
+
 using FmmFloatKernels = std::array<FmmKernel<float>, 4>;
 using FmmDoubleKernels = std::array<FmmKernel<double>, 2>;
 
@@ -84,6 +107,8 @@ struct NbodyKernels {
     DirectKernel<double> direct_double;
     const FmmFloatKernels* fmm_float;
     const FmmDoubleKernels* fmm_double;
+    AddMultipole add_multipole;
+    AddLocal add_local;
 };
 /// The kernels in use, or nullptr where plain code answers.
 const NbodyKernels* nbody_kernels();

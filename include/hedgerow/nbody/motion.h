@@ -19,9 +19,11 @@ struct MotionOptions {
     double accuracy = 1e-3;  ///< of forces, as ForceOptions states it
     Softening softening = {};
     double gravity = 1;  ///< the constant of gravity
+    /// The side of the cube in which all repeats, as that of `Charges`; places stay from 0 to it. 0: none.
+    double period = 0;
 };
 
-/// What a motion conserves, but for the errors of steps and forces.
+/// What a motion conserves, but for the errors of steps and forces; a periodic cube no angular momentum.
 struct Conserved {
     double kinetic = 0, potential = 0;  ///< energies
     Vec3d momentum, angular_momentum;

@@ -17,6 +17,21 @@ struct PotentialAt {
     Vec<T, D> gradient{};
 };
 
+/// A tidal tensor: the second derivatives of a potential Σ q·φ(r). Where charges are masses, G times these
+/// are how fast the acceleration changes from place to place.
+struct Tides {
+    double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+
+    Tides& operator+=(const Tides& b) {
+        xx += b.xx, yy += b.yy, zz += b.zz, xy += b.xy, xz += b.xz, yz += b.yz;
+        return *this;
+    }
+    friend Tides operator+(Tides a, const Tides& b) { return a += b; }
+    friend Tides operator*(const Tides& a, double s) {
+        return {a.xx * s, a.yy * s, a.zz * s, a.xy * s, a.xz * s, a.yz * s};
+    }
+};
+
 namespace detail {
 /// Throws InputError unless there is one charge for each point.
 inline void expect_one_charge_each(std::size_t charges, std::size_t points) {
@@ -37,6 +52,9 @@ struct InverseDistance {
         const double potential = 1 / std::sqrt(distance2);
         return {potential, -potential / distance2};
     }
+    /// (φ'/r)'/r, by which the product of the offset with itself is multiplied in the tidal tensor; its
+    /// diagonal is φ'/r more.
+    double bend(double distance2) const { return 3 / (distance2 * distance2 * std::sqrt(distance2)); }
 };
 /// Charges in the plane, vortices, line masses.
 struct MinusLogarithm {

@@ -49,6 +49,15 @@ struct SoftenedInverse {
         }
         return {potential / reach, -force / (reach * reach * reach)};
     }
+    /// As that of `InverseDistance`.
+    double bend(double distance2) const {
+        if (!(distance2 < reach * reach)) return InverseDistance().bend(distance2);
+        const double u = std::sqrt(distance2) / reach, reach2 = reach * reach;
+        const double change = kernel == SofteningKernel::wendland ? -168 + u * (420 + u * (-360 + 105 * u))
+                              : u < 0.5                           ? -76.8 + 96 * u
+                                        : -48 / u + 76.8 - 32 * u + 0.2 / (u * u * u * u * u);
+        return -change / (reach2 * reach2 * reach);
+    }
 };
 
 }  // namespace hedgerow

@@ -29,6 +29,9 @@ Particles uniform_sphere(std::uint64_t size, std::uint64_t seed = 0, const Progr
 /// A uniform sphere of radius 1 at rest, which falls into its center within a time of 1.11.
 Particles cold_collapse(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
+/// The cube from 0 to 1 at rest. Where it repeats, with a period of 1, its particles gather in clumps.
+Particles cold_cube(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
+
 /// A thin disc in the plane z = 0, Kuzmin's of radius 1 out to 10, on circles about its center.
 Particles disc(std::uint64_t size, std::uint64_t seed = 0, const Progress& progress = {});
 
