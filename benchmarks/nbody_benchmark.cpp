@@ -11,6 +11,7 @@
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
 #include <hedgerow/nbody/barnes_hut.h>
+#include <hedgerow/nbody/force_check.h>
 #include <hedgerow/nbody/forces.h>
 #include <hedgerow/scenes/particles.h>
 #include <hedgerow/scenes/sets.h>
@@ -29,20 +30,6 @@ std::string format(const char* pattern, double number) {
     std::snprintf(text, sizeof text, pattern, number);
     return text;
 }
-/// The rms error of gradients as shares of themselves, at a thousand charges.
-double error_of(std::span<const Vec3d> places, const std::vector<double>& charges,
-                const std::vector<PotentialAt<double>>& found) {
-    const std::size_t step = std::max<std::size_t>(1, places.size() / 1000);
-    std::vector<Vec3d> targets;
-    for (std::size_t i = 0; i < places.size(); i += step) targets.push_back(places[i]);
-    std::vector<PotentialAt<double>> want(targets.size());
-    direct_sum<double>({places, charges}, targets, want, serial_executor());
-    double sum = 0;
-    for (std::size_t k = 0; k < want.size(); ++k)
-        sum += length2(found[k * step].gradient - want[k].gradient) / length2(want[k].gradient);
-    return std::sqrt(sum / static_cast<double>(want.size()));
-}
-
 /// Prints the cycles that a contender takes a unit of work, and its error, if that is asked.
 void print(const Contest& contest, std::size_t units, const char* unit,
            const std::function<double()>& error = {}) {
@@ -128,7 +115,8 @@ int main(int argc, char** argv) {
                 return static_cast<std::size_t>(found[0].potential);
             });
         }
-        print(methods, count, "charge", [&] { return error_of(places, charges, found); });
+        const ForceCheck check(Charges<double>{places, charges}, 1000, serial_executor());
+        print(methods, count, "charge", [&] { return check.errors_of<double>(found).rms; });
     }
 
     std::printf("builds: %zu points of the unit cube\n", count);

@@ -68,6 +68,14 @@ TEST_F(Nbody, ForcesAreThoseOfTheLibrary) {
         ASSERT_EQ(found[0], -at.potential);
         ASSERT_EQ(Vec3d(found[1], found[2], found[3]), at.gradient);
     }
+    const auto checked =
+        run("nbody gen:plummer:3000 --forces --accuracy 1e-5 --check --json -o " + file("a.npy"));
+    EXPECT_EQ(checked.code, 0) << checked.output;
+    const json errors = json::parse(checked.output).at("errors");
+    EXPECT_EQ(errors.at("targets"), 1000);
+    EXPECT_LE(errors.at("rms"), 1e-5);
+    EXPECT_GT(errors.at("rms"), 1e-9);
+    expect_usage("nbody gen:plummer:30 --until 1 --check -o " + file("x"), "--check");
     // At other places, softened.
     std::ofstream(file("places.csv")) << "x,y,z\n0,0,0\n1,2,3\n";
     const auto r = run("nbody gen:plummer:3000 --forces --gravity 2 --softening 0.1 --from " +

@@ -4,6 +4,7 @@
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/nbody/acting_cells.h>
+#include <hedgerow/nbody/force_check.h>
 #include <hedgerow/nbody/forces.h>
 #include <hedgerow/scenes/particles.h>
 #include <hedgerow/scenes/random.h>
@@ -63,60 +64,8 @@ std::vector<PotentialAt<double>> forces_of(const Scene& scene, double accuracy, 
     forces<double>(scene.view(), found, {.accuracy = accuracy}, threads);
     return found;
 }
-/// What the gradients at about `most` charges should be, and what their errors are shares of: themselves, or
-/// a hundredth of Σ |q|/r².
-struct Expected {
-    std::size_t step;
-    std::vector<PotentialAt<double>> want;
-    std::vector<double> sizes;
-
-    explicit Expected(const Scene& scene, std::size_t most = 1000)
-        : step(std::max<std::size_t>(1, scene.places.size() / most)) {
-        std::vector<Vec3d> targets;
-        for (std::size_t i = 0; i < scene.places.size(); i += step) targets.push_back(scene.places[i]);
-        want.resize(targets.size()), sizes.resize(targets.size());
-        direct_sum<double>(scene.view(), targets, want);
-        default_executor().for_each_piece(targets.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                double sum = 0;
-                for (std::size_t j = 0; j < scene.places.size(); ++j)
-                    if (const double d2 = length2(scene.places[j] - targets[k]); d2 > 0)
-                        sum += std::abs(scene.charges[j]) / d2;
-                sizes[k] = std::max(length(want[k].gradient), 0.01 * sum);
-            }
-        });
-    }
-};
-struct ErrorsOf {
-    double rms = 0;
-    std::vector<double> sorted;
-
-    ErrorsOf(const Expected& expected, const std::vector<PotentialAt<double>>& found) {
-        for (std::size_t k = 0; k < expected.want.size(); ++k) {
-            sorted.push_back(length(found[k * expected.step].gradient - expected.want[k].gradient) /
-                             expected.sizes[k]);
-            rms += sorted.back() * sorted.back() / static_cast<double>(expected.want.size());
-        }
-        rms = std::sqrt(rms);
-        std::sort(sorted.begin(), sorted.end());
-    }
-    /// All but a share are at most this.
-    double all_but(double share) const {
-        return sorted[static_cast<std::size_t>(static_cast<double>(sorted.size() - 1) * (1 - share))];
-    }
-};
 double error_of(const Scene& scene, const std::vector<PotentialAt<double>>& found) {
-    return ErrorsOf(Expected(scene), found).rms;
-}
-/// What all forces add up to, relative to the sum of their sizes.
-double imbalance(const Scene& scene, const std::vector<PotentialAt<double>>& found) {
-    Vec3d sum;
-    double size = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        sum = sum + found[i].gradient * scene.charges[i];
-        size += length(found[i].gradient) * std::abs(scene.charges[i]);
-    }
-    return length(sum) / size;
+    return ForceCheck(scene.view()).errors_of<double>(found).rms;
 }
 
 TEST(Forces, KeepTheirAccuracy) {
@@ -130,32 +79,32 @@ TEST(Forces, KeepTheirAccuracy) {
                                                     {"two clusters", unlike_clusters(n, 1e-6)},
                                                     {"unlike clusters", unlike_clusters(n, 1e-9)}};
     for (const auto& [name, scene] : scenes) {
-        const Expected expected(scene, in_long_runs(n, 1000));
+        const ForceCheck check(scene.view(), in_long_runs(n, 1000));
         for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
             SCOPED_TRACE(std::string(name) + " " + std::to_string(accuracy * 1e9) + "e-9");
             const auto found = forces_of(scene, accuracy);
-            const ErrorsOf errors(expected, found);
+            const ForceErrors errors = check.errors_of<double>(found);
             EXPECT_LE(errors.rms, accuracy);
-            EXPECT_LE(errors.all_but(0.001), 10 * accuracy);
+            EXPECT_LE(errors.most, 10 * accuracy);
             if (std::getenv("HEDGEROW_LONG") != nullptr)
                 std::printf("%-14s %.0e: rms %.1e, all but a thousandth %.1e, most %.1e\n", name, accuracy,
-                            errors.rms, errors.all_but(0.001), errors.sorted.back());
-            EXPECT_LE(imbalance(scene, found), accuracy >= 1e-5 ? 1e-6 : 1e-13);
+                            errors.rms, errors.most, errors.largest);
+            EXPECT_LE(errors.imbalance, accuracy >= 1e-5 ? 1e-6 : 1e-13);
         }
     }
 }
 TEST(Forces, WhoseSizesAreKnownKeepTheirAccuracy) {
     const Scene scene = stars(plummer(20000));
-    const Expected expected(scene);
+    const ForceCheck check(scene.view());
     auto found = forces_of(scene, 1e-2);
     for (const double accuracy : {1e-3, 1e-5, 1e-7}) {
         std::vector<double> sizes;
         sizes.reserve(found.size());
         for (const auto& at : found) sizes.push_back(length(at.gradient));
         forces<double>(scene.view(), found, {accuracy, sizes});
-        const ErrorsOf errors(expected, found);
+        const ForceErrors errors = check.errors_of<double>(found);
         EXPECT_LE(errors.rms, accuracy);
-        EXPECT_LE(errors.all_but(0.001), 10 * accuracy);
+        EXPECT_LE(errors.most, 10 * accuracy);
     }
 }
 /// At other places than those of the charges: few and many, inside and far away, and at charges.
@@ -198,28 +147,24 @@ TEST(Forces, OfSoftenedCharges) {
             Charges<double> charges = scene.view();
             charges.softening = {kernel, 0.05};
             if (own) charges.lengths = lengths;
-            const Targets<double> targets(scene.places, own ? Strided<double>(lengths) : Strided<double>());
-            std::vector<PotentialAt<double>> want(scene.places.size()), found(scene.places.size());
-            direct_sum<double>(charges, targets, want);
+            const ForceCheck check(charges, 10000);
+            std::vector<PotentialAt<double>> found(scene.places.size());
             for (const double accuracy : {1e-3, 1e-7}) {
                 forces<double>(charges, found, {.accuracy = accuracy});
-                double error2 = 0;
-                for (std::size_t i = 0; i < found.size(); ++i)
-                    error2 += length2(found[i].gradient - want[i].gradient) / length2(want[i].gradient) /
-                              static_cast<double>(found.size());
-                EXPECT_LE(std::sqrt(error2), accuracy);
-                EXPECT_LE(imbalance(scene, found), accuracy >= 1e-5 ? 1e-6 : 1e-13);
+                const ForceErrors errors = check.errors_of<double>(found);
+                EXPECT_LE(errors.rms, accuracy);
+                EXPECT_LE(errors.imbalance, accuracy >= 1e-5 ? 1e-6 : 1e-13);
             }
         }
 }
 TEST(Forces, OfEveryInstructionSet) {
     const Scene scene = stars(plummer(13000));  // more than are summed directly
-    const Expected expected(scene);
+    const ForceCheck check(scene.view());
     for (const auto set : instruction_sets()) {
         SCOPED_TRACE(set);
         const Using use(set);
         for (const double accuracy : {1e-2, 1e-3, 1e-5, 1e-6, 1e-7, 1e-9})
-            EXPECT_LE(ErrorsOf(expected, forces_of(scene, accuracy)).rms, accuracy) << accuracy;
+            EXPECT_LE(check.errors_of<double>(forces_of(scene, accuracy)).rms, accuracy) << accuracy;
     }
 }
 TEST(Forces, AreTheSameForAnyNumberOfThreads) {
@@ -296,6 +241,25 @@ TEST(Forces, CellsThatActHoldEachChargeOnce) {
             }
     }
     EXPECT_TRUE(acting_cells<double>(scene.view(), 20000).empty());
+}
+/// What is added to forces is what the check finds.
+TEST(Forces, ChecksTellTheErrors) {
+    const Scene scene = stars(plummer(2000));
+    std::vector<PotentialAt<double>> found(2000);
+    direct_sum<double>(scene.view(), scene.places, found);
+    const ForceCheck check(scene.view(), 2000);
+    ForceErrors errors = check.errors_of<double>(found);
+    EXPECT_EQ(errors.targets, 2000u);
+    EXPECT_EQ(errors.largest, 0);
+    EXPECT_LE(errors.imbalance, 1e-11);
+    for (std::size_t i = 0; i < 2000; i += 500) found[i].gradient = found[i].gradient * (i == 0 ? 1.1 : 1.01);
+    errors = check.errors_of<double>(found);
+    EXPECT_NEAR(errors.rms, std::sqrt((0.01 + 3e-4) / 2000), 1e-9);
+    EXPECT_NEAR(errors.largest, 0.1, 1e-9);
+    EXPECT_NEAR(errors.most, 0.01, 1e-9);
+    EXPECT_EQ(ForceCheck(Scene().view()).errors_of<double>({}).targets, 0u);
+    found.pop_back();
+    EXPECT_THROW(check.errors_of<double>(found), InputError);
 }
 TEST(Forces, RefuseBadInput) {
     Scene scene = cube(100);

@@ -6,6 +6,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/nbody/acting_cells.h>
 #include <hedgerow/nbody/barnes_hut.h>
+#include <hedgerow/nbody/force_check.h>
 #include <hedgerow/nbody/forces.h>
 #include <hedgerow/nbody/kernels.h>
 #include <hedgerow/scenes/random.h>
@@ -88,37 +89,6 @@ std::vector<PotentialAt<double>> forces_of(const Cube& cube, double accuracy, Th
     forces<double>(cube.view(), found, {.accuracy = accuracy}, threads);
     return found;
 }
-/// The root of the mean square of errors at places, as shares of gradients, or of a hundredth of Σ |q|/r²
-/// over nearest images.
-double error_at(const Cube& cube, const std::vector<Vec3d>& places,
-                const std::vector<PotentialAt<double>>& found, const std::vector<PotentialAt<double>>& want) {
-    double error2 = 0;
-    for (std::size_t k = 0; k < want.size(); ++k) {
-        double sum = 0;
-        for (std::size_t j = 0; j < cube.size(); ++j) {
-            Vec3d apart = (places[k] - cube.places[j]) / cube.side;
-            for (int a = 0; a < 3; ++a) apart[a] -= std::round(apart[a]);
-            if (length2(apart) > 0) sum += std::abs(cube.charges[j]) / length2(apart * cube.side);
-        }
-        const double size = std::max(length(want[k].gradient), 0.01 * sum);
-        error2 += length2(found[k].gradient - want[k].gradient) / (size * size);
-    }
-    return std::sqrt(error2 / static_cast<double>(want.size()));
-}
-double error_of(const Cube& cube, const std::vector<PotentialAt<double>>& found,
-                const std::vector<PotentialAt<double>>& want) {
-    return error_at(cube, cube.places, found, want);
-}
-double imbalance(const Cube& cube, const std::vector<PotentialAt<double>>& found) {
-    Vec3d sum;
-    double size = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        sum += found[i].gradient * cube.charges[i];
-        size += length(found[i].gradient) * std::abs(cube.charges[i]);
-    }
-    return length(sum) / size;
-}
-
 TEST(Periodic, DirectSumsAreThoseAfterEwald) {
     for (const double side : {1.0, 0.3, 7e5})
         for (const bool neutral : {false, true}) {
@@ -178,27 +148,21 @@ TEST(Periodic, ForcesKeepTheirAccuracy) {
     for (const bool even : {true, false})
         for (const bool neutral : {true, false}) {
             const Cube scene = cube(8000, even, neutral, 3);
-            std::vector<Vec3d> targets;
-            for (std::size_t i = 0; i < scene.size(); i += 40) targets.push_back(scene.places[i]);
-            std::vector<PotentialAt<double>> want(targets.size());
-            direct_sum<double>(scene.view(), targets, want);
+            const ForceCheck check(scene.view(), 200);
             for (const double accuracy : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-7, 1e-9}) {
-                const auto all = forces_of(scene, accuracy);
-                EXPECT_LE(imbalance(scene, all), accuracy > 3e-5 ? 2e-6 : 1e-13) << accuracy;
-                std::vector<PotentialAt<double>> found;
-                for (std::size_t i = 0; i < scene.size(); i += 40) found.push_back(all[i]);
-                EXPECT_LE(error_at(scene, targets, found, want), accuracy) << even << neutral;
+                const ForceErrors errors = check.errors_of<double>(forces_of(scene, accuracy));
+                EXPECT_LE(errors.rms, accuracy) << even << neutral;
+                EXPECT_LE(errors.imbalance, accuracy > 3e-5 ? 2e-6 : 1e-13) << accuracy;
             }
         }
 }
 TEST(Periodic, OfEveryInstructionSet) {
     const Cube scene = cube(1000, false, false);
-    std::vector<PotentialAt<double>> want(scene.size());
-    direct_sum<double>(scene.view(), scene.places, want);
+    const ForceCheck check(scene.view());
     for (const auto set : instruction_sets())
         for (const double accuracy : {1e-3, 1e-6}) {
             const Using use(set);
-            EXPECT_LE(error_of(scene, forces_of(scene, accuracy), want), accuracy) << set;
+            EXPECT_LE(check.errors_of<double>(forces_of(scene, accuracy)).rms, accuracy) << set;
         }
 }
 /// Places may lie in any image of the cube, targets too, and all may be moved.
@@ -213,21 +177,24 @@ TEST(Periodic, PlacesOfAnyImages) {
         targets_in_cube.push_back(Random(82, i).in_cube<3>() * 2.0);
         targets.push_back(targets_in_cube.back() - Vec3d(n(3), n(5), n(2)) * 2.0);
     }
-    EXPECT_LE(error_of(scene, forces_of(moved, 1e-6), forces_of(scene, 1e-6)), 2e-6);
+    EXPECT_LE(ForceCheck(scene.view(), 200).errors_of<double>(forces_of(moved, 1e-6)).rms, 1e-6);
     std::vector<PotentialAt<double>> found(targets.size()), want(targets.size());
     forces<double>(scene.view(), Targets<double>(targets), found, {.accuracy = 1e-6});
     direct_sum<double>(scene.view(), targets_in_cube, want);
-    EXPECT_LE(error_at(scene, targets_in_cube, found, want), 1e-6);
+    double error2 = 0;
+    for (std::size_t k = 0; k < found.size(); ++k)
+        error2 += length2(found[k].gradient - want[k].gradient) / length2(want[k].gradient);
+    EXPECT_LE(std::sqrt(error2 / static_cast<double>(found.size())), 3e-6);
 }
 TEST(Periodic, OfSoftenedCharges) {
     const Cube scene = cube(3000, true, false);
     Charges<double> charges = scene.view();
     charges.softening.length = 0.1;
-    std::vector<PotentialAt<double>> want(scene.size()), found(scene.size());
-    direct_sum<double>(charges, scene.places, want);
+    const ForceCheck check(charges);
+    std::vector<PotentialAt<double>> found(scene.size());
     for (const double accuracy : {1e-3, 1e-7}) {
         forces<double>(charges, found, {.accuracy = accuracy});
-        EXPECT_LE(error_of(scene, found, want), accuracy);
+        EXPECT_LE(check.errors_of<double>(found).rms, accuracy);
     }
     charges.softening.length = 0.5;  // which reaches beyond the cube's side
     EXPECT_THROW(forces<double>(charges, found), InputError);
@@ -263,10 +230,7 @@ TEST(Periodic, OfFloats) {
     }
     std::vector<PotentialAt<float>> found(scene.size());
     forces<float>({places, charges, {}, {}, 1}, found, {.accuracy = 1e-4});
-    std::vector<PotentialAt<double>> want(scene.size()), in_double;
-    direct_sum<double>(same.view(), same.places, want);
-    for (const auto& at : found) in_double.push_back({static_cast<double>(at.potential), Vec3d(at.gradient)});
-    EXPECT_LE(error_of(same, in_double, want), 1e-4);
+    EXPECT_LE(ForceCheck(same.view()).errors_of<float>(found).rms, 1e-4);
 }
 /// Of a charge, the cells that act on it hold each near image of each charge once.
 TEST(Periodic, CellsThatActHoldEachNearImageOnce) {

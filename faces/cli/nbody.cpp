@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/particle_file.h>
 #include <hedgerow/io/rows.h>
+#include <hedgerow/nbody/force_check.h>
 #include <hedgerow/nbody/forces.h>
 
 #include "verbs.h"
@@ -57,6 +59,12 @@ int nbody_forces(const NbodyArguments& a) {
             forces<double>(charges, Targets<double>(targets), found, {.accuracy = a.accuracy}, watched);
     }
     const double seconds = now() - began;
+    std::optional<ForceErrors> errors;
+    if (a.check) {
+        ProgressLine line("checking forces", a.quiet, "particles");
+        WatchedExecutor watched(default_executor(), line.progress());
+        errors = ForceCheck(charges, 1000, watched).errors_of<double>(found);
+    }
     // Write a row a target.
     const auto list = [&](auto& f, const PotentialAt<double>& at) {
         f("potential", -a.gravity * at.potential);
@@ -71,15 +79,28 @@ int nbody_forces(const NbodyArguments& a) {
                    [&](std::size_t i, Record& record) { list(record, found[i]); });
     out.write(out.encode(std::move(records)), count);
     out.finish();
-    if (a.json)
-        print_json({{"output", a.output},
-                    {"particles", all.size()},
-                    {"targets", count},
-                    {"accuracy", a.accuracy},
-                    {"seconds", seconds}});
-    else if (!a.quiet)
+    if (a.json) {
+        nlohmann::ordered_json report = {{"output", a.output},
+                                         {"particles", all.size()},
+                                         {"targets", count},
+                                         {"accuracy", a.accuracy},
+                                         {"seconds", seconds}};
+        if (errors)
+            report["errors"] = {{"targets", errors->targets},
+                                {"rms", errors->rms},
+                                {"all_but_a_thousandth", errors->most},
+                                {"largest", errors->largest},
+                                {"imbalance", errors->imbalance}};
+        print_json(report);
+    } else if (!a.quiet) {
         fmt::print("{}: {} rows of potential and acceleration, within {:g}, in {:.3f} s ({:.3g} million/s)\n",
                    a.output, count, a.accuracy, seconds, static_cast<double>(count) / seconds / 1e6);
+        if (errors)
+            fmt::print(
+                "errors at {} of them: rms {:.1e}, all but a thousandth below {:.1e}, the largest {:.1e}; "
+                "all forces add up to {:.1e} of the sum of their sizes\n",
+                errors->targets, errors->rms, errors->most, errors->largest, errors->imbalance);
+    }
     return 0;
 }
 
@@ -92,6 +113,9 @@ Run add_nbody(CLI::App& verb) {
                     "the file of forces, the folder of the run, or the plot of the comparison (.svg)");
     verb.add_flag("--forces", a->forces, "write potential and acceleration of every particle");
     verb.add_option("--from", a->from, "with --forces: at the places of this file instead");
+    verb.add_flag(
+        "--check", a->check,
+        "with --forces: measure their errors at a thousand of the particles, by sums over all pairs");
     verb.add_option("--format", a->format, "of the forces: npy, csv or json; else by the file's name");
     CLI::Option* const until = verb.add_option("--until", a->until, "move the particles until this time");
     CLI::Option* const dt =
@@ -137,6 +161,8 @@ Run add_nbody(CLI::App& verb) {
         if (!(a->eta > 0)) throw UsageError(fmt::format("--eta {:g}: give a number above 0", a->eta));
         const int tasks = int(a->forces) + int(a->compare) + int(a->until >= 0);
         if (tasks != 1) throw UsageError("say what to do: one of --forces, --until TIME and --compare");
+        if (a->check && (!a->forces || !a->from.empty()))
+            throw UsageError("--check measures what --forces finds at the particles themselves");
         if (a->compare && a->period > 0)
             throw UsageError("--compare knows no periodic cubes: Barnes-Hut does not; leave --period out");
         if (a->scene.empty() && !a->resume)

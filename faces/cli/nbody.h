@@ -10,7 +10,7 @@
 namespace hedgerow::cli {
 
 struct NbodyArguments : Common {
-    bool forces = false, compare = false, resume = false, block_steps = false;
+    bool forces = false, compare = false, check = false, resume = false, block_steps = false;
     std::string from, kernel = "wendland", size = "800x800", format, snapshots = "npy";
     double accuracy = 1e-3, softening = -1, gravity = 1, until = -1, dt = 0, every = 0, eta = 0.025,
            period = 0;

@@ -11,6 +11,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/index.h>
 #include <hedgerow/nbody/barnes_hut.h>
+#include <hedgerow/nbody/force_check.h>
 #include <hedgerow/nbody/forces.h>
 #include <hedgerow/nbody/plain_fmm.h>
 #include <hedgerow/primitives/point_cloud.h>
@@ -86,33 +87,11 @@ std::vector<Way> all_ways() {
     return ways;
 }
 
-/// The rms error of accelerations, each as a share of itself, at some of the particles.
-class Errors {
-public:
-    explicit Errors(const Particles& all) : step_(std::max<std::size_t>(1, all.size() / 1000)) {
-        std::vector<Vec3d> targets;
-        for (std::size_t i = 0; i < all.size(); i += step_) targets.push_back(all.places[i]);
-        want_.resize(targets.size());
-        direct_sum<double>({all.places, all.masses}, targets, want_);
-    }
-    double of(const Found& found) const {
-        double sum = 0;
-        for (std::size_t k = 0; k < want_.size(); ++k)
-            sum += length2(found[k * step_].gradient - want_[k].gradient) /
-                   std::max(length2(want_[k].gradient), 1e-300);
-        return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(1, want_.size())));
-    }
-
-private:
-    std::size_t step_;
-    Found want_;
-};
-
 struct Measured {
     double seconds = 0, error = 0;
 };
 /// The best of some runs.
-Measured measured(const Way& way, const Particles& all, const Errors& errors) {
+Measured measured(const Way& way, const Particles& all, const ForceCheck& check) {
     Measured best{std::numeric_limits<double>::infinity(), 0};
     double spent = 0;
     for (int run = 0; run < 5 && (run == 0 || spent < 0.5); ++run) {
@@ -120,7 +99,7 @@ Measured measured(const Way& way, const Particles& all, const Errors& errors) {
         const Found found = way.find(all);
         const double seconds = now() - began;
         best.seconds = std::min(best.seconds, seconds), spent += seconds;
-        best.error = errors.of(found);
+        best.error = check.errors_of<double>(found).rms;
     }
     return best;
 }
@@ -171,11 +150,11 @@ int nbody_compare(const NbodyArguments& a) {
         ProgressLine line("comparing", a.quiet);
         for (const std::size_t n : counts) {
             const Particles some = first_of(all, n);
-            const Errors errors(some);
+            const ForceCheck check(Charges<double>{some.places, some.masses});
             for (std::size_t w = 0; w < ways.size(); ++w) {
                 line.say(fmt::format("{}, {} particles", ways[w].name(), n));
                 line.progress().look();
-                results[w].push_back(n <= ways[w].most ? std::optional(measured(ways[w], some, errors))
+                results[w].push_back(n <= ways[w].most ? std::optional(measured(ways[w], some, check))
                                                        : std::nullopt);
             }
         }

@@ -1,0 +1,91 @@
+/// Sums over all pairs at some of the charges, and errors of what was found.
+#include <hedgerow/nbody/force_check.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rows.h"
+
+namespace hedgerow {
+namespace {
+
+/// Σ |q|/r² at a place; in a cube that repeats, of nearest images.
+double sum_of_sizes(std::span<const Vec3d> places, std::span<const double> charges, const Vec3d& target,
+                    double period) {
+    double sum = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        Vec3d apart = places[i] - target;
+        if (period > 0)
+            for (int k = 0; k < 3; ++k) apart[k] -= period * std::round(apart[k] / period);
+        const double d2 = length2(apart);
+        sum += d2 > 0 ? std::abs(charges[i]) / d2 : 0;
+    }
+    return sum;
+}
+
+}  // namespace
+
+template <std::floating_point T>
+ForceCheck::ForceCheck(const Charges<T>& charges, std::size_t targets, Threads threads)
+    : step_(std::max<std::size_t>(1, charges.places.size() / std::max<std::size_t>(1, targets))) {
+    const std::size_t n = charges.places.size();
+    const detail::Extremes<T> extremes(charges);  // throws for bad numbers
+    std::vector<Vec3d> places;
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < n; ++i) {
+        places.emplace_back(charges.places[i]);
+        charges_.push_back(static_cast<double>(charges.charges[i]));
+        if (!charges.lengths.empty()) lengths.push_back(static_cast<double>(charges.lengths[i]));
+    }
+    std::vector<Vec3d> some;
+    std::vector<double> own;
+    for (std::size_t i = 0; i < n; i += step_) {
+        some.push_back(places[i]);
+        own.push_back(lengths.empty() ? charges.softening.length : lengths[i]);
+    }
+    want_.resize(some.size()), sizes_.resize(some.size());
+    const double period = detail::side_of(charges);
+    direct_sum<double>({places, charges_, charges.softening, lengths, period}, Targets<double>(some, own),
+                       want_, threads);
+    threads.over(n * some.size() / 16)
+        .for_each_piece(some.size(), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k)
+                sizes_[k] = std::max(length(want_[k].gradient),
+                                     0.01 * sum_of_sizes(places, charges_, some[k], period));
+        });
+}
+
+template <std::floating_point T>
+ForceErrors ForceCheck::errors_of(std::span<const PotentialAt<T>> found) const {
+    if (found.size() != charges_.size())
+        throw InputError(std::to_string(found.size()) + " forces of " + std::to_string(charges_.size()) +
+                         " charges: give one each");
+    ForceErrors errors;
+    if (found.empty()) return errors;
+    errors.targets = want_.size();
+    std::vector<double> all;
+    double sum2 = 0;
+    for (std::size_t k = 0; k < want_.size(); ++k) {
+        const double error = length(Vec3d(found[k * step_].gradient) - want_[k].gradient);
+        all.push_back(error > 0 ? error / sizes_[k] : error);  // NaN stays
+        sum2 += all.back() * all.back();
+    }
+    errors.rms = std::sqrt(sum2 / static_cast<double>(all.size()));
+    std::sort(all.begin(), all.end());
+    errors.most = all[(all.size() - 1) * 999 / 1000], errors.largest = all.back();
+    Vec3d sum;
+    double sizes = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const Vec3d force = Vec3d(found[i].gradient) * charges_[i];
+        sum += force, sizes += length(force);
+    }
+    errors.imbalance = sizes > 0 ? length(sum) / sizes : 0;
+    return errors;
+}
+
+template ForceCheck::ForceCheck(const Charges<float>&, std::size_t, Threads);
+template ForceCheck::ForceCheck(const Charges<double>&, std::size_t, Threads);
+template ForceErrors ForceCheck::errors_of(std::span<const PotentialAt<float>>) const;
+template ForceErrors ForceCheck::errors_of(std::span<const PotentialAt<double>>) const;
+
+}  // namespace hedgerow
