@@ -1,19 +1,25 @@
 /// Pairs of triangles, builds included, on one thread: the self-intersections of a mesh, and the crossings of
 /// a mesh and its moved copy. Beside CGAL in the same run, if CGAL was found. Pairs of vertices within a
-/// radius, beside a query of `within` for each.
+/// radius, beside a query of `within` for each and beside nanoflann, and so the pairs of points of a cube
+/// that have fifty neighbours each.
 ///
 ///   pairs_benchmark [SCENE ...]     a mesh file or gen:NAME[:SIZE]; default: gen:teapot:70000
 ///   gen:terrain:70000
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include <hedgerow/ask/pairs.h>
 #include <hedgerow/ask/points.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
+#include <hedgerow/scenes/sets.h>
 #include <hedgerow/structures/bvh/bvh.h>
+#include <hedgerow/structures/kdtree/point_kdtree.h>
+#include <hedgerow/structures/orthtree/point_orthtree.h>
 
 #include "peers/pairs.h"
+#include "peers/points.h"
 #include "scene.h"
 
 using namespace hedgerow;
@@ -57,11 +63,8 @@ void print(const char* question, const Contest& contest) {
                     found[i], times[i].median * 1e3, times[i].median / times[0].median);
 }
 
-/// The pairs of vertices within about three lengths of an edge.
-void measure_radius(const TriangleMesh<float>& mesh, float diagonal) {
-    PointCloud<float, 3> cloud;
-    cloud.points = mesh.vertices;
-    const float radius = 3 * diagonal / std::sqrt(static_cast<float>(mesh.size()));
+/// Pairs of points within a radius, builds included; beside nanoflann, if it was found.
+void measure_radius(const PointCloud<float, 3>& cloud, float radius) {
     const auto by_pairs = [&cloud, radius]<template <class, int> class S>(const auto& options) -> Contender {
         return [&cloud, radius, options, found = std::vector<PairWithin<float>>()]() mutable {
             return pairs_within(build<S>(cloud, options, serial_executor()), {.radius = radius}, found,
@@ -71,6 +74,8 @@ void measure_radius(const TriangleMesh<float>& mesh, float diagonal) {
     Contest contest;
     contest.add("pairs, wide", by_pairs.operator()<WideBvh>(WideOptions()));
     contest.add("pairs, bvh", by_pairs.operator()<Bvh>(BvhOptions()));
+    contest.add("pairs, point-octree", by_pairs.operator()<PointOrthtree>(PointOrthtreeOptions()));
+    contest.add("pairs, point-kdtree", by_pairs.operator()<PointKdTree>(PointKdTreeOptions()));
     contest.add("within, wide", [&cloud, radius] {
         const auto index = build<WideBvh>(cloud, {}, serial_executor());
         std::vector<Near<float, 3>> found;
@@ -81,6 +86,14 @@ void measure_radius(const TriangleMesh<float>& mesh, float diagonal) {
         }
         return pairs;
     });
+    if (const auto peer = nanoflann_points(cloud)) {
+        // Lists hold each pair from both sides, and each point itself.
+        if (peer->within(std::span(cloud.points).first(1), radius))
+            contest.add(peer->name() + ", within", [&cloud, radius] {
+                const auto built = nanoflann_points(cloud);
+                return (*built->within(cloud.points, radius, false) - cloud.size()) / 2;
+            });
+    }
     print("within a radius", contest);
 }
 
@@ -102,7 +115,8 @@ void measure_scene(const TriangleMesh<float>& mesh) {
     crossings.add("bvh, lbvh", crossings_of<Bvh>(mesh, moved));
     add_cgal_crossings(crossings, mesh, moved);
     print("crossings", crossings);
-    measure_radius(mesh, length(box.extent()));
+    // Vertices within about three lengths of an edge.
+    measure_radius({mesh.vertices}, 3 * length(box.extent()) / std::sqrt(static_cast<float>(mesh.size())));
 
     // The distance to a copy that is moved by three times the extent.
     auto far = mesh;
@@ -122,6 +136,12 @@ void measure_scene(const TriangleMesh<float>& mesh) {
 int main(int count, char** arguments) try {
     std::printf("%s, %s, one thread, medians of %d\n", processor().c_str(), compiler().c_str(), repeats);
     std::vector<std::string> names(arguments + 1, arguments + count);
+    // Points that have fifty neighbours each.
+    constexpr std::size_t count_of_points = 200'000;
+    std::printf("unit cube: %zu points\n", count_of_points);
+    const auto cloud = points<float>(count_of_points);
+    measure_radius(
+        cloud, static_cast<float>(std::cbrt(50 / (4.0 / 3 * std::numbers::pi * double(count_of_points)))));
     if (names.empty()) names = {"gen:teapot:70000", "gen:terrain:70000"};
     for (const auto& name : names) {
         const auto mesh = scene(name);

@@ -42,11 +42,12 @@ public:
         }
         return points.size();
     }
-    std::optional<std::size_t> within(std::span<const Vec3f> points, float radius) const override {
+    std::optional<std::size_t> within(std::span<const Vec3f> points, float radius,
+                                      bool sorted) const override {
         std::size_t all = 0;
         std::vector<std::pair<std::uint32_t, float>> found;
         for (const Vec3f& p : points)
-            all += tree_.radiusSearch(p.data, radius * radius, found, nanoflann::SearchParams());
+            all += tree_.radiusSearch(p.data, radius * radius, found, nanoflann::SearchParams(32, 0, sorted));
         return all;
     }
 

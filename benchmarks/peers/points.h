@@ -20,9 +20,10 @@ public:
     /// Writes the squared distance of the k-th nearest primitive to each point. Returns the number of points.
     virtual std::size_t nearest(std::span<const Vec3f> points, std::size_t k,
                                 std::span<float> distances2) const = 0;
-    /// Lists the primitives within a radius of each point, nearest first. Returns how many there are in all,
-    /// or nothing where the peer has no such query.
-    virtual std::optional<std::size_t> within(std::span<const Vec3f> /*points*/, float /*radius*/) const {
+    /// Lists the primitives within a radius of each point, if `sorted` nearest first. Returns how many there
+    /// are in all, or nothing where the peer has no such query.
+    virtual std::optional<std::size_t> within(std::span<const Vec3f> /*points*/, float /*radius*/,
+                                              bool /*sorted*/ = true) const {
         return std::nullopt;
     }
 };

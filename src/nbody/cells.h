@@ -23,6 +23,7 @@ struct FmmCells {
     BareVector<double> x, y, z;
     BareVector<T> dx, dy, dz, charge, soft;
     SofteningKernel softening = SofteningKernel::wendland;
+    bool pairs_in_float = false;  ///< pairs are summed in float, of places in two parts, where T is double
     // Of each cell: its charges, its children (none: a leaf), ...
     std::vector<std::uint32_t> first, count, child, children;
     // ... its center, the radius around its charges, the effective radius of its multipole (how far it

@@ -17,7 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // 1/√x from the processor's estimate e of b bits, by steps of Newton's: with h = 1 − x·e², a step e·(1 + h/2)
 // errs by 3/8·h², and e·(1 + h/2 + 3/8·h²) by 5/16·h³.
-template <class F, class V = hn::Vec<F>>
+// In float one step suffices for 2⁻²¹, two for about the last bit (`precise`).
+template <bool precise = false, class F, class V = hn::Vec<F>>
 HWY_INLINE V inverse_root(F f, V x) {
     using T = hn::TFromD<F>;
     const V one = hn::Set(f, T(1)), half = hn::Set(f, T(0.5));
@@ -25,10 +26,13 @@ HWY_INLINE V inverse_root(F f, V x) {
     const auto step = [&](V e) { return hn::MulAdd(hn::Mul(e, error(e)), half, e); };
     if constexpr (sizeof(T) == 4) {
 #if HWY_TARGET == HWY_NEON
-        return step(step(hn::ApproximateReciprocalSqrt(x)));  // of 8 bits
+        const V e = step(hn::ApproximateReciprocalSqrt(x));  // of 8 bits
+        if constexpr (!precise) return step(e);
 #else
-        return step(hn::ApproximateReciprocalSqrt(x));  // of 12 or 14 bits
+        const V e = hn::ApproximateReciprocalSqrt(x);  // of 12 or 14 bits
+        if constexpr (!precise) return step(e);
 #endif
+        return step(step(e));
     } else {
 #if HWY_TARGET == HWY_AVX3
         const V e = V{_mm512_rsqrt14_pd(x.raw)};
@@ -77,16 +81,21 @@ HWY_INLINE void soften(F f, SofteningKernel kernel, M near, V charge, V distance
         hn::IfThenElse(near, hn::Mul(hn::Mul(of_charge, force), hn::Mul(per_reach, per_reach)), of_gradient);
 }
 
-// Adds what sources do to `block` targets. The sums stay in registers: with 16 of them for two targets, with
-// 32 for four.
-template <int block, bool softened, class F, class T = hn::TFromD<F>>
+// Adds what sources do to `block` targets. If places are split in two parts, each is summed of its own. The
+// sums stay in registers: with 16 of them for two targets, with 32 for four.
+template <int block, bool softened, bool split, class F, class T = hn::TFromD<F>>
 HWY_INLINE void add_to_block(F f, const ChargeRows<T>& sources, std::size_t first, std::size_t end,
                              const TargetRows<T>& targets, std::size_t at, SofteningKernel kernel) {
     using V = hn::Vec<F>;
+    V low_x[block], low_y[block], low_z[block];
     V x[block], y[block], z[block], potential[block], gx[block], gy[block], gz[block];
     for (int i = 0; i < block; ++i) {
         const std::size_t t = at + static_cast<std::size_t>(i);
         x[i] = hn::Set(f, targets.x[t]), y[i] = hn::Set(f, targets.y[t]), z[i] = hn::Set(f, targets.z[t]);
+        if constexpr (split) {
+            low_x[i] = hn::Set(f, targets.low_x[t]), low_y[i] = hn::Set(f, targets.low_y[t]);
+            low_z[i] = hn::Set(f, targets.low_z[t]);
+        }
         potential[i] = gx[i] = gy[i] = gz[i] = hn::Zero(f);
     }
     const V least = hn::Set(f, coincident2<T>);
@@ -94,10 +103,15 @@ HWY_INLINE void add_to_block(F f, const ChargeRows<T>& sources, std::size_t firs
         const V sx = hn::LoadU(f, sources.x + s), sy = hn::LoadU(f, sources.y + s),
                 sz = hn::LoadU(f, sources.z + s), charge = hn::LoadU(f, sources.charge + s);
         for (int i = 0; i < block; ++i) {
-            const V dx = hn::Sub(sx, x[i]), dy = hn::Sub(sy, y[i]), dz = hn::Sub(sz, z[i]);
+            V dx = hn::Sub(sx, x[i]), dy = hn::Sub(sy, y[i]), dz = hn::Sub(sz, z[i]);
+            if constexpr (split) {
+                dx = hn::Add(dx, hn::Sub(hn::LoadU(f, sources.low_x + s), low_x[i]));
+                dy = hn::Add(dy, hn::Sub(hn::LoadU(f, sources.low_y + s), low_y[i]));
+                dz = hn::Add(dz, hn::Sub(hn::LoadU(f, sources.low_z + s), low_z[i]));
+            }
             const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
             const auto apart = hn::Ge(r2, least);
-            const V inverse = hn::IfThenElseZero(apart, inverse_root(f, r2));
+            const V inverse = hn::IfThenElseZero(apart, inverse_root<split>(f, r2));
             V of_potential = hn::Mul(charge, inverse);
             V of_gradient = hn::Mul(of_potential, hn::Mul(inverse, inverse));
             if constexpr (softened) {
@@ -122,18 +136,18 @@ HWY_INLINE void add_to_block(F f, const ChargeRows<T>& sources, std::size_t firs
     }
 }
 
-template <class T>
+template <class T, bool split = false>
 void direct(const ChargeRows<T>& sources, const TargetRows<T>& targets, SofteningKernel kernel) {
     constexpr int block = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON ? 4 : 2;
-    constexpr std::size_t at_once = 1024;
+    constexpr std::size_t at_once = split ? 256 : 1024;
     const hn::ScalableTag<T> f;
     for (std::size_t first = 0; first < sources.count; first += at_once) {
         const std::size_t end = HWY_MIN(sources.count, first + at_once);
         for (std::size_t t = 0; t < targets.count; t += block)
             if (sources.reach == nullptr)
-                add_to_block<block, false>(f, sources, first, end, targets, t, kernel);
+                add_to_block<block, false, split>(f, sources, first, end, targets, t, kernel);
             else
-                add_to_block<block, true>(f, sources, first, end, targets, t, kernel);
+                add_to_block<block, true, split>(f, sources, first, end, targets, t, kernel);
     }
 }
 

@@ -402,79 +402,153 @@ private:
     // What near leaves and the local expansion do to the charges of a leaf.
     void finish(std::uint32_t c, const T* local) {
         const T per_unit = 1 / targets_.scale[c];
-        const std::size_t sources = gather(c, near_, per_unit);
-        sum_pairs_and_expansions(c, local, sources, per_unit);
+        place_targets(c, per_unit, targets_in_);
+        sums_.assign(4 * (targets_.count[c] + row_padding), 0.0);
+        if (!sources_.pairs_in_float) {
+            sum_pairs(c, gather(c, near_, per_unit, sources_in_), sources_in_, targets_in_);
+        } else if constexpr (!std::is_same_v<T, float>) {
+            place_targets(c, per_unit, float_targets_);
+            sum_pairs(c, gather(c, near_, per_unit, float_sources_), float_sources_, float_targets_);
+        }
+        add_expansions(c, local, per_unit);
         if (targets_.tides.empty()) return;
         // Small cells act pair by pair here.
         near_.insert(near_.end(), small_.begin(), small_.end());
-        add_tides(c, local, gather(c, near_, per_unit), per_unit);
+        add_tides(c, local, gather(c, near_, per_unit, sources_in_), per_unit);
     }
-    // Gathers the charges of cells, and single ones, as offsets from a leaf's center, in the unit of its
-    // expansion. Returns how many they are.
-    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit) {
+    // Charges or targets in rows of P, as offsets from a leaf's center in the unit of its expansion. Where P
+    // is less precise than T, offsets are in two parts.
+    template <class P>
+    struct Offsets {
+        static constexpr bool split = !std::is_same_v<P, T>;
+        BareVector<P> place[3], low[3], charge, soft;
+
+        void make_room(std::size_t count) {
+            const auto grow = [&](BareVector<P>& row) {
+                if (row.size() < count + row_padding) row.resize(2 * count + row_padding);
+            };
+            for (int k = 0; k < 3; ++k) {
+                grow(place[k]);
+                if (split) grow(low[k]);
+            }
+            grow(charge), grow(soft);
+        }
+        // Writes an axis' offsets from number `at` on; offset(i) tells them.
+        template <class G>
+        void put(int axis, std::size_t at, std::size_t count, G offset) {
+            P* const high = place[axis].data() + at;
+            if constexpr (split) {
+                // Differences of first parts are exact: these are multiples of 2⁻¹¹.
+                constexpr T grid = 2048;
+                P* const rest = low[axis].data() + at;
+                for (std::size_t i = 0; i < count; ++i) {
+                    const T x = offset(i), part = std::nearbyint(x * grid) / grid;
+                    high[i] = static_cast<P>(part), rest[i] = static_cast<P>(x - part);
+                }
+            } else {
+                for (std::size_t i = 0; i < count; ++i) high[i] = offset(i);
+            }
+        }
+    };
+    template <class P>
+    void place_targets(std::uint32_t c, T per_unit, Offsets<P>& rows) const {
+        const std::size_t first = targets_.first[c], count = targets_.count[c] + row_padding;
+        rows.make_room(count);
+        const T* const offsets[] = {targets_.dx.data() + first, targets_.dy.data() + first,
+                                    targets_.dz.data() + first};
+        for (int k = 0; k < 3; ++k)
+            rows.put(k, 0, count, [&](std::size_t i) { return offsets[k][i] * per_unit; });
+        if (!sources_.soft.empty())
+            for (std::size_t i = 0; i < count; ++i)
+                rows.soft[i] = static_cast<P>(targets_.soft[first + i] * per_unit);
+    }
+    // Gathers the charges of cells, and single ones. Returns how many they are.
+    template <class P>
+    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit,
+                       Offsets<P>& rows) const {
         std::size_t sources = single_.size();
         for (const FmmSource near : cells) sources += sources_.count[near.cell()];
         const bool softened = !sources_.soft.empty();
-        for (BareVector<T>* row : {&x_, &y_, &z_, &charge_, &soft_})
-            if (row->size() < sources + row_padding) row->resize(2 * sources + row_padding);
+        rows.make_room(sources);
         std::size_t at = 0;
-        const double cx = targets_.cx[c], cy = targets_.cy[c], cz = targets_.cz[c];
+        const double center[] = {targets_.cx[c], targets_.cy[c], targets_.cz[c]};
         for (const FmmSource near : cells) {
             // Offsets are computed as those of targets are: charges in one place have equal ones.
             const std::size_t first = sources_.first[near.cell()], count = sources_.count[near.cell()];
             const Vec3d& shift = sources_.images[near.image()];
-            const auto gather = [&](const BareVector<double>& from, double center, double image,
-                                    BareVector<T>& to) {
-                const double* const place = from.data() + first;
-                T* const offset = to.data() + at;
-                for (std::size_t i = 0; i < count; ++i)
-                    offset[i] = static_cast<T>(place[i] - center + image) * per_unit;
-            };
-            gather(sources_.x, cx, shift[0], x_), gather(sources_.y, cy, shift[1], y_);
-            gather(sources_.z, cz, shift[2], z_);
-            std::copy_n(sources_.charge.data() + first, count, charge_.data() + at);
+            const double* const places[] = {sources_.x.data() + first, sources_.y.data() + first,
+                                            sources_.z.data() + first};
+            for (int k = 0; k < 3; ++k)
+                rows.put(k, at, count, [&](std::size_t i) {
+                    return static_cast<T>(places[k][i] - center[k] + shift[k]) * per_unit;
+                });
+            for (std::size_t i = 0; i < count; ++i)
+                rows.charge[at + i] = static_cast<P>(sources_.charge[first + i]);
             if (softened)
-                for (std::size_t i = 0; i < count; ++i) soft_[at + i] = sources_.soft[first + i] * per_unit;
+                for (std::size_t i = 0; i < count; ++i)
+                    rows.soft[at + i] = static_cast<P>(sources_.soft[first + i] * per_unit);
             at += count;
         }
         for (const std::uint32_t single : single_) {
-            x_[at] = static_cast<T>(sources_.cx[single] - cx) * per_unit;
-            y_[at] = static_cast<T>(sources_.cy[single] - cy) * per_unit;
-            z_[at] = static_cast<T>(sources_.cz[single] - cz) * per_unit;
-            charge_[at] = sources_.multipoles[single * E::stride], soft_[at] = 0, ++at;
+            const double places[] = {sources_.cx[single], sources_.cy[single], sources_.cz[single]};
+            for (int k = 0; k < 3; ++k)
+                rows.put(k, at, 1,
+                         [&](std::size_t) { return static_cast<T>(places[k] - center[k]) * per_unit; });
+            rows.charge[at] = static_cast<P>(sources_.multipoles[single * E::stride]);
+            rows.soft[at] = 0, ++at;
         }
-        for (std::size_t i = at; i < at + row_padding; ++i) x_[i] = y_[i] = z_[i] = charge_[i] = soft_[i] = 0;
+        for (int k = 0; k < 3; ++k) rows.put(k, at, row_padding, [](std::size_t) { return T(0); });
+        std::fill_n(rows.charge.data() + at, row_padding, P(0));
+        std::fill_n(rows.soft.data() + at, row_padding, P(0));
         return sources;
     }
-    // Sums over pairs with the charges that are gathered, and adds the expansions.
-    void sum_pairs_and_expansions(std::uint32_t c, const T* local, std::size_t sources, T per_unit) {
-        const bool softened = !sources_.soft.empty();
+    template <class P>
+    ChargeRows<P> rows_of(const Offsets<P>& from, std::size_t count) const {
+        return {from.place[0].data(),
+                from.place[1].data(),
+                from.place[2].data(),
+                from.charge.data(),
+                count,
+                sources_.soft.empty() ? nullptr : from.soft.data(),
+                from.low[0].data(),
+                from.low[1].data(),
+                from.low[2].data()};
+    }
+    template <class P>
+    TargetRows<P> rows_at(std::uint32_t c, const Offsets<P>& at, double* sums) const {
+        const std::size_t count = targets_.count[c], row = count + row_padding;
+        return {at.place[0].data(),
+                at.place[1].data(),
+                at.place[2].data(),
+                count,
+                sums,
+                sums + row,
+                sums + 2 * row,
+                sums + 3 * row,
+                sources_.soft.empty() ? nullptr : at.soft.data(),
+                at.low[0].data(),
+                at.low[1].data(),
+                at.low[2].data()};
+    }
+    // Sums over pairs of the charges that are gathered and the targets.
+    template <class P>
+    void sum_pairs(std::uint32_t c, std::size_t sources, const Offsets<P>& from, const Offsets<P>& at) {
+        direct<P, Offsets<P>::split>(rows_of(from, sources), rows_at(c, at, sums_.data()),
+                                     sources_.softening);
+    }
+    // Adds the local expansion, whose potential is not in the unit, and small cells.
+    void add_expansions(std::uint32_t c, const T* local, T per_unit) {
         const std::size_t first = targets_.first[c], count = targets_.count[c], row = count + row_padding;
-        for (BareVector<T>* part : {&target_x_, &target_y_, &target_z_, &target_soft_})
-            if (part->size() < row) part->resize(2 * row);
-        for (std::size_t i = 0; i < row; ++i) {
-            const std::size_t t = first + i;
-            target_x_[i] = targets_.dx[t] * per_unit, target_y_[i] = targets_.dy[t] * per_unit;
-            target_z_[i] = targets_.dz[t] * per_unit;
-            if (softened) target_soft_[i] = targets_.soft[t] * per_unit;
-        }
-        sums_.assign(4 * row, 0.0);
-        double *const potential = sums_.data(), *const gx = potential + row, *const gy = gx + row,
-                      *const gz = gy + row;
-        direct<T>(
-            {x_.data(), y_.data(), z_.data(), charge_.data(), sources, softened ? soft_.data() : nullptr},
-            {target_x_.data(), target_y_.data(), target_z_.data(), count, potential, gx, gy, gz,
-             softened ? target_soft_.data() : nullptr},
-            sources_.softening);
-        // Add the local expansion, whose potential is not in the unit.
+        const double *const potential = sums_.data(), *const gx = potential + row, *const gy = gx + row,
+                            *const gz = gy + row;
         const F f;
         const double of_near = static_cast<double>(per_unit);
         constexpr std::size_t most_lanes = 64 / sizeof(T);
         for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
             V far[4];
-            evaluate_local<q>(f, local, hn::LoadU(f, target_x_.data() + i),
-                              hn::LoadU(f, target_y_.data() + i), hn::LoadU(f, target_z_.data() + i), far[0],
-                              far[1], far[2], far[3]);
+            evaluate_local<q>(f, local, hn::LoadU(f, targets_in_.place[0].data() + i),
+                              hn::LoadU(f, targets_in_.place[1].data() + i),
+                              hn::LoadU(f, targets_in_.place[2].data() + i), far[0], far[1], far[2], far[3]);
             for (const FmmSource small : small_) add_small(c, small, i, far);
             alignas(64) T out[4][most_lanes];
             for (int k = 0; k < 4; ++k) hn::Store(far[k], f, out[k]);
@@ -493,14 +567,10 @@ private:
     // Adds tidal tensors: of the charges that are gathered, and of the local expansion.
     void add_tides(std::uint32_t c, const T* local, std::size_t sources, T per_unit) {
         const std::size_t first = targets_.first[c], count = targets_.count[c];
-        const bool softened = !sources_.soft.empty();
         sums_.assign(6 * count, 0.0);
         const detail::TideRows pairs(sums_.data(), count), found = targets_.tide_rows().from(first);
-        direct_tides<T>(
-            {x_.data(), y_.data(), z_.data(), charge_.data(), sources, softened ? soft_.data() : nullptr},
-            {target_x_.data(), target_y_.data(), target_z_.data(), count, nullptr, nullptr, nullptr, nullptr,
-             softened ? target_soft_.data() : nullptr},
-            sources_.softening, pairs);
+        direct_tides<T>(rows_of(sources_in_, sources), rows_at(c, targets_in_, sums_.data()),
+                        sources_.softening, pairs);
         const double unit = static_cast<double>(per_unit), unit2 = unit * unit;
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t k = 0; k < 6; ++k) found.row[k][i] = 0;
@@ -512,9 +582,9 @@ private:
             const std::size_t here = HWY_MIN(at_once, count - i);
             for (std::size_t j = 0; j < here + row_padding; ++j) {
                 const std::size_t t = HWY_MIN(i + j, count - 1);
-                place[0][j] = static_cast<double>(target_x_[t]);
-                place[1][j] = static_cast<double>(target_y_[t]);
-                place[2][j] = static_cast<double>(target_z_[t]);
+                place[0][j] = static_cast<double>(targets_in_.place[0][t]);
+                place[1][j] = static_cast<double>(targets_in_.place[1][t]);
+                place[2][j] = static_cast<double>(targets_in_.place[2][t]);
             }
             detail::add_local_tides(local, q, place[0], place[1], place[2], here, unit2, add_local,
                                     found.from(i));
@@ -532,9 +602,9 @@ private:
                               hn::Set(f, static_cast<T>(center) * per_unit));
         };
         V found[4];
-        evaluate_multipole<p>(f, sources_.multipoles.data() + small * E::stride, from(apart[0], target_x_),
-                              from(apart[1], target_y_), from(apart[2], target_z_), found[0], found[1],
-                              found[2], found[3]);
+        evaluate_multipole<p>(f, sources_.multipoles.data() + small * E::stride,
+                              from(apart[0], targets_in_.place[0]), from(apart[1], targets_in_.place[1]),
+                              from(apart[2], targets_in_.place[2]), found[0], found[1], found[2], found[3]);
         for (int k = 0; k < 4; ++k) {
             const V potential = hn::Mul(found[k], hn::Set(f, per_unit));
             far[k] = k == 0 ? hn::Add(far[0], potential) : hn::MulAdd(potential, hn::Set(f, ratio), far[k]);
@@ -550,7 +620,8 @@ private:
     std::vector<FmmSource> near_, small_, large_leaves_;
     // Cells that act as single charges, and those that a walk has yet to look at.
     std::vector<std::uint32_t> single_, stack_;
-    BareVector<T> x_, y_, z_, charge_, soft_, target_x_, target_y_, target_z_, target_soft_;
+    Offsets<T> sources_in_, targets_in_;
+    Offsets<float> float_sources_, float_targets_;
     std::vector<double> sums_;
 };
 

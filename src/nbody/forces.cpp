@@ -22,22 +22,25 @@
 namespace hedgerow {
 namespace {
 
-/// How an accuracy is reached: the order of multipoles, whether expansions and pairs are in float, at most
-/// what the rms error of the gradients is to the bound that each conversion keeps, how long leaves are, so
-/// that pairs and conversions take about as long, and below how many charges a direct sum is faster. Errors
-/// were measured on a cube, a lattice, Plummer's and Hernquist's spheres, a disc, two unlike clusters, and
-/// charges that cancel.
+/// What is computed in float: all; pairs alone, of places in two parts; or nothing.
+enum class Precision { single, mixed, twofold };
+/// How an accuracy is reached: the order of multipoles, the precision, at most what the rms error of the
+/// gradients is to the bound that each conversion keeps, how long leaves are, so that pairs and conversions
+/// take about as long, and below how many charges a direct sum is faster. Errors were measured on a cube, a
+/// lattice, Plummer's and Hernquist's spheres, a disc, two unlike clusters, and charges that cancel.
 struct Plan {
     double least_accuracy;
     int order;
-    bool in_float;
+    Precision precision;
     double error_per_bound;
     std::uint32_t leaf_size;
     std::size_t least_charges;
 };
 constexpr Plan plans[] = {
-    {3e-3, 3, true, 0.75, 80, 1000}, {2e-4, 4, true, 1.0, 80, 1500},   {1e-5, 6, true, 0.75, 80, 2500},
-    {1e-6, 8, false, 1.0, 80, 6000}, {1e-8, 11, false, 0.4, 80, 8000}, {1e-9, 11, false, 0.8, 80, 12000},
+    {3e-3, 3, Precision::single, 0.75, 80, 1000},   {2e-4, 4, Precision::single, 1.0, 80, 1500},
+    {1e-5, 6, Precision::single, 0.75, 80, 2500},   {1e-6, 8, Precision::mixed, 1.0, 80, 6000},
+    {3e-7, 11, Precision::mixed, 0.4, 80, 8000},    {1e-8, 11, Precision::twofold, 0.4, 80, 8000},
+    {1e-9, 11, Precision::twofold, 0.8, 80, 12000},
 };
 /// Targets that are fewer are summed directly, since the charges' cells take longer.
 constexpr std::size_t least_targets = 256;
@@ -95,6 +98,7 @@ void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std:
                       const detail::Extremes<T>& extremes, Executor& executor) {
     const detail::Units units(extremes);
     detail::Sorted<R, T> sources(charges, units, plan.leaf_size, kernel, executor);
+    sources.cells.pairs_in_float = plan.precision == Precision::mixed;
     std::optional<detail::Sorted<R, T>> others;
     if (targets != nullptr) {
         others.emplace(*targets, charges, units, plan.leaf_size, kernel, executor);
@@ -187,7 +191,8 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
                        !(charges.period > 0) && !with_tides && found.size() >= 2000 &&
                        options.accuracy >= 1e-4;
     // A direct sum in float errs by 2⁻²¹ a pair.
-    const bool direct_is_exact = std::same_as<T, double> || plan.in_float || kernels == nullptr;
+    const bool direct_is_exact =
+        std::same_as<T, double> || plan.precision == Precision::single || kernels == nullptr;
     // Near images and tides make it slower.
     const bool few =
         charges.places.empty() || (direct_is_exact && !with_tides && !(charges.period > 0) &&
@@ -205,7 +210,7 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
         };
         if (plain)
             plain_forces(charges, found, ieee);
-        else if (plan.in_float)
+        else if (plan.precision == Precision::single)
             by(of_order(*kernels->fmm_float, plan.order));
         else
             by(of_order(*kernels->fmm_double, plan.order));
@@ -238,8 +243,8 @@ std::vector<ActingCell> acting_cells(const Charges<T>& given, std::size_t i, con
         const auto by = [&](const auto& kernel) {
             return cells_acting_on(charges, i, plan, options, kernel, detail::Units(extremes));
         };
-        return plan.in_float ? by(of_order(*kernels->fmm_float, plan.order))
-                             : by(of_order(*kernels->fmm_double, plan.order));
+        return plan.precision == Precision::single ? by(of_order(*kernels->fmm_float, plan.order))
+                                                   : by(of_order(*kernels->fmm_double, plan.order));
     });
 }
 

@@ -24,8 +24,9 @@ struct ForceOptions {
 ///
 /// By the fast multipole method (nbody/operators.h) over an octree of the charges: its order, its precision
 /// and which cells act as a whole follow from the accuracy, by estimates of the errors. Forces add up to
-/// nothing but for roundings: 10⁻⁶ of the sum of their sizes where single precision suffices for the
-/// accuracy, else 10⁻¹³. Charges in one place do nothing to each other. O(n); the same bits for any executor.
+/// nothing but for roundings: 10⁻⁶ of the sum of their sizes where single precision suffices for pairs, down
+/// to an accuracy of 3·10⁻⁷ (in a periodic cube 6·10⁻⁷), else 10⁻¹³. Charges in one place do nothing to each
+/// other. O(n); the same bits for any executor.
 ///
 /// Throws InputError if there is not one charge and one element of `found` (and of `tides`) a place, for
 /// numbers that are not finite or beyond 2⁶⁰ (in double 2⁴⁸⁰), and UsageError for an accuracy out of its

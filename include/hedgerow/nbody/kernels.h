@@ -20,6 +20,8 @@ struct ChargeRows {
     const T *x, *y, *z, *charge;
     std::size_t count;
     const T* reach = nullptr;  ///< how far each is softened, if charges are
+    /// What the places lack beside these, if they are split in two parts.
+    const T *low_x = nullptr, *low_y = nullptr, *low_z = nullptr;
 };
 inline constexpr std::size_t row_padding = 16;
 /// Places at which charges act, in rows that are readable up to the next multiple of `row_padding`, and what
@@ -30,6 +32,7 @@ struct TargetRows {
     std::size_t count;
     double *potential, *gx, *gy, *gz;
     const T* reach = nullptr;
+    const T *low_x = nullptr, *low_y = nullptr, *low_z = nullptr;
 };
 
 /// Adds the potentials Σ q/r and their gradients, of all sources at all targets; softened by the kernel, if
