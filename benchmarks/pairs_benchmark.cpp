@@ -65,17 +65,17 @@ void print(const char* question, const Contest& contest) {
 
 /// Pairs of points within a radius, builds included; beside nanoflann, if it was found.
 void measure_radius(const PointCloud<float, 3>& cloud, float radius) {
-    const auto by_pairs = [&cloud, radius]<template <class, int> class S>(const auto& options) -> Contender {
-        return [&cloud, radius, options, found = std::vector<PairWithin<float>>()]() mutable {
-            return pairs_within(build<S>(cloud, options, serial_executor()), {.radius = radius}, found,
+    const auto by_pairs = [&cloud, radius]<template <class, int> class S>() -> Contender {
+        return [&cloud, radius, found = std::vector<PairWithin<float>>()]() mutable {
+            return pairs_within(build<S>(cloud, {}, serial_executor()), {.radius = radius}, found,
                                 serial_executor());
         };
     };
     Contest contest;
-    contest.add("pairs, wide", by_pairs.operator()<WideBvh>(WideOptions()));
-    contest.add("pairs, bvh", by_pairs.operator()<Bvh>(BvhOptions()));
-    contest.add("pairs, point-octree", by_pairs.operator()<PointOrthtree>(PointOrthtreeOptions()));
-    contest.add("pairs, point-kdtree", by_pairs.operator()<PointKdTree>(PointKdTreeOptions()));
+    contest.add("pairs, wide", by_pairs.operator()<WideBvh>());
+    contest.add("pairs, bvh", by_pairs.operator()<Bvh>());
+    contest.add("pairs, point-octree", by_pairs.operator()<PointOrthtree>());
+    contest.add("pairs, point-kdtree", by_pairs.operator()<PointKdTree>());
     contest.add("within, wide", [&cloud, radius] {
         const auto index = build<WideBvh>(cloud, {}, serial_executor());
         std::vector<Near<float, 3>> found;
