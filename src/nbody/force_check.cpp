@@ -14,10 +14,7 @@ double sum_of_sizes(std::span<const Vec3d> places, std::span<const double> charg
                     double period) {
     double sum = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-        Vec3d apart = places[i] - target;
-        if (period > 0)
-            for (int k = 0; k < 3; ++k) apart[k] -= period * std::round(apart[k] / period);
-        const double d2 = length2(apart);
+        const double d2 = length2(detail::to_nearest_image(places[i] - target, period));
         sum += d2 > 0 ? std::abs(charges[i]) / d2 : 0;
     }
     return sum;

@@ -51,11 +51,12 @@ constexpr double most_accuracy = 0.1;
 constexpr double errors_in_cube = 2, least_in_cube = 2e-3;
 
 const Plan& plan_for(double accuracy, bool periodic) {
-    char given[32];
-    std::snprintf(given, sizeof given, "%g", accuracy);
     const Plan& finest = plans[std::size(plans) - 1];
-    if (!(accuracy >= finest.least_accuracy && accuracy <= most_accuracy))
+    if (!(accuracy >= finest.least_accuracy && accuracy <= most_accuracy)) {
+        char given[32];
+        std::snprintf(given, sizeof given, "%g", accuracy);
         throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-9 to 0.1");
+    }
     const double needed = periodic ? std::min(accuracy / errors_in_cube, least_in_cube) : accuracy;
     for (const Plan& plan : plans)
         if (needed >= plan.least_accuracy) return plan;

@@ -111,6 +111,13 @@ T in_period(T x, T side) {
     const T in = x - side * std::floor(x / side);
     return in >= 0 && in < side ? in : T(0);
 }
+/// An offset in a cube of a side that repeats: that of the nearest image. Without a side, the offset itself.
+inline Vec3d to_nearest_image(const Vec3d& offset, double side) {
+    if (!(side > 0)) return offset;
+    Vec3d nearest = offset;
+    for (int k = 0; k < 3; ++k) nearest[k] -= side * std::round(offset[k] / side);
+    return nearest;
+}
 /// Places in a cube that repeats: those in it. Else the places themselves.
 template <class T>
 class PlacesInCube {

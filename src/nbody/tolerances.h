@@ -10,6 +10,7 @@
 #include <hedgerow/parallel/executor.h>
 
 #include "cells.h"
+#include "rows.h"
 
 namespace hedgerow::detail {
 
@@ -17,11 +18,9 @@ namespace hedgerow::detail {
 template <class R>
 Vec3d offset(const FmmCells<R>& sources, std::uint32_t source, const FmmCells<R>& targets,
              std::uint32_t target) {
-    const Vec3d apart(sources.cx[source] - targets.cx[target], sources.cy[source] - targets.cy[target],
-                      sources.cz[source] - targets.cz[target]);
-    if (!(sources.side > 0)) return apart;
-    const auto nearest = [&](double x) { return x - sources.side * std::round(x / sources.side); };
-    return {nearest(apart[0]), nearest(apart[1]), nearest(apart[2])};
+    return to_nearest_image({sources.cx[source] - targets.cx[target], sources.cy[source] - targets.cy[target],
+                             sources.cz[source] - targets.cz[target]},
+                            sources.side);
 }
 /// About the least gradient in a leaf: that of all other cells as single charges (Barnes and Hut), each
 /// farther away by the leaf's radius, or a hundredth of the sum of their sizes. In a periodic cube what cells
