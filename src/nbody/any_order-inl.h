@@ -22,19 +22,11 @@ HWY_INLINE void for_each_regular_up_to(F f, int order, V x, V y, V z, G g) {
     const V r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
     ComplexLanes<V> diagonal{hn::Set(f, T(1)), hn::Zero(f)};
     for (int m = 0; m <= order; ++m) {
-        if (m > 0) {
-            const V half = hn::Set(f, T(0.5) / T(m));
-            const V a = hn::Mul(half, diagonal.re), b = hn::Mul(half, diagonal.im);
-            diagonal = {hn::NegMulAdd(b, y, hn::Mul(a, x)), hn::MulAdd(b, x, hn::Mul(a, y))};
-        }
+        if (m > 0) diagonal = next_on_diagonal(f, m, diagonal, x, y);
         ComplexLanes<V> before{hn::Zero(f), hn::Zero(f)}, now = diagonal;
         g(m, m, now);
         for (int n = m + 1; n <= order; ++n) {
-            const T per = T(1) / T((n + m) * (n - m));
-            const V of_now = hn::Mul(hn::Set(f, T(2 * n - 1) * per), z),
-                    of_before = hn::Mul(hn::Set(f, per), r2);
-            const ComplexLanes<V> next{hn::NegMulAdd(of_before, before.re, hn::Mul(of_now, now.re)),
-                                       hn::NegMulAdd(of_before, before.im, hn::Mul(of_now, now.im))};
+            const ComplexLanes<V> next = next_degree(f, n, m, now, before, z, r2);
             before = now, now = next;
             g(n, m, now);
         }

@@ -20,6 +20,25 @@ struct ComplexLanes {
     V re, im;
 };
 
+// The recurrences of regular harmonics (harmonics.h): R(m, m) from R(m − 1, m − 1), and R(n, m) from the two
+// of the degrees below.
+template <class F, class V>
+HWY_INLINE ComplexLanes<V> next_on_diagonal(F f, int m, ComplexLanes<V> r, V x, V y) {
+    using T = hn::TFromD<F>;
+    const V half = hn::Set(f, T(0.5) / T(m));
+    const V a = hn::Mul(half, r.re), b = hn::Mul(half, r.im);
+    return {hn::NegMulAdd(b, y, hn::Mul(a, x)), hn::MulAdd(b, x, hn::Mul(a, y))};
+}
+template <class F, class V>
+HWY_INLINE ComplexLanes<V> next_degree(F f, int n, int m, ComplexLanes<V> now, ComplexLanes<V> before, V z,
+                                       V r2) {
+    using T = hn::TFromD<F>;
+    const T per = T(1) / T((n + m) * (n - m));
+    const V of_now = hn::Mul(hn::Set(f, T(2 * n - 1) * per), z), of_before = hn::Mul(hn::Set(f, per), r2);
+    return {hn::NegMulAdd(of_before, before.re, hn::Mul(of_now, now.re)),
+            hn::NegMulAdd(of_before, before.im, hn::Mul(of_now, now.im))};
+}
+
 // Calls f(n, m, R(n, m)) with the regular harmonics of the places in the lanes (harmonics.h).
 template <int order, class F, class V, class G>
 HWY_INLINE void for_each_regular_in_lanes(F f, V x, V y, V z, G g) {
@@ -28,20 +47,11 @@ HWY_INLINE void for_each_regular_in_lanes(F f, V x, V y, V z, G g) {
     ComplexLanes<V> diagonal{hn::Set(f, T(1)), hn::Zero(f)};
     unrolled<0, order>([&](auto m) HEDGEROW_UNROLLED {
         constexpr int M = m;
-        if constexpr (M > 0) {
-            const V half = hn::Set(f, T(0.5) / T(M));
-            const V a = hn::Mul(half, diagonal.re), b = hn::Mul(half, diagonal.im);
-            diagonal = {hn::NegMulAdd(b, y, hn::Mul(a, x)), hn::MulAdd(b, x, hn::Mul(a, y))};
-        }
+        if constexpr (M > 0) diagonal = next_on_diagonal(f, M, diagonal, x, y);
         ComplexLanes<V> before{hn::Zero(f), hn::Zero(f)}, now = diagonal;
         g(m, m, now);
         unrolled<M + 1, order>([&](auto n) HEDGEROW_UNROLLED {
-            constexpr int N = n;
-            constexpr T per = T(1) / T((N + M) * (N - M));
-            const V of_now = hn::Mul(hn::Set(f, T(2 * N - 1) * per), z),
-                    of_before = hn::Mul(hn::Set(f, per), r2);
-            const ComplexLanes<V> next{hn::NegMulAdd(of_before, before.re, hn::Mul(of_now, now.re)),
-                                       hn::NegMulAdd(of_before, before.im, hn::Mul(of_now, now.im))};
+            const ComplexLanes<V> next = next_degree(f, n, m, now, before, z, r2);
             before = now, now = next;
             g(n, m, now);
         });
