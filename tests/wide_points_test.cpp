@@ -9,6 +9,7 @@
 #include <hedgerow/mesh_index.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/kdtree/point_kdtree.h>
 
 using namespace hedgerow;
 using namespace hedgerow::matrix;
@@ -303,6 +304,69 @@ TEST(WidePoints, CloudsAsBruteForce) {
         SCOPED_TRACE(scale);
         for (int kind = 0; kind < 3; ++kind) expect_brute_force("scaled", cloud_of(kind, 300, scale), 200);
     }
+}
+
+using PairList = std::vector<PairWithin<float>>;
+
+PairList all_pairs(const PointCloud<float, 3>& a, const PointCloud<float, 3>& b, float within2, bool one) {
+    PairList pairs;
+    for (PrimitiveId i = 0; i < a.size(); ++i)
+        for (PrimitiveId j = one ? i + 1 : 0; j < b.size(); ++j) {
+            const float distance2 = closest_point(a.points[i], b.points[j]).distance2;
+            if (distance2 <= within2) pairs.push_back({i, j, distance2});
+        }
+    return pairs;
+}
+
+/// Lists of some, of many and of all points: the longest are not put in order by counting.
+TEST(WidePoints, PairsWithinARadiusAsAllPairs) {
+    for (const std::size_t count : {1u, 7u, 9u, 65u, 700u})
+        for (const float scale : {1e-20f, 1.0f, 1e17f})
+            for (int kind = 0; kind < 5; ++kind) {
+                SCOPED_TRACE(std::to_string(count) + " of kind " + std::to_string(kind) + ", scale " +
+                             std::to_string(scale));
+                const auto cloud = cloud_of(kind, count, scale), other = cloud_of(kind ^ 2, 60, scale);
+                const auto of_other = build<PointKdTree>(other);
+                for (const float radius : {0.0f, 2e-4f * scale, 0.2f * scale, 1.0f * scale, anywhere}) {
+                    const float within2 = radius == anywhere ? anywhere : radius * radius;
+                    const PairList alone = all_pairs(cloud, cloud, within2, true),
+                                   with = all_pairs(other, cloud, within2, false);
+                    for_each_kernel(cloud, [&](const auto& index, std::string_view) {
+                        PairList found{{7, 7, 7}};
+                        EXPECT_EQ(pairs_within(index, {.radius2 = within2}, found), alone.size());
+                        ASSERT_EQ(found, alone);
+                        EXPECT_EQ(pairs_within(of_other, index, {.radius2 = within2}, found), with.size());
+                        ASSERT_EQ(found, with);
+                    });
+                }
+            }
+}
+
+TEST(WidePoints, PairsOfManyPointsAsWithin) {
+    const std::size_t count = in_long_runs(1000000, 20000);
+    const auto cloud = cloud_of(0, count, 1);
+    const float radius = 1.5f / std::cbrt(static_cast<float>(count));
+    PairList want, found;
+    for_each_kernel(cloud, [&](const auto& index, std::string_view) {
+        if (want.empty()) {
+            Found near;
+            for (PrimitiveId i = 0; i < count; ++i) {
+                within(index, cloud.points[i], {.radius = radius}, near);
+                for (const auto& n : near)
+                    if (n.element > i) want.push_back({i, n.element, n.distance2});
+            }
+            std::sort(want.begin(), want.end());
+            ASSERT_GT(want.size(), 5 * count);
+        }
+        for (Executor* const executor : {static_cast<Executor*>(&serial_executor()), &default_executor()}) {
+            pairs_within(index, {.radius = radius}, found, *executor);
+            ASSERT_EQ(found, want);
+            pairs_within(index, index, {.radius = radius}, found, *executor);
+            ASSERT_EQ(found.size(), 2 * want.size() + count);  // each also with itself
+            std::erase_if(found, [](const auto& pair) { return pair.a >= pair.b; });
+            ASSERT_EQ(found, want);
+        }
+    });
 }
 
 TEST(WidePoints, TreesOfCloudsAreFull) {

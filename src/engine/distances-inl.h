@@ -194,25 +194,25 @@ struct FloatBounds {
     }
 };
 
-// The squared distances of the points of a block from `from` on, in the lanes of D, which are doubles.
-template <class D>
-HWY_INLINE hn::Vec<D> distances2_in_double(D d, const PointBlock<float, 3>& block, int from,
-                                           const Vec<double, 3>& p) {
+// The squared distances of the points of a block, or of other rows of coordinates `at` each axis, from `from`
+// on, in the lanes of D, which are doubles.
+template <class D, class Rows>
+HWY_INLINE hn::Vec<D> distances2_in_double(D d, const Rows& rows, int from, const Vec<double, 3>& p) {
     constexpr hn::Rebind<float, D> part;
     const auto row = [&](int axis) __attribute__((always_inline)) {
-        return hn::PromoteTo(d, hn::Load(part, block.at[axis] + from));
+        return hn::PromoteTo(d, hn::Load(part, rows.at[axis] + from));
     };
     const auto away = minus<D>(all_lanes(d, p), {row(0), row(1), row(2)});
     return product(away, away);
 }
-// The squared distances of the points of a block from `at` on, in the lanes of F: computed in double and
-// rounded once, as by `closest_point` (geometry/distance.h).
-template <class F>
-HWY_INLINE hn::Vec<F> distances2_of(F f, const PointBlock<float, 3>& block, int at, const Vec<double, 3>& p) {
+// The same from `at` on in the lanes of F: computed in double and rounded once, as by `closest_point`
+// (geometry/distance.h).
+template <class F, class Rows>
+HWY_INLINE hn::Vec<F> distances2_of(F f, const Rows& rows, int at, const Vec<double, 3>& p) {
     constexpr hn::CappedTag<double, static_cast<int>(hn::MaxLanes(f))> d;
     constexpr hn::Rebind<float, std::remove_const_t<decltype(d)>> part;
     const auto some = [&](int from) __attribute__((always_inline)) {
-        return hn::DemoteTo(part, distances2_in_double(d, block, from, p));
+        return hn::DemoteTo(part, distances2_in_double(d, rows, from, p));
     };
     if constexpr (hn::MaxLanes(d) == hn::MaxLanes(f))
         return some(at);

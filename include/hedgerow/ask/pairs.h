@@ -82,41 +82,6 @@ std::size_t sort_pairs(std::vector<Pair>& found, std::size_t size) {
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found.size();
 }
-/// Whether `within` answers lists over an index in vectors.
-template <class I>
-inline constexpr bool lists_in_vectors =
-    std::same_as<std::decay_t<decltype(std::declval<const I&>().structure())>, WideBvh<float, 3>>;
-/// The pairs of a point of A and one of an index, from the list of `within` for each point of A; of one set
-/// (`one`) those whose second point is the later one.
-template <class A, class I, class T = typename A::Scalar>
-std::size_t pairs_by_lists(const A& set, const I& index, T radius2, bool one, Threads threads,
-                           std::vector<PairWithin<T>>& found) {
-    constexpr std::size_t cut = 4096;
-    const std::size_t n = set.size();
-    std::vector<std::vector<PairWithin<T>>> lists((n + cut - 1) / cut);
-    threads.over(n).for_each_piece(lists.size(), 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<Vec<T, A::dimension>> points;
-        ListColumns<typename I::Primitives> near;
-        for (std::size_t piece = begin; piece < end; ++piece) {
-            const std::size_t first = piece * cut, last = std::min(n, first + cut);
-            points.clear();
-            for (std::size_t i = first; i < last; ++i) points.push_back(set.point(i));
-            within(index, points, {.radius2 = radius2}, near, serial_executor());
-            std::vector<PairWithin<T>>& list = lists[piece];
-            list.reserve(one ? near.ids.size() / 2 : near.ids.size());
-            for (std::size_t i = first; i < last; ++i) {
-                const auto before = static_cast<std::ptrdiff_t>(list.size());
-                for (std::size_t k = near.offsets[i - first]; k < near.offsets[i - first + 1]; ++k)
-                    if (!one || near.ids[k] > i)
-                        list.push_back({static_cast<PrimitiveId>(i), near.ids[k], near.distances2[k]});
-                std::sort(list.begin() + before, list.end());
-            }
-        }
-    });
-    found.clear();
-    for (const auto& list : lists) found.insert(found.end(), list.begin(), list.end());
-    return found.size();
-}
 /// Lists the pairs of two indexes, or of one, that the queries of `make` find: ascending, each once. Returns
 /// how many there are.
 template <class IA, class IB, class Make, class Pair>
@@ -194,17 +159,19 @@ bool any_self_intersection(const Index<S, P>& index) {
 /// Writes all pairs (i, j), i < j, of points of one set that are within the options' distance of each other
 /// to `found`, each once and ascending, with the squared distance: what `within` finds for each point, so
 /// `pairs_within(index, {.radius = 0.5f}, found)`. None if the radius is negative or NaN. Returns how many
-/// there are. Takes memory for all pairs, which may be n²/2 of them, and time to sort them. Large sets are
-/// walked on all cores, unless an executor is given (Threads); the list is the same. The engine (WideBvh of
-/// float points in space) lists the neighbours of each point in vectors; other structures walk pairs of
-/// nodes.
+/// there are. Takes memory for all pairs, which may be n²/2 of them, and as much again while it runs. Large
+/// sets are walked on all cores, unless an executor is given (Threads); the list is the same. The engine
+/// (WideBvh of float points in space) measures eight points to all that are near them, in vectors; other
+/// structures walk pairs of nodes.
 template <class S, PointSet P>
 std::size_t pairs_within(const Index<S, P>& index, const NearOptions<typename P::Scalar>& options,
                          std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
     const auto& set = index.primitives();
     const auto radius2 = options.max_distance2();
-    if constexpr (detail::lists_in_vectors<Index<S, P>>)
-        return detail::pairs_by_lists(set, index, radius2, true, threads, found);
+    if (detail::answered_by_kernel<PairsWithin<P, P>, Index<S, P>>([&](const auto& kernel) {
+            return kernel.answer_all(index, radius2, threads.over(index.size()), found);
+        }))
+        return found.size();
     return detail::list_pairs(
         index, threads, [&](auto f) { return PairsWithin(set, set, radius2, f, true); }, found);
 }
@@ -214,8 +181,10 @@ std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,
                          const NearOptions<typename A::Scalar>& options,
                          std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
     const auto radius2 = options.max_distance2();
-    if constexpr (detail::lists_in_vectors<Index<SB, B>>)
-        return detail::pairs_by_lists(a.primitives(), b, radius2, false, threads, found);
+    if (detail::answered_by_kernel<PairsWithin<A, B>, Index<SB, B>>([&](const auto& kernel) {
+            return kernel.answer_all(a, b, radius2, threads.over(a.size() + b.size()), found);
+        }))
+        return found.size();
     return detail::list_pairs(
         a, b, threads, [&](auto f) { return PairsWithin(a.primitives(), b.primitives(), radius2, f); },
         found);

@@ -21,7 +21,7 @@ struct PairWithin {
 /// The pairs within a squared distance (included), measured as `closest_point` does: in double, and rounded
 /// once. Calls `found(i, j, distance2)`, which returns whether to go on; of one set with i < j. Structures
 /// that hold a point in several leaves may call it several times for a pair.
-template <class A, class B, class Found>
+template <class A, class B, class Found = Flow (*)(PrimitiveId, PrimitiveId, typename A::Scalar)>
 class PairsWithin {
 public:
     using Scalar = typename A::Scalar;

@@ -19,6 +19,8 @@ namespace hedgerow {
 ///   number `first + i` of the batch for the filter. Returns a KernelUse;
 /// - `answer_many(index, points, arguments..., answers...)`: answers number n of the answers for point number
 ///   n of a PointBatch. Returns false, and writes nothing, where the walk has to answer;
+/// - `answer_all(index, arguments..., executor, answers)`, or of two indexes, for a question that is asked of
+///   the whole. Returns false, and writes nothing, where the walk has to answer;
 /// - `offer_inside(index, probe, instance, geometry, query)`: for a query of a world in which `index` is an
 ///   instance. Offers the candidates that the probe, in the instance's space, finds there, and
 ///   returns the query's Flow.
