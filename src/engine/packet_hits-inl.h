@@ -36,14 +36,38 @@ struct PacketHits : PacketRays {
                               std::uint64_t active) {
         if (std::popcount(active) > few) return test_triangles(scene, block, active);
         const int pairs = common_origin ? hold_rays<true>(block, active) : hold_rays<false>(block, active);
+        return meet_all_pairs(scene, block, pairs);
+    }
+    /// Tests each triangle of a block against rays of its own (a bit each): the filter on a vector of rays
+    /// after the other, and the exact test on those that pass it, in their vector if it holds many, else pair
+    /// by pair. True if a ray was hit.
+    HWY_INLINE bool test_each(const WideScene& scene, const TriangleBlock<float>& block,
+                              const std::uint64_t (&active)[8]) {
+        alignas(64) float corner[3][3][8];
+        constexpr std::uint64_t every = (std::uint64_t(1) << lanes) - 1;
+        int pairs = 0;
         bool found = false;
-        for (int at = 0; at < pairs; at += pair_lanes)
-            found |= meet_pairs(scene, block, pair_ + at, std::min(pairs - at, pair_lanes));
-        return found;
+        for (unsigned left = seen_of(block, corner); left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            for (std::uint64_t rays = active[i]; rays != 0;) {
+                const int at = std::countr_zero(rays) / lanes * lanes;
+                const auto corners = corners_of(corner, i, at);
+                const M kept = corners.may_meet(f, hn::Load(f, z + at), hn::Load(f, s_low + at),
+                                                hn::Load(f, s_limit + at));
+                unsigned some = static_cast<unsigned>(rays >> at & every) & bits_of(f, kept);
+                rays &= ~(every << at);
+                if (std::popcount(some) > few_lanes)
+                    found |= meet(scene, corners, block.id[i], at, some);
+                else
+                    for (; some != 0; some &= some - 1)
+                        pair_[pairs++] = i * size + at + std::countr_zero(some);
+            }
+        }
+        return meet_all_pairs(scene, block, pairs) || found;
     }
 
 private:
-    static constexpr int few = 32;
+    static constexpr int few = 32, few_lanes = lanes / 4;
     using E = Floats<8>;
     static constexpr E e{};
     static constexpr hn::RebindToSigned<F> i32{};
@@ -142,6 +166,12 @@ private:
             hn::Store(pair, i32, each);
             for (; left != 0; left &= left - 1) pair_[pairs++] = each[std::countr_zero(left)];
         }
+    }
+    HWY_INLINE bool meet_all_pairs(const WideScene& scene, const TriangleBlock<float>& block, int pairs) {
+        bool found = false;
+        for (int at = 0; at < pairs; at += pair_lanes)
+            found |= meet_pairs(scene, block, pair_ + at, std::min(pairs - at, pair_lanes));
+        return found;
     }
     /// The exact test of `count` pairs. True if a ray was hit.
     HWY_INLINE bool meet_pairs(const WideScene& scene, const TriangleBlock<float>& block,

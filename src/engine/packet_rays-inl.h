@@ -55,10 +55,16 @@ struct PacketRays {
     /// along each axis.
     HWY_INLINE std::uint32_t look(const RayArray<float, 3>& rays, std::size_t from, std::size_t apart) {
         first = from, row = apart;
+        return look(
+            [&](int p) { read_rows(f, rays, number(p * lanes), number(p * lanes + lanes / 2), numbers[p]); });
+    }
+    /// The same of rays whose numbers read(p) writes to numbers[p].
+    template <class Read>
+    HWY_INLINE std::uint32_t look(Read read) {
         M usable = hn::Eq(hn::Zero(f), hn::Zero(f));
         auto all = hn::Zero(u32);
         for (int p = 0; p < parts; ++p) {
-            read_rows(f, rays, number(p * lanes), number(p * lanes + lanes / 2), numbers[p]);
+            read(p);
             const auto way = way_of(p, usable);
             hn::Store(way, u32, ways + p * lanes);
             all = hn::Or(all, hn::Shl(hn::Set(u32, 1), way));
@@ -73,16 +79,26 @@ struct PacketRays {
         const auto place = static_cast<std::size_t>(i);
         return first + place / block_side * row + place % block_side;
     }
-    /// Prepares the rays that go this way.
+    /// Prepares the rays that go this way for boxes and triangles.
     HWY_INLINE void prepare(std::uint32_t way, const Box<float, 3>& scene) {
-        z_axis = static_cast<int>(way / 8);
-        for (int k = 0; k < 3; ++k) {
-            axis[k] = (z_axis + 1 + k) % 3;
-            down[k] = (way >> k & 1) != 0;
+        const int leader = take_way(way);
+        for (int p = 0; p < parts; ++p) {
+            const Given given(*this, way, leader, p);
+            prepare_slabs(given, p, scene);
+            prepare_tests(given, p);
         }
-        const auto leader = static_cast<int>(std::find(ways, ways + size, way) - ways);
-        for (int p = 0; p < parts; ++p) prepare_part(way, leader, p, scene);
         take_intervals();
+    }
+    /// Prepares the rays that go this way, all from one origin, for triangles alone.
+    HWY_INLINE void prepare_from_eye(std::uint32_t way) {
+        const int leader = take_way(way);
+        for (int p = 0; p < parts; ++p) {
+            const Given given(*this, way, leader, p);
+            prepare_tests(given, p);
+        }
+        common_origin = true;
+        take_shears();
+        take_last();
     }
     /// Computes s_last anew. To be called when limits have changed.
     HWY_INLINE void take_last() { s_last = range_of(s_limit).high; }
@@ -134,51 +150,79 @@ private:
         return way;
     }
 
-    /// Does what `prepare` (rays-inl.h) does, with rays in lanes. Rays that go another way get a negative
-    /// limit, so that they enter nothing, and the leader's numbers, so that they widen no interval.
-    HWY_INLINE void prepare_part(std::uint32_t way, int leader, int p, const Box<float, 3>& scene) {
-        const int at = p * lanes;
-        const M goes = hn::RebindMask(f, hn::Eq(hn::Load(u32, ways + at), hn::Set(u32, way)));
-        // The given numbers, or those of the leader.
-        const auto given = [&](int w) {
-            return hn::IfThenElse(goes, hn::Load(f, numbers[p][w]),
-                                  hn::Set(f, numbers[leader / lanes][w][leader % lanes]));
-        };
-        const auto all = [&](float x) { return hn::Set(f, x); };
-        V o[3], d[3], length[3], far_off = hn::Zero(f), reach = far_off;
+    /// Notes the axes of a way. Returns the first ray that goes it.
+    HWY_INLINE int take_way(std::uint32_t way) {
+        z_axis = static_cast<int>(way / 8);
         for (int k = 0; k < 3; ++k) {
-            o[k] = given(k), d[k] = usable_direction(f, given(3 + k));
-            length[k] = hn::Abs(d[k]);
-            far_off = hn::Max(far_off, hn::Abs(o[k]));
-            reach = hn::Max(reach, hn::Max(hn::Abs(hn::Sub(all(scene.low[k]), o[k])),
-                                           hn::Abs(hn::Sub(all(scene.high[k]), o[k]))));
+            axis[k] = (z_axis + 1 + k) % 3;
+            down[k] = (way >> k & 1) != 0;
         }
-        const V longest = length[z_axis], along = d[z_axis], from = t_min_of(given(6)), to = given(7);
+        return static_cast<int>(std::find(ways, ways + size, way) - ways);
+    }
+    /// A vector of rays as given. Rays that go another way get the leader's numbers, so that they widen no
+    /// interval.
+    struct Given {
+        M goes;
+        V o[3], d[3], length[3], longest, from, to;
 
-        // The error e, and the slabs widened by it.
-        const V room = hn::Mul(all(underflow), hn::Add(all(1.0f), longest));
-        const V slack = slack_of(f, reach, far_off, room);
+        HWY_INLINE Given(const PacketRays& rays, std::uint32_t way, int leader, int p)
+            : goes(hn::RebindMask(f, hn::Eq(hn::Load(u32, rays.ways + p * lanes), hn::Set(u32, way)))) {
+            const auto given = [&](int w) __attribute__((always_inline)) {
+                return hn::IfThenElse(goes, hn::Load(f, rays.numbers[p][w]),
+                                      hn::Set(f, rays.numbers[leader / lanes][w][leader % lanes]));
+            };
+            for (int k = 0; k < 3; ++k) {
+                o[k] = given(k), d[k] = usable_direction(f, given(3 + k));
+                length[k] = hn::Abs(d[k]);
+            }
+            longest = length[rays.z_axis];
+            from = t_min_of(given(6)), to = given(7);
+        }
+    };
+    static HWY_INLINE V underflow_of(const Given& given) {
+        return hn::Mul(hn::Set(f, underflow), hn::Add(hn::Set(f, 1.0f), given.longest));
+    }
+
+    // Together these do what `prepare` (rays-inl.h) does, with rays in lanes.
+
+    /// The error e, and the slabs widened by it.
+    HWY_INLINE void prepare_slabs(const Given& given, int p, const Box<float, 3>& scene) {
+        const int at = p * lanes;
+        V far_off = hn::Zero(f), reach = far_off;
         for (int k = 0; k < 3; ++k) {
-            const V i = inverse_of(f, longest, length[k], d[k]);
-            const V outward = hn::CopySign(slack, d[k]);
-            const V entering = hn::Add(o[k], outward), leaving = hn::Sub(o[k], outward);
+            far_off = hn::Max(far_off, hn::Abs(given.o[k]));
+            reach = hn::Max(reach, hn::Max(hn::Abs(hn::Sub(hn::Set(f, scene.low[k]), given.o[k])),
+                                           hn::Abs(hn::Sub(hn::Set(f, scene.high[k]), given.o[k]))));
+        }
+        const V slack = slack_of(f, reach, far_off, underflow_of(given));
+        for (int k = 0; k < 3; ++k) {
+            const V i = inverse_of(f, given.longest, given.length[k], given.d[k]);
+            const V outward = hn::CopySign(slack, given.d[k]);
+            const V entering = hn::Add(given.o[k], outward), leaving = hn::Sub(given.o[k], outward);
             hn::Store(i, f, inverse[k] + at);
             hn::Store(entering, f, enter[k] + at);
             hn::Store(leaving, f, leave[k] + at);
             hn::Store(hn::Mul(entering, i), f, enter_at[k] + at);
             hn::Store(hn::Mul(leaving, i), f, leave_at[k] + at);
-            hn::Store(o[axis[k]], f, origin[k] + at);
         }
-        // Shears for the test of triangles, and the interval of s.
-        for (int k = 0; k < 2; ++k) hn::Store(hn::Div(d[axis[k]], along), f, shear[k] + at);
+    }
+    /// Shears for the test of triangles, and the interval of s. Rays that go another way get a negative
+    /// limit, so that they hit nothing.
+    HWY_INLINE void prepare_tests(const Given& given, int p) {
+        const int at = p * lanes;
+        const V along = given.d[z_axis];
+        for (int k = 0; k < 3; ++k) hn::Store(given.o[axis[k]], f, origin[k] + at);
+        for (int k = 0; k < 2; ++k) hn::Store(hn::Div(given.d[axis[k]], along), f, shear[k] + at);
         hn::Store(along, f, z + at);
-        const V low = hn::Sub(hn::Mul(hn::Mul(from, longest), all(1 - wider)), room);
+        const V low =
+            hn::Sub(hn::Mul(hn::Mul(given.from, given.longest), hn::Set(f, 1 - wider)), underflow_of(given));
         hn::Store(low, f, s_low + at);
         hn::Store(hn::Max(low, hn::Zero(f)), f, s_min + at);
-        hn::Store(hn::IfThenElse(goes, s_limit_of(f, to, longest), all(-1.0f)), f, s_limit + at);
-        hn::Store(longest, f, z_length + at);
-        hn::Store(from, f, t_min + at);
-        hn::Store(to, f, t_limit + at);
+        hn::Store(hn::IfThenElse(given.goes, s_limit_of(f, given.to, given.longest), hn::Set(f, -1.0f)), f,
+                  s_limit + at);
+        hn::Store(given.longest, f, z_length + at);
+        hn::Store(given.from, f, t_min + at);
+        hn::Store(given.to, f, t_limit + at);
     }
 
     static HWY_INLINE Range range_of(const float* values) {
@@ -198,9 +242,12 @@ private:
             leaves[k] = down[k] ? leaving.high : leaving.low;
             common_origin &= o.low == o.high;
         }
-        for (int k = 0; k < 2; ++k) shears[k] = range_of(shear[k]);
+        take_shears();
         s_first = range_of(s_min).low;
         take_last();
+    }
+    HWY_INLINE void take_shears() {
+        for (int k = 0; k < 2; ++k) shears[k] = range_of(shear[k]);
     }
 };
 

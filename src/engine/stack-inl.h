@@ -14,6 +14,8 @@
 
 #include <hwy/highway.h>
 
+#include <hedgerow/engine/wide_tree.h>
+
 #include "boxes-inl.h"
 
 HWY_BEFORE_NAMESPACE();

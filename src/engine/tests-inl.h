@@ -254,8 +254,8 @@ HWY_INLINE bool test_block(const TriangleBlock<float>& block, WideRay& ray) {
 }
 // `test_block` with the filter of the call, which wants to know what is hit. It is not inlined, since a call
 // inside the other would cost registers.
-[[gnu::cold]] HWY_NOINLINE bool test_block_filtered(const WideScene& scene, std::uint32_t leaf, WideRay& ray,
-                                                    std::size_t number) {
+[[gnu::cold]] HWY_NOINLINE inline bool test_block_filtered(const WideScene& scene, std::uint32_t leaf,
+                                                           WideRay& ray, std::size_t number) {
     return test_block<Wanted::closest>(
         scene.blocks[leaf], ray,
         [&](float t, float u, float v, std::uint32_t id) { return kept(scene, number, t, u, v, id); });

@@ -59,6 +59,13 @@ inline std::optional<Camera> camera_for(std::string_view scene) {
     return std::nullopt;
 }
 
+/// The plane of a picture at distance 1 forward of the eye: its axes, the size of a pixel on it, and the
+/// middle in pixels from the top left.
+struct PicturePlane {
+    Vec3f eye, forward, right, up;
+    float scale, middle_x, middle_y;
+};
+
 /// Makes rays through the picture plane. x and y are in pixels from the top left, with fractions within a
 /// pixel.
 class RayMaker {
@@ -71,6 +78,7 @@ public:
           scale_(2 * tangent(c.field_of_view / 2) / static_cast<float>(height)),
           middle_x_(static_cast<float>(width) / 2),
           middle_y_(static_cast<float>(height) / 2) {}
+    PicturePlane plane() const { return {eye_, forward_, right_, up_, scale_, middle_x_, middle_y_}; }
     template <class T>
     Ray<T, 3> ray(float x, float y) const {
         const Vec3f d = forward_ + right_ * ((x - middle_x_) * scale_) + up_ * ((middle_y_ - y) * scale_);

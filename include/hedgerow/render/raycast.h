@@ -7,10 +7,9 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/parallel/progress.h>
-#include <hedgerow/render/camera.h>
 #include <hedgerow/render/colour.h>
 #include <hedgerow/render/seen.h>
-#include <hedgerow/scenes/random.h>
+#include <hedgerow/render/visibility/samples.h>
 #include <hedgerow/surface.h>
 
 namespace hedgerow {
@@ -82,7 +81,6 @@ public:
         : index_(index),
           primitives_(view_of(primitives)),
           o_(o),
-          make_(o.camera, o.width, o.height),
           values_(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height)),
           seen_(o.layers ? values_.size() : 0),
           done_(static_cast<std::size_t>(o.height)),
@@ -198,8 +196,9 @@ private:
     void look(const Tile& tile, int sample, OfTile<Visits>& visits, Total& total) {
         // Find the closest hits of the tile in one batch.
         const std::size_t n = tile.size();
+        const PictureSamples<T> samples(o_.camera, o_.width, o_.height, o_.seed, sample, o_.samples);
         Looks looks;
-        for (std::size_t i = 0; i < n; ++i) looks.rays[i] = ray_through(tile.x(i), tile.y(i), sample);
+        for (std::size_t i = 0; i < n; ++i) looks.rays[i] = samples.ray(tile.x(i), tile.y(i));
         total.rays += n;
         total.use += index_.closest_hits(std::span(looks.rays).first(n), std::span(looks.hits).first(n),
                                          std::span(visits).first(o_.counted() ? n : 0));
@@ -217,17 +216,6 @@ private:
         }
         if (o_.shading == Shading::diffuse) add_light(tile, looks, total);
     }
-    /// The ray through the pixel's middle, or through a random point of the pixel if there are several
-    /// samples.
-    Ray<T, 3> ray_through(int x, int y, int sample) const {
-        const auto left = static_cast<float>(x), top = static_cast<float>(y);
-        if (o_.samples == 1) return make_.template ray<T>(left + 0.5f, top + 0.5f);
-        Random random(o_.seed, std::uint64_t{pixel(x, y)} * static_cast<std::uint64_t>(o_.samples) +
-                                   static_cast<std::uint64_t>(sample));
-        const auto dx = static_cast<float>(random.uniform()), dy = static_cast<float>(random.uniform());
-        return make_.template ray<T>(left + dx, top + dy);
-    }
-
     /// The value of a sample without its counts and without the direct light.
     Vec3f colour(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& normal) const {
         if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(ray));
@@ -320,7 +308,6 @@ private:
     const AnyIndex<T, 3>& index_;
     ViewOf<P> primitives_;
     RenderOptions o_;
-    RayMaker make_;
     std::vector<Vec3f> values_;
     std::vector<Seen> seen_;
     std::vector<std::uint8_t> done_;

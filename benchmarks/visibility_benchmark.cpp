@@ -1,0 +1,108 @@
+/// What is seen through each pixel of a picture, on one thread: by rasterising and by casting rays, with the
+/// build of an index and without; beside Mesa's rasteriser, if it was found. Times in milliseconds, and the
+/// geometric mean of the ratios to Mesa's.
+///
+///   visibility_benchmark [SIZE] [SCENE ...]     default: 1024, and the dragon if it is there,
+///   gen:teapot-in-stadium:50000 gen:terrain:200000 gen:hairball:200000 gen:cornell-box
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include <hedgerow/ask/rays.h>
+#include <hedgerow/engine/wide_bvh.h>
+#include <hedgerow/index.h>
+#include <hedgerow/measure/contest.h>
+#include <hedgerow/measure/machine.h>
+#include <hedgerow/render/visibility/rasterise.h>
+
+#include "peers/rasterisers.h"
+#include "scene.h"
+
+using namespace hedgerow;
+using namespace hedgerow::measure;
+
+namespace {
+
+constexpr int rounds = 9;
+
+/// Measures one scene. Returns Mesa's time by ours, or 0 without Mesa.
+double measure_scene(const std::string& name, int size) {
+    const auto mesh = scene(name);
+    Box3f box;
+    for (const auto& v : mesh.vertices) box.expand(v);
+    const std::string kind = name.starts_with("gen:") ? name.substr(4, name.find(':', 4) - 4) : "";
+    const Camera camera = camera_for(kind).value_or(automatic_camera(box));
+    const PictureSamples<float> samples(camera, size, size);
+    std::vector<Ray3f> rays;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) rays.push_back(samples.ray(x, y));
+
+    const auto index = build<WideBvh>(mesh, {}, serial_executor());
+    Rasteriser<float> rasteriser(samples);
+    std::vector<Hit<float>> cast(rays.size()), drawn(rays.size());
+    Contest contest;
+    contest.add("raster", [&] {
+        return rasteriser.draw(mesh.view(), Coverage::tiles, drawn, serial_executor()).triangles;
+    });
+    contest.add("cast", [&] {
+        closest_hits(index, rays, std::span(cast), serial_executor());
+        return rays.size();
+    });
+    contest.add("build and cast", [&] {
+        closest_hits(build<WideBvh>(mesh, {}, serial_executor()), rays, std::span(cast), serial_executor());
+        return rays.size();
+    });
+    const auto peer = osmesa(mesh, camera, size, size);
+    if (peer)
+        contest.add(peer->name(), [&] {
+            peer->draw();
+            return mesh.size();
+        });
+    const auto times =
+        measured_in_turn(rounds, contest, Clock::thread, [](const std::string&) { return true; });
+
+    std::size_t hit = 0, differ = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) hit += bool(cast[i]), differ += !(cast[i] == drawn[i]);
+    std::printf("%-28s %7zu triangles, %5.1f%% of pixels hit, %zu samples differ\n",
+                kind.empty() ? "file" : kind.c_str(), mesh.size(), 100 * double(hit) / double(rays.size()),
+                differ);
+    for (std::size_t i = 0; i < times.size(); ++i)
+        std::printf("    %-16s %9.2f ms\n", contest.names[i].c_str(), times[i].median * 1e3);
+    if (!peer) return 0;
+    std::vector<std::uint32_t> elements(rays.size());
+    peer->read(elements);
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) other += elements[i] != cast[i].element;
+    std::printf("    %.2f times as fast as %s, which shows another triangle at %.3f%% of the pixels\n",
+                times.back().median / times[0].median, peer->name().c_str(),
+                100 * double(other) / double(rays.size()));
+    return times.back().median / times[0].median;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) try {
+    std::vector<std::string> names(arguments + 1, arguments + count);
+    int size = 1024;
+    if (!names.empty() && std::atoi(names[0].c_str()) > 0) {
+        size = std::atoi(names[0].c_str());
+        names.erase(names.begin());
+    }
+    if (names.empty()) {
+        if (std::filesystem::exists("data/dragon.ply.gz")) names.push_back("data/dragon.ply.gz");
+        for (const char* name :
+             {"gen:teapot-in-stadium:50000", "gen:terrain:200000", "gen:hairball:200000", "gen:cornell-box"})
+            names.push_back(name);
+    }
+    std::printf("%s, %s, one thread, %d x %d, medians of %d\n", processor().c_str(), compiler().c_str(), size,
+                size, rounds);
+    double product = 1;
+    for (const auto& name : names) product *= measure_scene(name, size);
+    if (product > 0)
+        std::printf("geometric mean: %.2f times as fast as Mesa\n",
+                    std::pow(product, 1 / double(names.size())));
+} catch (const InputError& error) {
+    std::fprintf(stderr, "visibility_benchmark: %s\n", error.what());
+    return 3;
+}

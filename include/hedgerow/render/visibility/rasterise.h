@@ -1,0 +1,353 @@
+/// The rasteriser: for each triangle, the samples of a picture that it covers (the lecture's first loop; a
+/// ray caster asks for each sample which triangles cover it). Both fill a buffer with the closest hit of each
+/// sample, with the same bits: a projection says which samples a triangle may cover (pixel_bounds.h), and the
+/// test of a ray and a triangle decides.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <hedgerow/ask/asking.h>
+#include <hedgerow/base/bare_vector.h>
+#include <hedgerow/parallel/blocks.h>
+#include <hedgerow/parallel/ieee_executor.h>
+#include <hedgerow/probes/ray.h>
+#include <hedgerow/render/visibility/pixel_bounds.h>
+#include <hedgerow/render/visibility/raster_kernels.h>
+
+namespace hedgerow {
+
+/// At which samples a triangle is tested: at all; at those in its box of pixels; at those in its box, tile by
+/// tile of 8 × 8 pixels and front to back, but in no tile of which all hits are nearer.
+enum class Coverage { all, box, tiles };
+
+/// What drawing took. Kernels (raster_kernels.h), which draw tiles of floats, count triangles alone.
+struct RasterCounts {
+    std::uint64_t triangles = 0;  ///< drawn
+    std::uint64_t outside = 0;    ///< of these, how many have a box without samples
+    std::uint64_t tests = 0;      ///< of a triangle at a sample
+    std::uint64_t hidden = 0;     ///< times that a triangle is behind all hits of a tile, and passed over
+
+    RasterCounts& operator+=(const RasterCounts& more) {
+        triangles += more.triangles, outside += more.outside, tests += more.tests, hidden += more.hidden;
+        return *this;
+    }
+};
+
+/// Draws sets of triangles, one after the other, into a buffer with a Hit for each sample.
+template <class T>
+class Rasteriser {
+public:
+    explicit Rasteriser(const PictureSamples<T>& samples)
+        : samples_(samples),
+          plane_(samples.plane()),
+          bounds_(samples),
+          columns_((samples.width() + tile_side - 1) / tile_side),
+          tiles_(columns_ * ((samples.height() + tile_side - 1) / tile_side)) {}
+
+    /// Draws triangles: the view has `triangle(i)`, `id(i)` and `size()`. `hits` has a place for each sample,
+    /// by number; what it holds is written over, unless the set is drawn `onto` the hits of others, which
+    /// then count too. The hits do not depend on the coverage or on the executor. Takes about 64 MiB beside
+    /// them, however many triangles there are. Throws InputError for too few places.
+    template <class Triangles>
+    RasterCounts draw(const Triangles& triangles, Coverage coverage, std::span<Hit<T>> hits,
+                      Executor& executor, bool onto = false) {
+        detail::expect_room("samples", samples_.size(), hits.size());
+        IeeeExecutor threads(executor);
+        if (rays_.empty() && !(coverage == Coverage::tiles && uses_kernels<Triangles>()))
+            prepare_rays(threads);
+        RasterCounts counts;
+        for (std::size_t first = 0; first < std::max<std::size_t>(triangles.size(), 1) && tiles_ > 0;
+             first += at_once) {
+            const std::size_t count = std::min(at_once, triangles.size() - first);
+            look(triangles, first, count, coverage, threads);
+            counts += coverage == Coverage::tiles ? draw_in_tiles(triangles, first, hits, threads, onto)
+                                                  : draw_in_bands(triangles, first, hits, threads, onto);
+            for (const Sight& sight : sights_) counts.outside += sight.box.empty();
+            counts.triangles += count;
+            onto = true;
+        }
+        return counts;
+    }
+
+private:
+    /// Triangles that are looked at together, and entries of triangles in tiles that are sorted together.
+    static constexpr std::size_t at_once = std::size_t(1) << 20, entries_at_once = std::size_t(1) << 21;
+    static constexpr int band_rows = 64;
+    struct Prepared {
+        WatertightRay<T> ray;
+        bool usable = false;
+    };
+
+    template <class Triangles>
+    static bool uses_kernels() {
+        return std::is_same_v<Triangles, TriangleMeshView<float>> && raster_kernels() != nullptr;
+    }
+    void prepare_rays(Executor& threads) {
+        rays_.resize(samples_.size());
+        const auto width = static_cast<std::size_t>(samples_.width());
+        threads.for_each_piece(rays_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto ray = samples_.ray(static_cast<int>(i % width), static_cast<int>(i / width));
+                const RayProbe<T, 3> probe(ray, {ray.origin, ray.origin});
+                if (probe.usable()) rays_[i] = {probe.watertight(), true};
+            }
+        });
+    }
+    /// Finds where triangles from `first` on are seen.
+    template <class Triangles>
+    void look(const Triangles& triangles, std::size_t first, std::size_t count, Coverage coverage,
+              Executor& threads) {
+        sights_.resize(count);
+        threads.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
+            const std::span<Sight> some(sights_.data() + begin, end - begin);
+            std::fill(some.begin(), some.end(),
+                      Sight{coverage == Coverage::all ? bounds_.whole() : uncut, 0});
+            if (coverage == Coverage::all) return;
+            if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>)
+                if (const RasterKernels* const kernels = raster_kernels())
+                    kernels->bounds(bounds_, triangles, first + begin, some);
+            for (std::size_t i = begin; i < end; ++i)
+                if (sights_[i].box == uncut) sights_[i] = bounds_.of(triangles.triangle(first + i));
+        });
+    }
+    /// Calls work(i, counts) for i below `count`, over the executor, and sums up the counts.
+    template <class Work>
+    static RasterCounts counted(std::size_t count, std::size_t grain, Executor& threads, Work work) {
+        std::vector<RasterCounts> counts(count);
+        threads.for_each_piece(count, grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) work(i, counts[i]);
+        });
+        RasterCounts sum;
+        for (const RasterCounts& c : counts) sum += c;
+        return sum;
+    }
+
+    // ---- Bands of rows: in each, all triangles in their order, each at the samples in its box ----
+
+    template <class Triangles>
+    RasterCounts draw_in_bands(const Triangles& triangles, std::size_t first, std::span<Hit<T>> hits,
+                               Executor& threads, bool onto) {
+        const auto bands = static_cast<std::size_t>((samples_.height() + band_rows - 1) / band_rows);
+        return counted(bands, 1, threads, [&](std::size_t band, RasterCounts& counts) {
+            const int top = static_cast<int>(band) * band_rows;
+            const PixelBox rows =
+                common({0, top, samples_.width() - 1, top + band_rows - 1}, bounds_.whole());
+            if (!onto) clear(rows, hits);
+            for (std::size_t i = 0; i < sights_.size(); ++i)
+                test(triangles, first + i, common(sights_[i].box, rows), hits, counts);
+        });
+    }
+
+    // ---- Tiles: in each, the triangles that may cover a sample of it ----
+
+    template <class Triangles>
+    RasterCounts draw_in_tiles(const Triangles& triangles, std::size_t first, std::span<Hit<T>> hits,
+                               Executor& threads, bool onto) {
+        RasterCounts counts;
+        std::size_t begin = 0;
+        do {
+            begin = list_triangles(triangles, first, begin, threads);
+            counts += counted(static_cast<std::size_t>(tiles_), 16, threads,
+                              [&](std::size_t tile, RasterCounts& c) {
+                                  draw_tile(triangles, first, static_cast<int>(tile), hits, onto, c);
+                              });
+            onto = true;
+        } while (begin < sights_.size());
+        return counts;
+    }
+    /// Lists triangles from `begin` on by tile, ascending, and returns where that ends: a sort by counting,
+    /// over blocks of triangles.
+    template <class Triangles>
+    std::size_t list_triangles(const Triangles& triangles, std::size_t first, std::size_t begin,
+                               Executor& threads) {
+        const std::size_t end = end_of_list(begin);
+        const Blocks blocks{end - begin, std::size_t(1) << 17};
+        const auto tiles = static_cast<std::size_t>(tiles_);
+        if (lists_.size() < blocks.number()) lists_.resize(blocks.number());
+        places_.resize(blocks.number() * tiles);
+        blocks.each(threads, [&](std::size_t block, std::size_t from, std::size_t to) {
+            std::uint32_t* const counts = places_.data() + block * tiles;
+            std::fill_n(counts, tiles, 0u);
+            lists_[block].clear();
+            for (std::size_t i = begin + from; i < begin + to; ++i)
+                for_each_tile(triangles, first + i, sights_[i].box, [&](std::uint32_t tile) {
+                    lists_[block].push_back({tile, static_cast<std::uint32_t>(i)});
+                    ++counts[tile];
+                });
+        });
+        // Turn counts into places: by tile, and within a tile by block.
+        begins_.resize(tiles + 1);
+        std::uint32_t before = 0;
+        for (std::size_t tile = 0; tile < tiles; ++tile) {
+            begins_[tile] = before;
+            for (std::size_t b = 0; b < blocks.number(); ++b)
+                before += std::exchange(places_[b * tiles + tile], before);
+        }
+        begins_[tiles] = before;
+        listed_.resize(before);
+        blocks.each(threads, [&](std::size_t block, std::size_t, std::size_t) {
+            std::uint32_t* const places = places_.data() + block * tiles;
+            for (const InTile& entry : lists_[block]) listed_[places[entry.tile]++] = entry.triangle;
+        });
+        return end;
+    }
+    /// How far triangles from `begin` on make a list that is not too long.
+    std::size_t end_of_list(std::size_t begin) const {
+        std::size_t end = begin, total = 0;
+        for (; end < sights_.size(); ++end) {
+            if (sights_[end].box.empty()) continue;
+            const std::size_t more = tiles_of(sights_[end].box);
+            if (total > 0 && total + more > entries_at_once) break;
+            total += more;
+        }
+        return end;
+    }
+    static std::size_t tiles_of(const PixelBox& box) {
+        return static_cast<std::size_t>((box.right / tile_side - box.left / tile_side + 1) *
+                                        (box.bottom / tile_side - box.top / tile_side + 1));
+    }
+    PixelBox pixels_of(int tile) const {
+        const int left = tile % columns_ * tile_side, top = tile / columns_ * tile_side;
+        return common({left, top, left + tile_side - 1, top + tile_side - 1}, bounds_.whole());
+    }
+    /// Calls f(tile) for the tiles in which a triangle with this box may cover a sample.
+    template <class Triangles, class F>
+    void for_each_tile(const Triangles& triangles, std::size_t i, const PixelBox& box, F f) const {
+        if (box.empty()) return;
+        const int left = box.left / tile_side, right = box.right / tile_side, top = box.top / tile_side,
+                  bottom = box.bottom / tile_side;
+        const auto number = [&](int x, int y) { return static_cast<std::uint32_t>(y * columns_ + x); };
+        constexpr std::size_t few = 4;  // to find the edges takes as long as to look at as many tiles in vain
+        if (tiles_of(box) <= few) {
+            for (int y = top; y <= bottom; ++y)
+                for (int x = left; x <= right; ++x) f(number(x, y));
+            return;
+        }
+        const PixelEdges edges(bounds_, triangles.triangle(i));
+        for (int y = top; y <= bottom; ++y)
+            for (int x = left; x <= right; ++x)
+                if (!edges.exclude(pixels_of(static_cast<int>(number(x, y))))) f(number(x, y));
+    }
+    template <class Triangles>
+    void draw_tile(const Triangles& triangles, std::size_t first, int tile, std::span<Hit<T>> hits, bool onto,
+                   RasterCounts& counts) {
+        const PixelBox here = pixels_of(tile);
+        const auto t = static_cast<std::size_t>(tile);
+        const std::span<std::uint32_t> list(listed_.data() + begins_[t], begins_[t + 1] - begins_[t]);
+        if (list.empty()) return onto ? void() : clear(here, hits);
+        order_front_to_back(list);
+        if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>)
+            if (const RasterKernels* const kernels = raster_kernels())
+                return draw_by_kernel(*kernels, triangles, first, here, list, hits, onto);
+        if (!onto) clear(here, hits);
+        float farthest = farthest_of(here, hits);
+        for (const std::uint32_t i : list) {
+            if (sights_[i].nearest > farthest)
+                ++counts.hidden;
+            else if (test(triangles, first + i, common(sights_[i].box, here), hits, counts))
+                farthest = farthest_of(here, hits);
+        }
+    }
+    /// Orders triangles by their nearest points in steps: a sort by counting. A few are left as they are.
+    void order_front_to_back(std::span<std::uint32_t> list) const {
+        constexpr std::size_t few = 8, steps = 32;
+        if (list.size() <= few) return;
+        static thread_local std::vector<std::uint32_t> given;
+        given.assign(list.begin(), list.end());
+        float least = std::numeric_limits<float>::max(), most = 0;
+        for (const std::uint32_t i : given) {
+            least = std::min(least, sights_[i].nearest);
+            most = std::max(most, std::min(sights_[i].nearest, std::numeric_limits<float>::max()));
+        }
+        const float scale = most > least ? (steps - 1) / (most - least) : 0;
+        const auto step = [&](std::uint32_t i) {
+            return static_cast<std::size_t>((std::min(sights_[i].nearest, most) - least) * scale);
+        };
+        std::array<std::uint32_t, steps + 1> places{};
+        for (const std::uint32_t i : given) ++places[step(i) + 1];
+        for (std::size_t k = 0; k < steps; ++k) places[k + 1] += places[k];
+        for (const std::uint32_t i : given) list[places[step(i)]++] = i;
+    }
+    void draw_by_kernel(const RasterKernels& kernels, const TriangleMeshView<float>& triangles,
+                        std::size_t first, const PixelBox& pixels, std::span<const std::uint32_t> list,
+                        std::span<Hit<float>> hits, bool onto) const {
+        RasterTile tile{nullptr,
+                        plane_,
+                        pixels,
+                        list,
+                        static_cast<std::uint32_t>(first),
+                        sights_.data(),
+                        &hits[samples_.number(pixels.left, pixels.top)],
+                        static_cast<std::size_t>(samples_.width()),
+                        onto};
+        std::array<Ray<float, 3>, tile_side * tile_side> rays;
+        if (!samples_.in_the_middle()) {
+            for (int y = 0; y < tile_side; ++y)
+                for (int x = 0; x < tile_side; ++x)
+                    rays[static_cast<std::size_t>(tile_side * y + x)] = samples_.ray(
+                        std::min(pixels.left + x, pixels.right), std::min(pixels.top + y, pixels.bottom));
+            tile.rays = rays.data();
+        }
+        kernels.draw(triangles, tile);
+    }
+
+    // ---- A triangle at some samples ----
+
+    static PixelBox common(const PixelBox& a, const PixelBox& b) {
+        return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right),
+                std::min(a.bottom, b.bottom)};
+    }
+    void clear(const PixelBox& box, std::span<Hit<T>> hits) const {
+        for (int y = box.top; y <= box.bottom; ++y)
+            std::fill_n(&hits[samples_.number(box.left, y)], box.right - box.left + 1, Hit<T>());
+    }
+    /// Tests a triangle at the samples of a box. Returns whether it is the closest hit of any.
+    template <class Triangles>
+    bool test(const Triangles& triangles, std::size_t i, const PixelBox& box, std::span<Hit<T>> hits,
+              RasterCounts& counts) const {
+        if (box.empty()) return false;
+        const auto triangle = triangles.triangle(i);
+        const auto element = static_cast<std::uint32_t>(i);
+        bool found = false;
+        for (int y = box.top; y <= box.bottom; ++y)
+            for (int x = box.left; x <= box.right; ++x) {
+                const std::size_t s = samples_.number(x, y);
+                ++counts.tests;
+                if (!rays_[s].usable) continue;
+                const auto m = meet(rays_[s].ray, triangle);
+                if (!m || !(m->t >= 0 && m->t <= std::numeric_limits<T>::max())) continue;
+                if (m->t > hits[s].t || (m->t == hits[s].t && element > hits[s].element)) continue;
+                hits[s] = {m->t, m->u, m->v, triangles.id(i), 0, 0, element};
+                found = true;
+            }
+        return found;
+    }
+    /// No hit in a box of pixels is farther forward of the eye than this: directions have length 1, but for
+    /// roundings. Infinite where a sample has none.
+    float farthest_of(const PixelBox& box, std::span<const Hit<T>> hits) const {
+        T most = 0;
+        for (int y = box.top; y <= box.bottom; ++y)
+            for (int x = box.left; x <= box.right; ++x) most = std::max(most, hits[samples_.number(x, y)].t);
+        return static_cast<float>(most) * (1 + 0x1p-18f);
+    }
+
+    const PictureSamples<T> samples_;
+    const PicturePlane plane_;
+    const PixelBounds bounds_;
+    const int columns_, tiles_;
+    std::vector<Prepared> rays_;  // empty until they are needed
+    // Of the triangles that are drawn at the moment: where each is seen, and lists of those in each tile.
+    struct InTile {
+        std::uint32_t tile, triangle;
+    };
+    BareVector<Sight> sights_;
+    std::vector<BareVector<InTile>> lists_;  // by block of triangles
+    BareVector<std::uint32_t> places_, begins_, listed_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,56 @@
+/// The samples of a picture: one ray through each pixel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hedgerow/render/camera.h>
+#include <hedgerow/scenes/random.h>
+
+namespace hedgerow {
+
+/// One ray through each pixel: through its middle, or through a random point of it. Pixels are numbered by
+/// rows from the top left. A ray depends on the camera, the size, the seed and its number alone.
+template <class T>
+class PictureSamples {
+public:
+    /// The place of samples in their pixels along either axis, from `least` to `most`.
+    struct Within {
+        float least, most;
+    };
+
+    PictureSamples(const Camera& camera, int width, int height)
+        : make_(camera, width, height), width_(width), height_(height) {}
+    /// Sample number `sample` of each pixel among `samples`, at a random point of it; of one sample, the
+    /// middle.
+    PictureSamples(const Camera& camera, int width, int height, std::uint64_t seed, int sample, int samples)
+        : PictureSamples(camera, width, height) {
+        seed_ = seed, sample_ = sample, samples_ = samples;
+    }
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    std::size_t size() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
+    std::size_t number(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    }
+    bool in_the_middle() const { return samples_ == 1; }
+    Within within_pixel() const { return in_the_middle() ? Within{0.5f, 0.5f} : Within{0, 1}; }
+    PicturePlane plane() const { return make_.plane(); }
+    Ray<T, 3> ray(int x, int y) const {
+        const auto left = static_cast<float>(x), top = static_cast<float>(y);
+        if (in_the_middle()) return make_.template ray<T>(left + 0.5f, top + 0.5f);
+        Random random(seed_, std::uint64_t{number(x, y)} * static_cast<std::uint64_t>(samples_) +
+                                 static_cast<std::uint64_t>(sample_));
+        const auto dx = static_cast<float>(random.uniform()), dy = static_cast<float>(random.uniform());
+        return make_.template ray<T>(left + dx, top + dy);
+    }
+
+private:
+    RayMaker make_;
+    int width_, height_;
+    std::uint64_t seed_ = 0;
+    int sample_ = 0, samples_ = 1;
+};
+
+}  // namespace hedgerow

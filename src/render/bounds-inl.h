@@ -1,0 +1,170 @@
+/// Which pixels triangles may cover: PixelBounds with triangles in lanes.
+#if defined(HEDGEROW_RENDER_BOUNDS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HEDGEROW_RENDER_BOUNDS_INL_H
+#undef HEDGEROW_RENDER_BOUNDS_INL_H
+#else
+#define HEDGEROW_RENDER_BOUNDS_INL_H
+#endif
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include <hedgerow/render/visibility/raster_kernels.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+class BoundsInLanes {
+public:
+    using D = hn::CappedTag<double, 8>;
+    using V = hn::Vec<D>;
+    static constexpr std::size_t lanes = hn::MaxLanes(D());
+    using I = hn::Rebind<std::int32_t, D>;
+
+    explicit BoundsInLanes(const PixelBounds::Frame& frame) : frame_(frame) {}
+
+    // Corners of triangles in rows, by corner and axis. A vector that is loaded from what was just stored in
+    // parts has to wait for the stores, so many triangles are gathered at once.
+    struct Rows {
+        static constexpr std::size_t size = 64;
+        alignas(64) float at[3][3][size];
+
+        HWY_INLINE void gather(const TriangleMeshView<float>& mesh, std::size_t first, std::size_t count) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const auto corners = mesh.indices(first + i);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const Vec<float, 3> p = mesh.vertex(corners[c]);
+                    for (std::size_t k = 0; k < 3; ++k) at[c][k][i] = p[static_cast<int>(k)];
+                }
+            }
+        }
+    };
+    // The sights of as many triangles as there are lanes, from a place of the rows on.
+    HWY_INLINE void write(const Rows& rows, std::size_t from, Sight* sights) const {
+        V farthest2 = hn::Zero(d), nearest = hn::Set(d, std::numeric_limits<double>::infinity());
+        Corners corners;
+        for (int c = 0; c < 3; ++c) {
+            V from_eye[3];
+            for (int k = 0; k < 3; ++k)
+                from_eye[k] =
+                    hn::Sub(hn::PromoteTo(d, hn::Load(hn::Rebind<float, D>(), rows.at[c][k] + from)),
+                            hn::Set(d, frame_.eye[k]));
+            farthest2 = hn::Max(farthest2, length2(from_eye));
+            const V forward = along(from_eye, frame_.forward);
+            nearest = hn::Min(nearest, forward);
+            const V pixels = hn::Div(hn::Set(d, frame_.pixels), forward);
+            corners.x[c] = hn::MulAdd(along(from_eye, frame_.right), pixels, hn::Set(d, frame_.middle[0]));
+            corners.y[c] = hn::NegMulAdd(along(from_eye, frame_.up), pixels, hn::Set(d, frame_.middle[1]));
+        }
+        const V farthest = hn::Sqrt(farthest2);
+        const auto before = hn::Gt(nearest, hn::Mul(farthest, hn::Set(d, PixelBounds::cut_share)));
+        const double share = 2 * PixelBounds::error_share * frame_.reach * frame_.pixels;
+        const V room = hn::Div(hn::Mul(farthest, hn::Set(d, share)), nearest);
+        const V left = first_at(hn::Sub(least(corners.x), room), frame_.width),
+                top = first_at(hn::Sub(least(corners.y), room), frame_.height),
+                bottom = last_at(hn::Add(greatest(corners.y), room), frame_.height);
+        V right = last_at(hn::Add(greatest(corners.x), room), frame_.width);
+        if (frame_.least == frame_.most)
+            right = hn::IfThenElse(misses(corners, room, left, top, right, bottom), hn::Set(d, -1), right);
+        // Write them.
+        const auto side = [&](V pixels) __attribute__((always_inline)) {
+            return hn::DemoteTo(I(), hn::IfThenElse(before, pixels, hn::Set(d, uncut.left)));
+        };
+        alignas(64) PixelBox boxes[lanes];
+        hn::StoreInterleaved4(side(left), side(top), side(right), side(bottom), I(), &boxes[0].left);
+        alignas(64) float nearest_points[lanes];
+        const V error = hn::Mul(farthest, hn::Set(d, 4 * PixelBounds::error_share));
+        hn::Store(hn::DemoteTo(hn::Rebind<float, D>(), hn::Max(hn::Sub(nearest, error), hn::Zero(d))),
+                  hn::Rebind<float, D>(), nearest_points);
+        for (std::size_t i = 0; i < lanes; ++i) sights[i] = {boxes[i], nearest_points[i]};
+    }
+
+private:
+    static constexpr D d{};
+    // In pixels.
+    struct Corners {
+        V x[3], y[3];
+    };
+
+    // Boxes of up to 2 × 2 samples, in the middles of their pixels, of which none is covered: as PixelEdges
+    // tells. Most triangles of a scan are that small.
+    HWY_INLINE hn::Mask<D> misses(const Corners& p, V room, V left, V top, V right, V bottom) const {
+        const V one = hn::Set(d, 1), zero = hn::Zero(d), wide = hn::Sub(right, left),
+                high = hn::Sub(bottom, top);
+        const auto few = hn::And(hn::Le(wide, one), hn::Le(high, one));
+        const V largest = hn::Max(hn::Max(hn::Abs(least(p.x)), hn::Abs(greatest(p.x))),
+                                  hn::Max(hn::Abs(least(p.y)), hn::Abs(greatest(p.y))));
+        const V rounding = hn::Mul(largest, hn::Set(d, 0x1p-30));
+        const V area = hn::Sub(hn::Mul(hn::Sub(p.x[1], p.x[0]), hn::Sub(p.y[2], p.y[0])),
+                               hn::Mul(hn::Sub(p.y[1], p.y[0]), hn::Sub(p.x[2], p.x[0])));
+        const V sample_x = hn::Add(left, hn::Set(d, frame_.least)),
+                sample_y = hn::Add(top, hn::Set(d, frame_.least));
+        const V side = hn::CopySignToAbs(one, area);
+        // For each of the four samples, the least value of an edge.
+        V inside[4];
+        for (int i = 0; i < 3; ++i) {
+            const int a = (i + 1) % 3, b = (i + 2) % 3;
+            const V edge_x = hn::Mul(side, hn::Sub(p.y[a], p.y[b])),
+                    edge_y = hn::Mul(side, hn::Sub(p.x[b], p.x[a]));
+            const V error = hn::Mul(hn::Add(hn::Abs(edge_x), hn::Abs(edge_y)), hn::Add(room, rounding));
+            const V here = hn::MulAdd(edge_x, hn::Sub(sample_x, p.x[a]),
+                                      hn::MulAdd(edge_y, hn::Sub(sample_y, p.y[a]), error));
+            const V at[4] = {here, hn::Add(here, edge_x), hn::Add(here, edge_y),
+                             hn::Add(hn::Add(here, edge_x), edge_y)};
+            for (int k = 0; k < 4; ++k) inside[k] = i == 0 ? at[k] : hn::Min(inside[k], at[k]);
+        }
+        const auto second = hn::Gt(wide, zero), below = hn::Gt(high, zero);
+        auto covered = hn::Ge(inside[0], zero);
+        covered = hn::Or(covered, hn::And(second, hn::Ge(inside[1], zero)));
+        covered = hn::Or(covered, hn::And(below, hn::Ge(inside[2], zero)));
+        covered = hn::Or(covered, hn::And(hn::And(second, below), hn::Ge(inside[3], zero)));
+        const auto told = hn::And(few, hn::Gt(hn::Abs(area), hn::Mul(rounding, largest)));
+        return hn::AndNot(covered, told);
+    }
+    static HWY_INLINE V least(const V (&v)[3]) { return hn::Min(v[0], hn::Min(v[1], v[2])); }
+    static HWY_INLINE V greatest(const V (&v)[3]) { return hn::Max(v[0], hn::Max(v[1], v[2])); }
+
+    static HWY_INLINE V length2(const V (&p)[3]) {
+        return hn::MulAdd(p[2], p[2], hn::MulAdd(p[1], p[1], hn::Mul(p[0], p[0])));
+    }
+    static HWY_INLINE V along(const V (&p)[3], const Vec3d& axis) {
+        return hn::MulAdd(p[2], hn::Set(d, axis[2]),
+                          hn::MulAdd(p[1], hn::Set(d, axis[1]), hn::Mul(p[0], hn::Set(d, axis[0]))));
+    }
+    HWY_INLINE V first_at(V place, int count) const {
+        const V at = hn::Sub(place, hn::Set(d, frame_.most));
+        return hn::Ceil(hn::Min(hn::Max(at, hn::Zero(d)), hn::Set(d, count)));
+    }
+    HWY_INLINE V last_at(V place, int count) const {
+        const V at = hn::Sub(place, hn::Set(d, frame_.least));
+        return hn::Floor(hn::Min(hn::Max(at, hn::Set(d, -1)), hn::Set(d, count - 1)));
+    }
+
+    const PixelBounds::Frame& frame_;
+};
+
+// See RasterKernels.
+inline void pixel_bounds(const PixelBounds& bounds, const TriangleMeshView<float>& mesh, std::size_t first,
+                         std::span<Sight> sights) {
+    const BoundsInLanes in_lanes(bounds.frame());
+    static_assert(sizeof(PixelBox) == 4 * sizeof(std::int32_t));
+    BoundsInLanes::Rows rows;
+    for (std::size_t i = 0; i < sights.size(); i += rows.size) {
+        const std::size_t count = std::min(rows.size, sights.size() - i);
+        rows.gather(mesh, first + i, count);
+        std::size_t k = 0;
+        for (; k + BoundsInLanes::lanes <= count; k += BoundsInLanes::lanes)
+            in_lanes.write(rows, k, &sights[i + k]);
+        for (; k < count; ++k) sights[i + k].box = uncut;
+    }
+}
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,202 @@
+/// The rasteriser's hits against those of rays, bit for bit.
+#include <gtest/gtest.h>
+
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/render/visibility/rasterise.h>
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/random.h>
+
+#include "matrix.h"
+#include "using.h"
+
+using namespace hedgerow;
+
+namespace {
+
+template <class T>
+class RasterisedHits : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(RasterisedHits, Scalars);
+
+template <class T>
+std::vector<Hit<T>> hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& samples) {
+    std::vector<Ray<T, 3>> rays;
+    for (int y = 0; y < samples.height(); ++y)
+        for (int x = 0; x < samples.width(); ++x) rays.push_back(samples.ray(x, y));
+    std::vector<Hit<T>> hits(rays.size());
+    closest_hits(build<WideBvh>(mesh), rays, std::span(hits));
+    return hits;
+}
+template <class T>
+void expect_same(const std::vector<Hit<T>>& want, const std::vector<Hit<T>>& hits) {
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) differ += !(hits[i] == want[i]);
+    EXPECT_EQ(differ, 0u) << "of " << hits.size();
+}
+/// Compares the buffers that every coverage and instruction set fills with the hits of rays. Every sample of
+/// every triangle is tested on demand alone.
+template <class T>
+void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& samples, bool all = false) {
+    const auto want = hits_of_rays(mesh, samples);
+    for (const auto name : instruction_sets()) {
+        SCOPED_TRACE(name);
+        const Using use(name);
+        Rasteriser<T> rasteriser(samples);
+        for (const Coverage coverage : {Coverage::all, Coverage::box, Coverage::tiles}) {
+            if (coverage == Coverage::all && !all) continue;
+            SCOPED_TRACE(static_cast<int>(coverage));
+            // What the buffer held does not matter.
+            std::vector<Hit<T>> hits(samples.size(), Hit<T>{T(1e-30), T(2), T(3), 4, 5, 6, 7});
+            const RasterCounts counts = rasteriser.draw(mesh.view(), coverage, hits, default_executor());
+            expect_same(want, hits);
+            EXPECT_EQ(counts.triangles, mesh.size());
+            if (coverage == Coverage::all) {
+                EXPECT_EQ(counts.tests, mesh.size() * samples.size());
+            }
+        }
+    }
+}
+template <class T>
+Camera seen_from(const TriangleMesh<T>& mesh, std::uint64_t number, bool inside) {
+    Box<T, 3> box;
+    for (const auto& v : mesh.vertices) box.expand(v);
+    Random random(77, number);
+    const Vec3f middle(box.center()), extent(box.extent());
+    const auto in_cube = [&] {
+        return Vec3f(static_cast<float>(random.uniform()) - 0.5f, static_cast<float>(random.uniform()) - 0.5f,
+                     static_cast<float>(random.uniform()) - 0.5f);
+    };
+    Camera camera;
+    const Vec3f away = in_cube();
+    camera.eye = middle;
+    for (int k = 0; k < 3; ++k) camera.eye[k] += extent[k] * away[k] * (inside ? 0.8f : 3.f);
+    camera.target = middle;
+    if (inside) camera.target = camera.eye + in_cube();
+    camera.up = number % 3 == 0 ? in_cube() : Vec3f(0, 0, 1);
+    camera.field_of_view = number % 4 == 0 ? 110 : number % 4 == 1 ? 0.5f : 45;
+    return camera;
+}
+
+TYPED_TEST(RasterisedHits, OfGeneratedMeshesFromAllSides) {
+    using T = TypeParam;
+    const std::size_t views = matrix::in_long_runs(200, 6);
+    for (std::uint64_t i = 0; i < views; ++i)
+        for (const bool inside : {false, true}) {
+            SCOPED_TRACE(std::to_string(i) + (inside ? " inside" : " outside"));
+            const auto expect = [&](const char* name, const TriangleMesh<T>& mesh) {
+                SCOPED_TRACE(name);
+                expect_hits_of_rays(mesh, PictureSamples<T>(seen_from(mesh, i, inside), 61, 43), i == 0);
+                expect_hits_of_rays(mesh, PictureSamples<T>(seen_from(mesh, i, inside), 50, 70, 5, 1, 4),
+                                    false);
+            };
+            expect("soup", soup<T>(400));
+            expect("terrain", terrain<T>(1500));
+            expect("stadium", teapot_in_stadium<T>(1500));
+            expect("hairball", hairball<T>(800));
+            expect("cornell box", cornell_box<T>(0));
+        }
+}
+
+/// Triangles with corners on the rays of samples, before and behind the eye, near and far: whether a ray hits
+/// them depends on the last bits.
+TYPED_TEST(RasterisedHits, OfTrianglesWithCornersOnRays) {
+    using T = TypeParam;
+    const std::size_t scenes = matrix::in_long_runs(3000, 60);
+    for (std::uint64_t scene = 0; scene < scenes; ++scene) {
+        SCOPED_TRACE(scene);
+        Random random(78, scene);
+        const auto number = [&](double from, double to) { return from + (to - from) * random.uniform(); };
+        Camera camera;
+        const double far = scene % 3 == 0 ? 1e4 : 1;
+        for (int k = 0; k < 3; ++k) {
+            camera.eye[k] = static_cast<float>(number(-far, far));
+            camera.target[k] = camera.eye[k] + static_cast<float>(number(-1, 1));
+        }
+        camera.field_of_view = static_cast<float>(scene % 4 == 0 ? 0.2 : number(20, 140));
+        const PictureSamples<T> samples(camera, 24, 17, scene, 0, scene % 2 == 0 ? 1 : 4);
+        const auto on_a_ray = [&](bool behind) {
+            const auto ray =
+                samples.ray(static_cast<int>(random.bits() % 24), static_cast<int>(random.bits() % 17));
+            const auto t = static_cast<T>(std::exp2(number(-6, 6)));
+            return ray.at(behind ? -t : t);
+        };
+        TriangleMesh<T> mesh;
+        for (std::uint32_t i = 0; i < 40; ++i) {
+            const bool crosses = i % 5 == 0;
+            for (int c = 0; c < 3; ++c) mesh.vertices.push_back(on_a_ray(crosses && c == 0));
+            if (i % 7 == 0) mesh.vertices.back() = mesh.vertices[3 * i] + mesh.vertices[3 * i + 1] * T(1e-6);
+            mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        expect_hits_of_rays(mesh, samples, true);
+    }
+}
+
+TYPED_TEST(RasterisedHits, OntoThoseOfOthersAndByAnyExecutor) {
+    using T = TypeParam;
+    const auto mesh = soup<T>(700);
+    auto half = mesh;
+    half.triangles.resize(300);
+    const PictureSamples<T> samples(seen_from(mesh, 1, false), 130, 70);
+    const auto want = hits_of_rays(mesh, samples), first = hits_of_rays(half, samples);
+    for (const auto name : instruction_sets())
+        for (const Coverage coverage : {Coverage::box, Coverage::tiles})
+            for (Executor* const executor :
+                 {static_cast<Executor*>(&serial_executor()), &default_executor()}) {
+                SCOPED_TRACE(name);
+                const Using use(name);
+                Rasteriser<T> rasteriser(samples);
+                std::vector<Hit<T>> hits(samples.size());
+                rasteriser.draw(half.view(), coverage, hits, *executor);
+                expect_same(first, hits);
+                rasteriser.draw(mesh.view(), coverage, hits, *executor, true);
+                expect_same(want, hits);
+                rasteriser.draw(mesh.view(), coverage, hits, *executor, true);
+                expect_same(want, hits);
+                rasteriser.draw(TriangleMesh<T>().view(), coverage, hits, *executor, true);
+                expect_same(want, hits);
+                rasteriser.draw(TriangleMesh<T>().view(), coverage, hits, *executor);
+                expect_same(std::vector<Hit<T>>(samples.size()), hits);
+            }
+}
+
+/// More entries of triangles in tiles than are listed at once; coplanar ones, and equal ones.
+TYPED_TEST(RasterisedHits, OfTrianglesThatFillThePicture) {
+    using T = TypeParam;
+    Camera camera;
+    camera.eye = {0, 0, 0}, camera.target = {0, 1, 0.1f};
+    TriangleMesh<T> mesh;
+    for (std::uint32_t i = 0; i < 2300; ++i) {
+        const auto distance = static_cast<T>(1 + (i * 7919) % 1000);
+        mesh.vertices.insert(mesh.vertices.end(), {{-9 * distance, distance, -9 * distance},
+                                                   {9 * distance, distance, -9 * distance},
+                                                   {T(i % 5), distance, 9 * distance}});
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const PictureSamples<T> samples(camera, 250, 250);
+    const auto want = hits_of_rays(mesh, samples);
+    Rasteriser<T> rasteriser(samples);
+    std::vector<Hit<T>> hits(samples.size());
+    const auto counts = rasteriser.draw(mesh.view(), Coverage::tiles, hits, default_executor());
+    expect_same(want, hits);
+    EXPECT_EQ(counts.outside, 0u);
+}
+
+TYPED_TEST(RasterisedHits, OfNothingWhereNothingCanBeSeen) {
+    using T = TypeParam;
+    const auto mesh = soup<T>(50);
+    Camera along_up, far;
+    along_up.eye = {0, 0, 5}, along_up.target = {0, 0, 0};
+    far.eye = {1e30f, 0, 0}, far.target = {0, 0, 0};
+    for (const Camera& camera : {along_up, far}) expect_hits_of_rays(mesh, PictureSamples<T>(camera, 9, 17));
+    expect_hits_of_rays(mesh, PictureSamples<T>(seen_from(mesh, 1, false), 1, 1), true);
+    expect_hits_of_rays(TriangleMesh<T>(), PictureSamples<T>(Camera{{0, 0, 1}, {1, 0, 1}}, 8, 8), true);
+}
+
+TYPED_TEST(RasterisedHits, NeedAPlaceForEachSample) {
+    using T = TypeParam;
+    Rasteriser<T> rasteriser(PictureSamples<T>(Camera{{0, 0, 1}, {1, 0, 1}}, 5, 4));
+    std::vector<Hit<T>> hits(19);
+    EXPECT_THROW(rasteriser.draw(soup<T>(5).view(), Coverage::tiles, hits, serial_executor()), InputError);
+}
+
+}  // namespace
