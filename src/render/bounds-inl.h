@@ -89,6 +89,8 @@ private:
     // In pixels.
     struct Corners {
         V x[3], y[3];
+
+        HWY_INLINE Corners() {}
     };
 
     // Boxes of up to 2 × 2 samples, in the middles of their pixels, of which none is covered: as PixelEdges

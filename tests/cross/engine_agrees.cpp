@@ -1,14 +1,16 @@
 /// The program that scripts/cross runs on this processor and, emulated, on others. It compares the engine
-/// with brute force for every instruction set that is available, and prints a hash of the bits of all hits.
-/// The hash must be the same on every processor.
+/// and the rasteriser with brute force for every instruction set that is available, and prints hashes of the
+/// bits of all hits and pairs. The hashes must be the same on every processor.
 #include <bit>
 #include <cstdio>
 #include <memory>
 
 #include <hedgerow/ask.h>
 #include <hedgerow/engine/wide_bvh.h>
+#include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
+#include <hedgerow/scenes/sets.h>
 #include <hedgerow/structures/brute_force.h>
 
 using namespace hedgerow;
@@ -73,6 +75,46 @@ bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count
     return true;
 }
 
+/// Whether the rasteriser sees, with every instruction set, what the rays of a picture do.
+bool draws(const char* name, const TriangleMesh<float>& mesh) {
+    const auto index = build<WideBvh>(mesh);
+    const PictureSamples<float> samples(automatic_camera(index.bounds()), 90, 50);
+    std::vector<Ray3f> rays;
+    for (int y = 0; y < samples.height(); ++y)
+        for (int x = 0; x < samples.width(); ++x) rays.push_back(samples.ray(x, y));
+    std::vector<Hit<float>> want(rays.size()), got(rays.size());
+    closest_hits(index, std::span<const Ray3f>(rays), std::span(want));
+    for (const auto set : instruction_sets()) {
+        use_instruction_set(set);
+        Rasteriser<float>(samples).draw(mesh.view(), Coverage::tiles, got, serial_executor());
+        if (got == want) continue;
+        std::printf("%s, drawn: differs with %s\n", name, std::string(set).c_str());
+        return false;
+    }
+    return true;
+}
+/// Prints the hash of the pairs of points within a radius. Returns false if an instruction set lists others.
+bool pairs_agree(std::size_t count) {
+    const auto cloud = points<float>(count);
+    const auto index = build<WideBvh>(cloud);
+    std::vector<PairWithin<float>> want, got;
+    pairs_within(build<BruteForce>(cloud), {.radius = 0.1f}, want, serial_executor());
+    std::uint64_t sum = 0xCBF29CE484222325u;
+    for (const auto& pair : want)
+        for (const std::uint32_t word : {pair.a, pair.b, std::bit_cast<std::uint32_t>(pair.distance2)})
+            add(sum, word);
+    std::printf("%-10s %zu pairs, sum %016llx\n", "points", want.size(),
+                static_cast<unsigned long long>(sum));
+    for (const auto set : instruction_sets()) {
+        use_instruction_set(set);
+        pairs_within(index, {.radius = 0.1f}, got, serial_executor());
+        if (got == want) continue;
+        std::printf("points: pairs differ with %s\n", std::string(set).c_str());
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 int main() {
@@ -81,6 +123,7 @@ int main() {
     std::fprintf(stderr, "instruction sets:%s\n", sets.c_str());
     const bool good =
         agrees("soup", soup<float>(300), 6400) && agrees("stadium", teapot_in_stadium<float>(1000), 3200) &&
-        agrees("hairball", hairball<float>(1000), 3200) && agrees("terrain", terrain<float>(1000), 3200);
+        agrees("hairball", hairball<float>(1000), 3200) && agrees("terrain", terrain<float>(1000), 3200) &&
+        draws("soup", soup<float>(300)) && draws("hairball", hairball<float>(1000)) && pairs_agree(2000);
     return good ? 0 : 1;
 }
