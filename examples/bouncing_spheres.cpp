@@ -34,7 +34,8 @@ int main() {
     Particles all;
     all.resize(1000);
     for (std::uint64_t i = 0; i < all.size(); ++i) {
-        const Vec3d cell(double(i % 10), double(i / 10 % 10), double(i / 100));
+        const std::uint64_t x = i % 10, y = i / 10 % 10, z = i / 100;
+        const Vec3d cell{double(x), double(y), double(z)};
         all.places[i] = cell * 0.1 + Vec3d::all(0.05);
         all.velocities[i] = Random(1, i).direction<3>() * (all.places[i][0] < 0.5 ? 1.0 : 0.1);
         all.masses[i] = 1 + double(i % 3);

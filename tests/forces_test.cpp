@@ -215,6 +215,7 @@ TEST(Forces, OfFloatsOfAnyScale) {
         std::vector<PotentialAt<float>> found(places.size());
         forces<float>({places, charges}, found, {.accuracy = 1e-4});
         std::vector<PotentialAt<double>> in_double;
+        in_double.reserve(found.size());
         for (const auto& at : found)
             in_double.push_back({static_cast<double>(at.potential), Vec3d(at.gradient)});
         EXPECT_LE(error_of(scaled, in_double), 1e-4) << exponent;

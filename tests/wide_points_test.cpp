@@ -9,6 +9,7 @@
 #include <hedgerow/mesh_index.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
+#include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/structures/kdtree/point_kdtree.h>
 
 using namespace hedgerow;

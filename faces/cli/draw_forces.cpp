@@ -99,8 +99,9 @@ int draw_forces(const DrawArguments& a) {
     svg.close_group();
     // The legend.
     for (std::size_t k = 0; k < looks.size(); ++k) {
-        const double x = picture_margin + static_cast<double>(k % 2) * (width / 2.0 - 24),
-                     y = height - 62.0 + 26.0 * static_cast<double>(k / 2);
+        const std::size_t column = k % 2, row = k / 2;
+        const double x = picture_margin + static_cast<double>(column) * (width / 2.0 - 24),
+                     y = height - 62.0 + 26.0 * static_cast<double>(row);
         svg.rect({{x, y - 11}, {x + 14, y + 3}},
                  fmt::format("fill=\"{0}\" fill-opacity=\".25\" stroke=\"{0}\"", looks[k].colour));
         svg.text({x + 22, y}, fmt::format("{}: {} cells, {} particles", looks[k].meaning, of_kind[k].first,

@@ -209,7 +209,7 @@ private:
     }
     static hid_t create(hid_t access) {
         constexpr std::size_t grow_by = std::size_t{1} << 24;
-        H5Pset_fapl_core(access, grow_by, 0);
+        H5Pset_fapl_core(access, grow_by, false);
         return H5Fcreate("snapshot", H5F_ACC_TRUNC, H5P_DEFAULT, access);
     }
     template <class T>

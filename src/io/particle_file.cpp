@@ -94,6 +94,7 @@ MotionState load_state(const std::filesystem::path& path, const Progress& progre
 void save_state(const std::filesystem::path& path, const MotionState& state, double period) {
     if (detail::names_hdf5(path)) return detail::save_gadget(path, state, period);
     std::vector<Column> columns;
+    columns.reserve(std::size(state_columns));
     for (const char* name : state_columns) columns.push_back({name, NumberType::f64});
     const Particles& all = state.particles;
     RowWriter writer(path, row_format(path), columns, all.size());

@@ -22,10 +22,10 @@ void with_number(NumberType type, const char* at, F f) {
         std::memcpy(&number, at, sizeof number);
         f(number);
     };
-    switch (type) {  // NOLINT(bugprone-branch-clone): each gives another type
+    switch (type) {
         case NumberType::flag:
             return f(*at != 0);
-        case NumberType::id:
+        case NumberType::id:  // NOLINT(bugprone-branch-clone): each gives another type
             return give(std::uint32_t());
         case NumberType::count:
             return give(std::uint64_t());

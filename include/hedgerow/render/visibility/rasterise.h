@@ -208,8 +208,11 @@ private:
         return end;
     }
     static std::size_t tiles_of(const PixelBox& box) {
-        return static_cast<std::size_t>((box.right / tile_side - box.left / tile_side + 1) *
-                                        (box.bottom / tile_side - box.top / tile_side + 1));
+        const auto along = [](int first, int last) {
+            const int tiles = last / tile_side - first / tile_side + 1;
+            return static_cast<std::size_t>(tiles);
+        };
+        return along(box.left, box.right) * along(box.top, box.bottom);
     }
     PixelBox pixels_of(int tile) const {
         const int left = tile % columns_ * tile_side, top = tile / columns_ * tile_side;
@@ -287,10 +290,12 @@ private:
                         onto};
         std::array<Ray<float, 3>, tile_side * tile_side> rays;
         if (!samples_.in_the_middle()) {
-            for (int y = 0; y < tile_side; ++y)
-                for (int x = 0; x < tile_side; ++x)
-                    rays[static_cast<std::size_t>(tile_side * y + x)] = samples_.ray(
-                        std::min(pixels.left + x, pixels.right), std::min(pixels.top + y, pixels.bottom));
+            int place = 0;
+            for (Ray<float, 3>& ray : rays) {
+                ray = samples_.ray(std::min(pixels.left + place % tile_side, pixels.right),
+                                   std::min(pixels.top + place / tile_side, pixels.bottom));
+                ++place;
+            }
             tile.rays = rays.data();
         }
         kernels.draw(triangles, tile);
