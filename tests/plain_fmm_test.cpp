@@ -84,8 +84,10 @@ TEST(PlainFmm, OfPointsInFloat) {
 /// A lattice whose points lie on the corners of an octree's cells.
 TEST(PlainFmm, RefusesPointsInSeveralCells) {
     PointCloud<double, 3> lattice{{{0.5, 0.5, 0.5}}};
-    for (int i = 0; i < 4096; ++i)
-        lattice.points.emplace_back((i % 16) * 0x1p-12, (i / 16 % 16) * 0x1p-12, (i / 256) * 0x1p-12);
+    for (int i = 0; i < 4096; ++i) {
+        const int x = i % 16, y = i / 16 % 16, z = i / 256;
+        lattice.points.emplace_back(x * 0x1p-12, y * 0x1p-12, z * 0x1p-12);
+    }
     const auto charges = some_charges(lattice.size(), false);
     EXPECT_THROW(PlainFmm<2>()(build<Orthtree>(lattice, {.leaf_size = 1}), charges), InputError);
     EXPECT_EQ(PlainFmm<2>()(build<PointOrthtree>(lattice), charges).size(), lattice.size());

@@ -50,9 +50,10 @@ TEST(PointOrthtree, OptionsOutOfRangeAreRefused) {
 TYPED_TEST(PointOrthtrees, HoldEachPointOfALatticeOnce) {
     using T = TypeParam;
     PointCloud<T, 3> lattice{{{T(0.5), T(0.5), T(0.5)}}};
-    for (int i = 0; i < 16 * 16 * 16; ++i)
-        lattice.points.emplace_back(T(i % 16) * T(0x1p-12), T(i / 16 % 16) * T(0x1p-12),
-                                    T(i / 256) * T(0x1p-12));
+    for (int i = 0; i < 16 * 16 * 16; ++i) {
+        const int x = i % 16, y = i / 16 % 16, z = i / 256;
+        lattice.points.emplace_back(T(x) * T(0x1p-12), T(y) * T(0x1p-12), T(z) * T(0x1p-12));
+    }
     EXPECT_EQ(build<Orthtree>(lattice, {.leaf_size = 1}).structure().item_count(), 8 * 4096u + 1);
     EXPECT_LE(longest_leaf(tree_of(lattice)), 8u);
     EXPECT_EQ(longest_leaf(tree_of(lattice, 1)), 1u);

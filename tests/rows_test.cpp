@@ -98,8 +98,8 @@ TEST(Rows, NumPyArraysOfEveryTypeAndOrder) {
     EXPECT_EQ(rows_of<float>(folder.file("a.npy", npy(header("'<u2'"), packed(whole))), points), floats);
     // Fields of records are read by their names, wherever they are.
     std::string records;
-    for (int i = 0; i < 2; ++i) {
-        const double* const p = &expected[static_cast<std::size_t>(3 * i)];
+    for (std::size_t i = 0; i < 2; ++i) {
+        const double* const p = &expected[3 * i];
         append(records, p[2]);
         append(records, std::uint8_t(9));
         append(records, static_cast<float>(p[0]), std::endian::big);
@@ -284,7 +284,7 @@ TEST(RowWriter, AFileThatEndsEarlyIsValidUnderAnotherName) {
         }
         EXPECT_EQ(contents(folder / name), "precious");
         EXPECT_EQ(rows_of<double>(folder / ("b" + name), {{"query", "u"}}).size(), 4u) << name;
-        RowWriter(folder / name, row_format(name), columns_of_hits());  // is not finished
+        { const RowWriter unfinished(folder / name, row_format(name), columns_of_hits()); }
         EXPECT_EQ(contents(folder / name), "precious");
     }
     EXPECT_EQ(folder.file_count(), 6u) << "nothing else is left";

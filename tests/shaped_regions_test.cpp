@@ -49,7 +49,7 @@ std::optional<double> distance_to(const std::vector<rational::HalfSpace>& planes
     std::optional<Number> least;
     // Orthogonalises the planes' normals one after the other, moving the foot into each plane.
     const auto visit = [&](auto& self, std::size_t first, const Point& foot,
-                           std::vector<Point> normals) -> void {
+                           const std::vector<Point>& normals) -> void {
         for (std::size_t i = first; i < planes.size(); ++i) {
             Point n = planes[i].normal;
             for (const Point& m : normals) {
@@ -209,18 +209,17 @@ struct Shapes {
             // A cut-off pyramid around a place: opposite faces lean towards each other.
             typename Frustum<T, D>::Faces faces;
             const Vec<double, D> at(place());
-            for (int k = 0; k < D; ++k)
-                for (int side = 0; side < 2; ++side) {
-                    Vec<double, D> n;
-                    n[k] = side == 0 ? -1 : 1;
-                    if (k > 0) n[0] = integers ? 1 : 0.3;
-                    const Vec<T, D> normal(integers ? n
-                                                    : Vec<double, D>(turned<D>(random).there().vector(n)));
-                    faces[static_cast<std::size_t>(2 * k + side)] = {
-                        normal, static_cast<T>(std::round(4 * (dot(Vec<double, D>(normal), at) +
-                                                               random.uniform() * reach)) /
-                                               4)};
-                }
+            for (int face = 0; face < 2 * D; ++face) {
+                const int k = face / 2, side = face % 2;
+                Vec<double, D> n;
+                n[k] = side == 0 ? -1 : 1;
+                if (k > 0) n[0] = integers ? 1 : 0.3;
+                const Vec<T, D> normal(integers ? n : Vec<double, D>(turned<D>(random).there().vector(n)));
+                faces[static_cast<std::size_t>(face)] = {
+                    normal,
+                    static_cast<T>(
+                        std::round(4 * (dot(Vec<double, D>(normal), at) + random.uniform() * reach)) / 4)};
+            }
             frusta.emplace_back(faces);
             cones.push_back(
                 {place(), vector(), number(1.5),
