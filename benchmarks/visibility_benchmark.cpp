@@ -34,9 +34,7 @@ double measure_scene(const std::string& name, int size) {
     const std::string kind = name.starts_with("gen:") ? name.substr(4, name.find(':', 4) - 4) : "";
     const Camera camera = camera_for(kind).value_or(automatic_camera(box));
     const PictureSamples<float> samples(camera, size, size);
-    std::vector<Ray3f> rays;
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x) rays.push_back(samples.ray(x, y));
+    const auto rays = samples.rays();
 
     const auto index = build<WideBvh>(mesh, {}, serial_executor());
     Rasteriser<float> rasteriser(samples);

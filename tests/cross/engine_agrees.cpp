@@ -79,9 +79,7 @@ bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count
 bool draws(const char* name, const TriangleMesh<float>& mesh) {
     const auto index = build<WideBvh>(mesh);
     const PictureSamples<float> samples(automatic_camera(index.bounds()), 90, 50);
-    std::vector<Ray3f> rays;
-    for (int y = 0; y < samples.height(); ++y)
-        for (int x = 0; x < samples.width(); ++x) rays.push_back(samples.ray(x, y));
+    const auto rays = samples.rays();
     std::vector<Hit<float>> want(rays.size()), got(rays.size());
     closest_hits(index, std::span<const Ray3f>(rays), std::span(want));
     for (const auto set : instruction_sets()) {

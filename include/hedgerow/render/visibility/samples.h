@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <hedgerow/render/camera.h>
 #include <hedgerow/scenes/random.h>
@@ -44,6 +45,15 @@ public:
                                  static_cast<std::uint64_t>(sample_));
         const auto dx = static_cast<float>(random.uniform()), dy = static_cast<float>(random.uniform());
         return make_.template ray<T>(left + dx, top + dy);
+    }
+
+    /// The rays of all samples, by number.
+    std::vector<Ray<T, 3>> rays() const {
+        std::vector<Ray<T, 3>> all;
+        all.reserve(size());
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x) all.push_back(ray(x, y));
+        return all;
     }
 
 private:
