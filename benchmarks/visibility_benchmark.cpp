@@ -14,6 +14,7 @@
 #include <hedgerow/index.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
+#include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/visibility/rasterise.h>
 
 #include "peers/rasterisers.h"

@@ -6,7 +6,8 @@
 
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/io/image.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/scenes/meshes.h>
 
 using namespace hedgerow;

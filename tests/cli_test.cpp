@@ -159,6 +159,42 @@ TEST_F(Cli, KernelsRenderTheBitsOfWalksThatCount) {
     EXPECT_EQ(bytes_of(file("fast.png")), bytes_of(file("other.png")));
 }
 
+TEST_F(Cli, RasterisingMakesThePictureOfRays) {
+    for (const std::string options :
+         {"", " --shading normals --spp 2", " --shading depth --precision double"}) {
+        const std::string scene = "render gen:teapot-in-stadium:2000 --json --size 133x71" + options + " -o ";
+        const auto cast = run(scene + file("cast.png")),
+                   drawn = run(scene + file("drawn.png") + " --visibility raster");
+        ASSERT_EQ(cast.code, 0) << cast.output;
+        ASSERT_EQ(drawn.code, 0) << drawn.output;
+        EXPECT_EQ(bytes_of(file("cast.png")), bytes_of(file("drawn.png")));
+        EXPECT_NE(drawn.output.find("\"triangles_drawn\""), std::string::npos) << drawn.output;
+        // Without light there is no need for an index.
+        EXPECT_EQ(drawn.output.find("\"rays\": 0") != std::string::npos, !options.empty()) << drawn.output;
+    }
+    expect_usage("render gen:cube --visibility raster --shading steps -o " + file("x.png"),
+                 "--visibility cast");
+    expect_bad("render gen:points --visibility raster -o " + file("x.png"), "only triangles");
+    expect_bad("render gen:cube --visibility raster --projection panorama -o " + file("x.png"), "panorama");
+}
+
+TEST_F(Cli, ViewsAndProjectionsMakeDifferentPictures) {
+    std::vector<std::string> pictures;
+    for (const char* options :
+         {"", "--view front", "--view back", "--view left", "--view right", "--view top", "--view bottom",
+          "--view corner --projection orthographic", "--projection panorama", "--lens 0.3",
+          "--lens 0.3 --focus 2", "--projection orthographic --height 1"}) {
+        const auto r = run("render gen:teapot:500 --quiet --size 60x40 " + std::string(options) + " -o " +
+                           file("a.png"));
+        ASSERT_EQ(r.code, 0) << options << r.output;
+        pictures.push_back(bytes_of(file("a.png")));
+        for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+            EXPECT_NE(pictures[i], pictures.back()) << options;
+    }
+    expect_usage("render gen:cube --view behind -o " + file("x.png"), "behind");
+    expect_usage("render gen:cube --lens -1 -o " + file("x.png"), "--lens");
+}
+
 TEST_F(Cli, WhatIsGeneratedCanBeRead) {
     ASSERT_EQ(run("generate gen:cube:300 -o " + file("cube.ply")).code, 0);
     const auto r = run("info --json " + file("cube.ply"));

@@ -12,7 +12,8 @@
 #include <map>
 
 #include <hedgerow/io/image.h>
-#include <hedgerow/render/raycast.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/render.h>
 #include <hedgerow/scenes/generate.h>
 
 #include "io_support.h"
@@ -280,16 +281,16 @@ TEST_F(ExrTool, AnInterruptedRenderSavesWhatIsDone) {
     EXPECT_GT(missing, 0);
 }
 
-TEST(RaycastLayers, OfManySamplesTheFirstIsSeenAndCountsAreMeans) {
+TEST(RenderedLayers, OfManySamplesTheFirstIsSeenAndCountsAreMeans) {
     const TriangleMesh<float> mesh = teapot<float>(500);
     const auto index = build_any("bvh", mesh);
     RenderOptions options;
     options.width = 40, options.height = 30, options.samples = 4, options.seed = 5;
     options.shading = Shading::normals;  // without rays to the light
     options.camera = automatic_camera(index->bounds());
-    EXPECT_TRUE(raycast(*index, mesh, options, serial_executor()).seen.empty()) << "not asked for";
+    EXPECT_TRUE(render(*index, mesh, options, serial_executor()).seen.empty()) << "not asked for";
     options.layers = true;
-    const Picture picture = raycast(*index, mesh, options, default_executor());
+    const Picture picture = render(*index, mesh, options, default_executor());
 
     // Make the rays of the first of four samples as the renderer does.
     std::vector<Ray3f> rays;
@@ -307,13 +308,13 @@ TEST(RaycastLayers, OfManySamplesTheFirstIsSeenAndCountsAreMeans) {
     // The counts of a pixel are means over its four samples.
     double nodes = 0, leaves = 0, primitives = 0;
     for (const Seen& s : picture.seen) nodes += s.nodes, leaves += s.leaves, primitives += s.primitives;
-    EXPECT_EQ(picture.rays, 4 * rays.size());
-    EXPECT_EQ(4 * nodes, double(picture.visits.nodes));
-    EXPECT_EQ(4 * leaves, double(picture.visits.leaves));
-    EXPECT_EQ(4 * primitives, double(picture.visits.primitives));
+    EXPECT_EQ(picture.costs.rays, 4 * rays.size());
+    EXPECT_EQ(4 * nodes, double(picture.costs.visits.nodes));
+    EXPECT_EQ(4 * leaves, double(picture.costs.visits.leaves));
+    EXPECT_EQ(4 * primitives, double(picture.costs.visits.primitives));
 }
 
-TEST(RaycastLayers, APictureThatIsCancelledSawNothing) {
+TEST(RenderedLayers, APictureThatIsCancelledSawNothing) {
     const TriangleMesh<float> mesh = teapot<float>(500);
     const auto index = build_any("bvh", mesh);
     RenderOptions options;
@@ -321,7 +322,7 @@ TEST(RaycastLayers, APictureThatIsCancelledSawNothing) {
     options.camera = automatic_camera(index->bounds());
     std::atomic<bool> cancelled = false;
     const Progress progress{[&](std::uint64_t done, std::uint64_t) { cancelled = done >= 10; }, &cancelled};
-    const Picture picture = raycast(*index, mesh, options, serial_executor(), progress);
+    const Picture picture = render(*index, mesh, options, serial_executor(), progress);
     for (std::size_t i = 0; i < 40 * 30; ++i) {
         const bool done = i < 40 * 16;  // rows are cast eight at a time
         EXPECT_EQ(picture.seen[i].nodes > 0, done) << i;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <hedgerow/primitives/triangle_mesh.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/camera.h>
 
 namespace hedgerow {
 

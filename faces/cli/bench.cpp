@@ -9,6 +9,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/spelling.h>
 #include <hedgerow/measure/machine.h>
+#include <hedgerow/render/camera/presets.h>
 
 #include "bench_report.h"
 #include "peers/peers.h"

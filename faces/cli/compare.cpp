@@ -8,6 +8,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/measure/compare.h>
 #include <hedgerow/questions.h>
+#include <hedgerow/render/camera/presets.h>
 
 #include "compare_report.h"
 #include "verbs.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <hedgerow/render/colour.h>
+#include <hedgerow/render/film/colour.h>
 #include <hedgerow/render/lettering.h>
 
 namespace hedgerow::cli {

@@ -160,7 +160,8 @@ int draw_field_of(const DrawArguments& a, const P& set) {
     const auto fill_shown = [&](auto ask) {
         ProgressLine line("computing the " + a.field, a.quiet, "rows");
         fill<T>(field, plane.section, line.progress(), ask);
-        finished = finish_picture(a.output, line.done(), field.height);
+        finished = finish_picture(a.output, line.done() > 0,
+                                  line.done() == static_cast<std::uint64_t>(field.height));
     };
     if (kind == FieldKind::distance) {
         fill_shown(distances_from<I, T>(index));

@@ -7,7 +7,7 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/render/lettering.h>
-#include <hedgerow/render/raycast.h>
+#include <hedgerow/render/render.h>
 
 #include "draw.h"
 
@@ -29,8 +29,8 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.seed = a.seed;
     options.shading = parse_shading(a.heat);
-    options.log_scale = a.log;
-    options.steps_max = a.scale > 0 ? a.scale : usual_scale(options.shading);
+    options.scale.logarithmic = a.log;
+    options.scale.top = a.scale > 0 ? a.scale : usual_scale(options.shading);
     // Build, and place the camera by the bounds of the index.
     const auto index = build_shown(a, a.structure, set);
     const Upright upright = upright_of(a.view, a, set);
@@ -41,8 +41,8 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     FinishedPicture finished;
     {
         ProgressLine line("casting rays", a.quiet, "rows");
-        picture = raycast(*index, set, options, default_executor(), line.progress());
-        finished = finish_picture(a.output, line.done(), options.height);
+        picture = render(*index, set, options, default_executor(), line.progress());
+        finished = finish_picture(a.output, picture.pixels > 0, picture.whole);
     }
     // Write the figures on the picture, left of the colour bar, and save it.
     const double share_beyond = double(picture.beyond) / double(picture.pixels);
@@ -53,14 +53,14 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
                          {std::filesystem::path(a.scene).filename().string() + ", " + a.structure,
                           fmt::format("{} a ray: {:.1f} on average, at most {:.0f}", unit, picture.mean,
                                       picture.most)},
-                         colour_bar_left(picture.image, options.steps_max)),
+                         colour_bar_left(picture.image, options.scale.top)),
               letter_scale(picture.image));
     save(finished.output, picture);
     if (a.json)
         print_json({{"output", finished.output},
                     {"structure", a.structure},
                     {"heat", a.heat},
-                    {"scale", options.steps_max},
+                    {"scale", options.scale.top},
                     {"logarithmic", a.log},
                     {"mean", picture.mean},
                     {"most", picture.most},
@@ -70,7 +70,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
         fmt::print(
             "{}: {} a ray: {:.1f} on average, at most {:.0f}; the scale ends at {}, and {:.2f}% of the "
             "pixels lie beyond\n{}",
-            a.structure, unit, picture.mean, picture.most, options.steps_max, 100 * share_beyond,
+            a.structure, unit, picture.mean, picture.most, options.scale.top, 100 * share_beyond,
             up_text(a.view, a, upright));
     return finished.exit_code();
 }

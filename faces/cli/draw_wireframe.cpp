@@ -8,7 +8,7 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/render/lettering.h>
-#include <hedgerow/render/raycast.h>
+#include <hedgerow/render/render.h>
 #include <hedgerow/render/wireframe.h>
 
 #include "draw.h"
@@ -94,7 +94,7 @@ struct Background {
                const RenderOptions& options)
         : maker(options.camera, options.width, options.height) {
         ProgressLine line("casting rays", a.quiet, "rows");
-        image = raycast(index, seen, options, interruptible_executor(), line.progress()).image;
+        image = render(index, seen, options, interruptible_executor(), line.progress()).image;
         for (auto& pixel : image.pixels)
             for (auto& c : pixel) c = static_cast<std::uint8_t>(255 - (255 - c) * 9 / 20);
         surface = depths(index, maker, options.width, options.height, interruptible_executor());

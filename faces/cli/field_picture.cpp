@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/render/colour.h>
+#include <hedgerow/render/film/colour.h>
 #include <hedgerow/render/lettering.h>
 
 #include "common.h"

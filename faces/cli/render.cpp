@@ -1,11 +1,12 @@
-/// hedgerow render: renders a picture by casting rays.
+/// hedgerow render: renders a picture, by casting rays or by rasterising.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
-#include <hedgerow/render/raycast.h>
+#include <hedgerow/render/render.h>
+#include <hedgerow/render/visibility/rasterise.h>
 
 #include "kernel_use.h"
 #include "verbs.h"
@@ -16,12 +17,16 @@ namespace hedgerow::cli {
 namespace {
 
 struct RenderArguments : Common {
-    std::string structure = "wide", shading = "diffuse";
+    std::string structure = "wide", shading = "diffuse", visibility = "cast";
     ViewArguments view;
     int spp = 1;
     unsigned threads = 0;
     std::uint64_t steps_max = 0;
     bool counts = false, layers = false;  // layers: whether the output is .exr
+
+    bool rasterises() const { return visibility == "raster"; }
+    /// Whether the picture needs an index: for its rays from the eye, or those to the light.
+    bool needs_index() const { return !rasterises() || shading == "diffuse"; }
 };
 
 struct Outcome {
@@ -30,8 +35,8 @@ struct Outcome {
     Upright upright{2, ""};
     Vec3f up;
     FinishedPicture finished;
-    bool loaded = false;   // the index was loaded, not built
-    bool counted = false;  // visits of rays were counted
+    bool indexed = false, loaded = false;  // whether there is an index, and whether it was loaded, not built
+    bool counted = false;                  // visits of rays were counted
     double build_seconds = 0, seconds = 0;
 };
 
@@ -45,10 +50,12 @@ constexpr const char* layers_help =
 
 void report(const RenderArguments& a, const Outcome& o) {
     const Picture& p = o.picture;
-    const double rays = double(std::max<std::uint64_t>(p.rays, 1));
+    const PictureCosts& costs = p.costs;
+    const double rays = double(std::max<std::uint64_t>(costs.rays, 1));
     const auto a_ray = [&](std::uint64_t count) { return double(count) / rays; };
     if (a.json) {
         nlohmann::ordered_json j = {{"structure", a.structure},
+                                    {"visibility", a.visibility},
                                     {"output", o.finished.output},
                                     {"width", p.image.width},
                                     {"height", p.image.height},
@@ -56,53 +63,84 @@ void report(const RenderArguments& a, const Outcome& o) {
                                     {"bytes", o.bytes},
                                     {o.loaded ? "load_seconds" : "build_seconds", o.build_seconds},
                                     {"up", {o.up[0], o.up[1], o.up[2]}},
-                                    {"rays", p.rays},
-                                    {"rays_by", rays_by(p.use)},
+                                    {"rays", costs.rays},
+                                    {"rays_by", rays_by(costs.use)},
                                     {"seconds", o.seconds},
                                     {"rays_per_second", rays / o.seconds},
                                     {"finished", o.finished.whole}};
         if (o.counted) {
-            j["nodes_per_ray"] = a_ray(p.visits.nodes);
-            j["leaves_per_ray"] = a_ray(p.visits.leaves);
-            j["primitives_per_ray"] = a_ray(p.visits.primitives);
+            j["nodes_per_ray"] = a_ray(costs.visits.nodes);
+            j["leaves_per_ray"] = a_ray(costs.visits.leaves);
+            j["primitives_per_ray"] = a_ray(costs.visits.primitives);
+        }
+        if (a.rasterises()) {
+            j["triangles_drawn"] = costs.drawn.triangles;
+            j["triangles_outside"] = costs.drawn.outside;
         }
         print_json(j);
     } else if (!a.quiet) {
-        fmt::print("{}: {}x{}, {} primitives, {} {} in {:.1f} ms, {:.1f} bytes a primitive\n",
-                   o.finished.output, p.image.width, p.image.height, o.primitives, a.structure,
-                   o.loaded ? "loaded" : "built", o.build_seconds * 1e3,
-                   double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
-        fmt::print("{} rays in {:.3f} s: {:.3f} million a second", p.rays, o.seconds,
-                   rays / o.seconds * 1e-6);
-        if (p.use.packets + p.use.phased > 0) fmt::print("; {}", most_used(p.use, p.rays));
+        fmt::print("{}: {}x{}, {} primitives", o.finished.output, p.image.width, p.image.height,
+                   o.primitives);
+        if (o.indexed)
+            fmt::print(", {} {} in {:.1f} ms, {:.1f} bytes a primitive", a.structure,
+                       o.loaded ? "loaded" : "built", o.build_seconds * 1e3,
+                       double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
+        fmt::print("\n");
+        if (a.rasterises())
+            fmt::print("{} triangles drawn, {} of them outside of the picture; ", costs.drawn.triangles,
+                       costs.drawn.outside);
+        fmt::print("{} rays in {:.3f} s", costs.rays, o.seconds);
+        if (costs.rays > 0) fmt::print(": {:.3f} million a second", rays / o.seconds * 1e-6);
+        if (costs.use.packets + costs.use.phased > 0) fmt::print("; {}", most_used(costs.use, costs.rays));
         if (o.counted)
-            fmt::print("; a ray visits {:.1f} nodes, {:.1f} leaves, {:.1f} primitives", a_ray(p.visits.nodes),
-                       a_ray(p.visits.leaves), a_ray(p.visits.primitives));
+            fmt::print("; a ray visits {:.1f} nodes, {:.1f} leaves, {:.1f} primitives",
+                       a_ray(costs.visits.nodes), a_ray(costs.visits.leaves), a_ray(costs.visits.primitives));
         fmt::print("\n{}", up_text(a.view, a, o.upright));
     }
 }
 
-/// Renders `primitives` by an index over them, saves the picture and reports. Returns the exit code.
-template <class Any, class P>
-int render(const RenderArguments& a, const Any& index, const P& primitives, Outcome o) {
-    // Read the options, and place the camera by the bounds of the index.
+/// The picture's options, with the camera placed by the bounds of the scene.
+RenderOptions options_of(const RenderArguments& a, const Box3f& bounds, const Upright& upright) {
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
-    options.samples = a.spp, options.seed = a.seed, options.steps_max = a.steps_max;
+    options.samples = a.spp, options.seed = a.seed, options.scale.top = a.steps_max;
     options.shading = parse_shading(a.shading);
     options.layers = a.layers, options.counts = a.counts;
-    o.primitives = index.size(), o.bytes = index.bytes(), o.counted = options.counted();
+    options.camera = camera_of(a.view, a, bounds, upright);
+    return options;
+}
+/// What finds the hits of the samples.
+template <class T, class P>
+std::unique_ptr<Visibility<T>> visibility_of(const RenderArguments& a, const P& primitives,
+                                             const Tracer<T>* tracer) {
+    if (!a.rasterises()) return std::make_unique<RayCasting<T>>(*tracer);
+    if constexpr (std::same_as<ViewOf<P>, TriangleMeshView<T>>)
+        return std::make_unique<Rasterising<T>>(view_of(primitives));
+    else
+        throw InputError(a.scene + ": only triangles can be rasterised; use --visibility cast");
+}
+/// Renders `primitives` by an index over them, or by none, saves the picture and reports. Returns the exit
+/// code.
+template <class T, class P>
+int render(const RenderArguments& a, const AnyIndex<T, 3>* index, const P& primitives, Outcome o) {
+    const SurfacesOf<P> surfaces(primitives);
+    std::optional<IndexTracer<AnyIndex<T, 3>>> tracer;
+    if (index != nullptr) tracer.emplace(*index), o.bytes = index->bytes(), o.indexed = true;
+    const Tracer<T>* const asked = tracer ? &*tracer : nullptr;
+    o.primitives = primitives.size();
     o.upright = upright_of(a.view, a, primitives);
-    options.camera =
-        camera_of(a.view, a, Box3f{Vec3f(index.bounds().low), Vec3f(index.bounds().high)}, o.upright);
-    o.up = options.camera.up;
+    const Box<T, 3> box = index != nullptr ? index->bounds() : surfaces.bounds();
+    const RenderOptions options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, o.upright);
+    o.counted = options.counted(), o.up = options.camera.up;
+    const auto visibility = visibility_of<T>(a, primitives, asked);
     // Render. After an interruption the finished rows are saved.
     {
         ProgressLine line("rendering", a.quiet, "rows");
         const double start = now();
-        o.picture = raycast(index, primitives, options, default_executor(), line.progress());
+        o.picture = render(PictureParts<T>{*visibility, surfaces, asked}, options, default_executor(),
+                           line.progress());
         o.seconds = now() - start;
-        o.finished = finish_picture(a.output, line.done(), options.height);
+        o.finished = finish_picture(a.output, o.picture.pixels > 0, o.picture.whole);
     }
     save(o.finished.output, o.picture);
     report(a, o);
@@ -110,12 +148,14 @@ int render(const RenderArguments& a, const Any& index, const P& primitives, Outc
 }
 template <class P>
 int render(const RenderArguments& a, const P& primitives) {
+    using T = typename P::Scalar;
     const ThreadLimit limit(a.threads);
     Outcome o;
+    if (!a.needs_index()) return render<T>(a, nullptr, primitives, std::move(o));
     const double start = now();
     const auto index = build_shown(a, a.structure, primitives);
     o.build_seconds = now() - start;
-    return render(a, *index, primitives, std::move(o));
+    return render(a, index.get(), primitives, std::move(o));
 }
 /// Renders by a saved index, which is loaded and not built.
 template <class T>
@@ -131,7 +171,7 @@ int render_saved(const RenderArguments& a) {
     const auto mesh = saved.primitives();
     const auto index = any_index(std::move(saved));
     o.loaded = true, o.build_seconds = now() - start;
-    return render(a, *index, mesh, std::move(o));
+    return render(a, index.get(), mesh, std::move(o));
 }
 template <class T>
 int render(const RenderArguments& a, const PointCloud<T, 3>& cloud) {
@@ -159,6 +199,10 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--shading", a->shading, "normals, depth, diffuse or steps")
         ->capture_default_str()
         ->check(CLI::IsMember({"normals", "depth", "diffuse", "steps"}));
+    verb.add_option("--visibility", a->visibility,
+                    "how hits are found: cast rays, or raster triangles; the picture is the same")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"cast", "raster"}));
     verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
     verb.add_flag("--counts", a->counts,
                   "count what rays visit, without the engine's kernels; layers and steps are counts already");
@@ -166,10 +210,13 @@ Run add_render(CLI::App& verb) {
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
+    add_projection(verb, a->view);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
     return [a] {
         const bool saved = names_index_file(a->scene);
         a->layers = asks_for_layers(a->output);
+        if (a->rasterises() && counted(parse_shading(a->shading)))
+            throw UsageError("--shading " + a->shading + " shows what rays cost: it needs --visibility cast");
         check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) {

@@ -12,6 +12,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/exr.h>
 #include <hedgerow/io/image.h>
+#include <hedgerow/render/camera/presets.h>
 
 #include "memory.h"
 
@@ -32,6 +33,26 @@ void add_view(CLI::App& verb, ViewArguments& view) {
     add_camera(verb, view);
     verb.add_option("--light", view.light, "x,y,z: towards the light")->delimiter(',')->expected(3);
     verb.add_option("--radius", view.radius, "of points, drawn as spheres; 0: by their number")
+        ->check(CLI::NonNegativeNumber);
+}
+
+void add_projection(CLI::App& verb, ViewArguments& view) {
+    std::vector<std::string> names = {"auto"};
+    names.insert(names.end(), view_names.begin(), view_names.end());
+    verb.add_option("--view", view.named,
+                    "from where: corner, front, back, left, right, top or bottom; auto: the scene's own view")
+        ->capture_default_str()
+        ->check(CLI::IsMember(names));
+    verb.add_option("--projection", view.projection,
+                    "perspective, orthographic (parallel rays) or panorama (all directions)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"perspective", "orthographic", "panorama"}));
+    verb.add_option("--height", view.height,
+                    "of what an orthographic picture shows, in the scene's units; 0: by the view")
+        ->check(CLI::NonNegativeNumber);
+    verb.add_option("--lens", view.lens, "radius of a thin lens, in the scene's units; 0: a pinhole")
+        ->check(CLI::NonNegativeNumber);
+    verb.add_option("--focus", view.focus, "the distance that the lens has in focus; 0: that of the target")
         ->check(CLI::NonNegativeNumber);
 }
 
@@ -66,9 +87,9 @@ int FinishedPicture::exit_code() const {
     std::fprintf(stderr, "hedgerow: interrupted; the finished part is in %s\n", output.c_str());
     return 130;
 }
-FinishedPicture finish_picture(const std::string& output, std::uint64_t rows, int height) {
-    if (rows == 0) throw Cancelled("no row of the picture was finished");
-    if (rows == static_cast<std::uint64_t>(height)) return {output, true};
+FinishedPicture finish_picture(const std::string& output, bool some, bool all) {
+    if (!some) throw Cancelled("no row of the picture was finished");
+    if (all) return {output, true};
     return {unfinished_name(output), false};
 }
 
@@ -92,9 +113,13 @@ std::string up_text(const ViewArguments& view, const Common& common, const Uprig
 
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,
                  const Upright& upright) {
-    auto c = automatic_camera(bounds, upright.axis);
+    const auto [width, height] = parse_size(view.size);
+    const float shape = static_cast<float>(width) / static_cast<float>(height);
+    auto c =
+        named_view(view.named, bounds, upright.axis, shape).value_or(automatic_camera(bounds, upright.axis));
     // Use the scene's own camera unless the user turns the view.
-    if (const auto own = camera_for(generated_name(common)); own && (view.up == "auto" || own->up == c.up))
+    if (const auto own = camera_for(generated_name(common));
+        own && view.named == "auto" && (view.up == "auto" || own->up == c.up))
         c = *own;
     // Apply the user's options.
     if (view.eye.size() == 3) c.eye = {view.eye[0], view.eye[1], view.eye[2]};
@@ -103,6 +128,10 @@ Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& b
         throw UsageError("--light 0,0,0 is no direction: give one towards the light, as 1,1,2");
     if (view.light.size() == 3) c.light = {view.light[0], view.light[1], view.light[2]};
     if (view.fov > 0) c.field_of_view = view.fov;
+    if (view.projection == "orthographic") c.projection = Projection::orthographic;
+    if (view.projection == "panorama") c.projection = Projection::panorama;
+    if (view.height > 0) c.height = view.height;
+    c.lens_radius = view.lens, c.focus = view.focus;
     // Reject cameras that see nothing.
     if (c.eye == c.target)
         throw UsageError(fmt::format("the camera is at its target, ({}): change --eye or --target",

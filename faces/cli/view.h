@@ -9,7 +9,7 @@
 
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/sphere_set.h>
-#include <hedgerow/render/raycast.h>
+#include <hedgerow/render/render.h>
 
 #include "common.h"
 #include "upright.h"
@@ -21,8 +21,12 @@ struct ViewArguments {
     std::vector<float> eye, target, light;
     float fov = 0;
     double radius = 0;
+    std::string named = "auto", projection = "perspective";
+    float height = 0, lens = 0, focus = 0;
 };
 void add_view(CLI::App& verb, ViewArguments& view);
+/// Adds the options of other cameras than a pinhole, and views by name.
+void add_projection(CLI::App& verb, ViewArguments& view);
 /// Adds only --eye, --target, --up and --fov.
 void add_camera(CLI::App& verb, ViewArguments& view);
 
@@ -57,8 +61,8 @@ struct FinishedPicture {
     /// 0 if the picture is whole. Else prints a message to stderr and returns 130.
     int exit_code() const;
 };
-/// Chooses the file by the number of finished rows. Throws Cancelled if no row is finished.
-FinishedPicture finish_picture(const std::string& output, std::uint64_t rows, int height);
+/// Chooses the file by what is finished: all rows, or some. Throws Cancelled if there are none.
+FinishedPicture finish_picture(const std::string& output, bool some, bool all);
 
 /// Throws MemoryShort if there is no memory for a picture of this size, with layers if `layers` is set.
 /// Throws UsageError as parse_size does.

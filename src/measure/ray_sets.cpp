@@ -1,6 +1,8 @@
 #include <hedgerow/measure/ray_sets.h>
 
 #include <hedgerow/ask.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/scenes/random.h>
 
 namespace hedgerow::measure {

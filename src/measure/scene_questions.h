@@ -6,6 +6,8 @@
 #include <hedgerow/measure/compare.h>
 #include <hedgerow/measure/questions.h>
 #include <hedgerow/measure/ray_sets.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/scenes/random.h>
 
 #include "surface_samples.h"

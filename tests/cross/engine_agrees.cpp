@@ -7,6 +7,7 @@
 
 #include <hedgerow/ask.h>
 #include <hedgerow/engine/wide_bvh.h>
+#include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>

@@ -10,7 +10,7 @@
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/primitives/concepts.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/camera.h>
 
 namespace hedgerow::measure {
 

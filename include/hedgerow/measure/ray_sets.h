@@ -9,7 +9,7 @@
 #include <hedgerow/geometry/ray.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/hit.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/camera.h>
 #include <hedgerow/scenes/random.h>
 
 namespace hedgerow::measure {

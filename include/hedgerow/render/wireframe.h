@@ -6,7 +6,7 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/io/image.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/ray_maker.h>
 
 namespace hedgerow {
 

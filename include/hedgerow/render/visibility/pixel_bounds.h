@@ -11,15 +11,6 @@
 
 namespace hedgerow {
 
-/// Pixels from the left to the right column and from the top to the bottom row, both included. Empty if the
-/// left is beyond the right or the top below the bottom.
-struct PixelBox {
-    int left = 0, top = 0, right = -1, bottom = -1;
-
-    bool empty() const { return left > right || top > bottom; }
-    friend bool operator==(const PixelBox&, const PixelBox&) = default;
-};
-
 /// Where a triangle may be seen: in a box of pixels, and no nearer forward of the eye than this.
 struct Sight {
     PixelBox box;

@@ -5,10 +5,24 @@
 #include <cstdint>
 #include <vector>
 
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/scenes/random.h>
 
 namespace hedgerow {
+
+/// Pixels from the left to the right column and from the top to the bottom row, both included. Empty if the
+/// left is beyond the right or the top below the bottom.
+struct PixelBox {
+    int left = 0, top = 0, right = -1, bottom = -1;
+
+    bool empty() const { return left > right || top > bottom; }
+    int width() const { return right - left + 1; }
+    int height() const { return bottom - top + 1; }
+    std::size_t size() const {
+        return empty() ? 0 : static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+    }
+    friend bool operator==(const PixelBox&, const PixelBox&) = default;
+};
 
 /// One ray through each pixel: through its middle, or through a random point of it. Pixels are numbered by
 /// rows from the top left. A ray depends on the camera, the size, the seed and its number alone.
@@ -37,14 +51,19 @@ public:
     }
     bool in_the_middle() const { return samples_ == 1; }
     Within within_pixel() const { return in_the_middle() ? Within{0.5f, 0.5f} : Within{0, 1}; }
+    /// Whether all rays come from one eye or go one way, through a plane.
+    bool has_plane() const { return make_.has_plane(); }
     PicturePlane plane() const { return make_.plane(); }
     Ray<T, 3> ray(int x, int y) const {
         const auto left = static_cast<float>(x), top = static_cast<float>(y);
-        if (in_the_middle()) return make_.template ray<T>(left + 0.5f, top + 0.5f);
+        if (in_the_middle() && !make_.has_lens()) return make_.template ray<T>(left + 0.5f, top + 0.5f);
         Random random(seed_, std::uint64_t{number(x, y)} * static_cast<std::uint64_t>(samples_) +
                                  static_cast<std::uint64_t>(sample_));
-        const auto dx = static_cast<float>(random.uniform()), dy = static_cast<float>(random.uniform());
-        return make_.template ray<T>(left + dx, top + dy);
+        const auto next = [&] { return static_cast<float>(random.uniform()); };
+        const float dx = in_the_middle() ? 0.5f : next(), dy = in_the_middle() ? 0.5f : next();
+        if (!make_.has_lens()) return make_.template ray<T>(left + dx, top + dy);
+        const float u = next(), v = next();
+        return make_.template ray<T>(left + dx, top + dy, lens_point(u, v));
     }
 
     /// The rays of all samples, by number.

@@ -1,0 +1,123 @@
+/// The rays of a camera.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/geometry/ray.h>
+#include <hedgerow/render/camera/camera.h>
+
+namespace hedgerow {
+
+/// The plane of a picture: its axes, the size of a pixel on it, and the middle in pixels from the top left.
+/// A perspective's plane is at distance 1 forward of the eye, and rays start at the eye; that of parallel
+/// rays goes through the eye, and rays start on it.
+struct PicturePlane {
+    Vec3f eye, forward, right, up;
+    float scale, middle_x, middle_y;
+    bool parallel = false;
+};
+
+/// A point of a thin lens, from its middle, in units of its radius: within 1.
+struct LensPoint {
+    float right = 0, up = 0;
+};
+/// Maps a square to a disc so that equal areas stay equal and near points stay near (Shirley & Chiu 1997).
+/// u and v are in [0, 1).
+inline LensPoint lens_point(float u, float v) {
+    const float a = 2 * u - 1, b = 2 * v - 1;
+    if (a == 0 && b == 0) return {};
+    constexpr float quarter = 0.78539816f;
+    const bool wide = std::abs(a) > std::abs(b);
+    const float r = wide ? a : b, angle = wide ? quarter * (b / a) : 2 * quarter - quarter * (a / b);
+    return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+/// Throws InputError for a camera that sees nothing or whose numbers make no sense: an angle of view that is
+/// not between 0 and 180 degrees, a negative height, lens or focus, an eye at the target.
+inline void check_camera(const Camera& c) {
+    const auto expect = [](bool sound, const char* what) {
+        if (!sound) throw InputError(std::string("camera: ") + what);
+    };
+    expect(c.field_of_view > 0 && c.field_of_view < 180,
+           "the field of view must be between 0 and 180 degrees");
+    expect(c.height >= 0, "the height of an orthographic picture must not be negative");
+    expect(c.lens_radius >= 0, "the radius of the lens must not be negative");
+    expect(c.focus >= 0, "the distance of focus must not be negative");
+    expect(finite(c.eye) && finite(c.target), "the eye and the target must be finite");
+    expect(length2(c.target - c.eye) > 0, "the eye is at the target");
+}
+
+/// Makes the rays of a picture. x and y are in pixels from the top left, with fractions within a pixel.
+class RayMaker {
+public:
+    RayMaker(const Camera& c, int width, int height)
+        : eye_(c.eye),
+          forward_(normalized(c.target - c.eye)),
+          right_(normalized(cross(forward_, c.up))),
+          up_(cross(right_, forward_)),
+          scale_(2 * tangent(c.field_of_view / 2) / static_cast<float>(height)),
+          middle_x_(static_cast<float>(width) / 2),
+          middle_y_(static_cast<float>(height) / 2),
+          projection_(c.projection),
+          lens_radius_(c.projection == Projection::perspective ? c.lens_radius : 0),
+          focus_(c.focus > 0 ? c.focus : length(c.target - c.eye)) {
+        if (projection_ == Projection::orthographic)
+            scale_ = c.height > 0 ? c.height / static_cast<float>(height) : scale_ * length(c.target - c.eye);
+    }
+
+    /// Whether all rays come from one eye, or go one way, through a plane: what can be projected.
+    bool has_plane() const { return projection_ != Projection::panorama && lens_radius_ == 0; }
+    bool has_lens() const { return lens_radius_ > 0; }
+    PicturePlane plane() const {
+        return {eye_,   forward_,  right_,    up_,
+                scale_, middle_x_, middle_y_, projection_ == Projection::orthographic};
+    }
+    template <class T>
+    Ray<T, 3> ray(float x, float y) const {
+        const Vec3f across = right_ * ((x - middle_x_) * scale_), up = up_ * ((middle_y_ - y) * scale_);
+        switch (projection_) {
+            case Projection::orthographic:
+                return {Vec<T, 3>(eye_ + across + up), Vec<T, 3>(forward_)};
+            case Projection::panorama:
+                return {Vec<T, 3>(eye_), Vec<T, 3>(in_panorama(x, y))};
+            default:
+                return {Vec<T, 3>(eye_), Vec<T, 3>(normalized(forward_ + across + up))};
+        }
+    }
+    /// The ray from a point of the lens to where the ray through its middle is in focus.
+    template <class T>
+    Ray<T, 3> ray(float x, float y, const LensPoint& point) const {
+        const Vec3f d = forward_ + right_ * ((x - middle_x_) * scale_) + up_ * ((middle_y_ - y) * scale_);
+        const Vec3f from = right_ * (point.right * lens_radius_) + up_ * (point.up * lens_radius_);
+        return {Vec<T, 3>(eye_ + from), Vec<T, 3>(normalized(d * focus_ - from))};
+    }
+    /// Projects a point onto the plane. Returns x and y in pixels from the top left, and the distance forward
+    /// of the eye, which is negative behind the eye.
+    Vec3f seen(const Vec3f& p) const {
+        const Vec3f d = p - eye_;
+        const float forward = dot(d, forward_),
+                    per_pixel = projection_ == Projection::orthographic ? scale_ : forward * scale_;
+        return {middle_x_ + dot(d, right_) / per_pixel, middle_y_ - dot(d, up_) / per_pixel, forward};
+    }
+    /// The distance forward of the eye of the point at t = 1 on a ray with this direction.
+    float forward_of(const Vec3f& direction) const { return dot(direction, forward_); }
+
+private:
+    static float tangent(float degrees) { return std::tan(degrees * 3.14159265f / 180); }
+    Vec3f in_panorama(float x, float y) const {
+        const float longitude = (x - middle_x_) / middle_x_ * 3.14159265f,
+                    latitude = (middle_y_ - y) / middle_y_ * 1.57079633f;
+        const Vec3f level = forward_ * std::cos(longitude) + right_ * std::sin(longitude);
+        return normalized(level * std::cos(latitude) + up_ * std::sin(latitude));
+    }
+
+    Vec3f eye_, forward_, right_, up_;
+    float scale_, middle_x_, middle_y_;
+    Projection projection_;
+    float lens_radius_, focus_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,62 @@
+/// Makes pictures out of their parts: a camera, what is visible, how that is shaded, and the film. The
+/// component `render` has it compiled.
+#pragma once
+
+#include <cstdint>
+
+#include <hedgerow/parallel/progress.h>
+#include <hedgerow/render/film/film.h>
+#include <hedgerow/render/shading/shading.h>
+#include <hedgerow/render/shading/surface_point.h>
+#include <hedgerow/render/tracer.h>
+#include <hedgerow/render/visibility/cast.h>
+
+namespace hedgerow {
+
+struct RenderOptions {
+    Camera camera;
+    int width = 1024, height = 768, samples = 1;
+    Shading shading = Shading::diffuse;
+    std::uint64_t seed = 0;
+    HeatScale scale;
+    /// Whether the picture stores the hits of its rays, for `Picture::layers`.
+    bool layers = false;
+    /// Whether the visits of rays are counted, which rules out the kernels. Layers and the shadings `steps`
+    /// and `tests` imply it.
+    bool counts = false;
+
+    bool counted() const { return counts || layers || counts_visits(shading); }
+};
+
+/// What a picture is made from. All of it is borrowed.
+template <std::floating_point T>
+struct PictureParts {
+    Visibility<T>& visibility;
+    const Surfaces<T>& surfaces;
+    /// Answers the rays to the light of diffuse shading, and those that are timed; other shadings need none.
+    const Tracer<T>* tracer = nullptr;
+};
+
+/// Makes a picture, in tiles of pixels over the executor. Diffuse shading casts a ray to the light where the
+/// surface faces it. Returns when all rows are finished or the progress is cancelled: then rows that are not
+/// finished stay black, and their layers empty. Throws InputError for a camera that sees nothing, no pixels
+/// or samples, where the shading needs a tracer and there is none, and where it shows costs of rays but what
+/// is visible is found without them.
+template <std::floating_point T>
+Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
+               const Progress& progress = {});
+extern template Picture render(const PictureParts<float>&, const RenderOptions&, Executor&, const Progress&);
+extern template Picture render(const PictureParts<double>&, const RenderOptions&, Executor&, const Progress&);
+
+/// Makes a picture by casting rays at an index (of any structure) over `primitives`.
+template <class I, class P>
+Picture render(const I& index, const P& primitives, const RenderOptions& options, Executor& executor,
+               const Progress& progress = {}) {
+    using T = typename I::Scalar;
+    const IndexTracer<I> tracer(index);
+    const SurfacesOf<P> surfaces(primitives);
+    RayCasting<T> casting(tracer);
+    return render(PictureParts<T>{casting, surfaces, &tracer}, options, executor, progress);
+}
+
+}  // namespace hedgerow

@@ -1,0 +1,66 @@
+/// The shadings: how the hit of a sample becomes a colour or a number.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <hedgerow/geometry/vec.h>
+#include <hedgerow/render/camera/camera.h>
+
+namespace hedgerow {
+
+/// How a picture is coloured. The last three show measurements in a heat map: nodes, leaves and primitives
+/// visited (steps), primitives tested (tests), nanoseconds (time). For times each ray is timed three times,
+/// and the least counts.
+enum class Shading { normals, depth, diffuse, steps, tests, time };
+inline constexpr std::array<std::string_view, 6> shading_names = {"normals", "depth", "diffuse",
+                                                                  "steps",   "tests", "time"};
+
+/// Whether the shading shows a measurement.
+constexpr bool counted(Shading s) {
+    return s >= Shading::steps;
+}
+/// Whether the shading counts the visits of rays.
+constexpr bool counts_visits(Shading s) {
+    return s == Shading::steps || s == Shading::tests;
+}
+/// The shading of this name; diffuse for a name that there is not.
+constexpr Shading parse_shading(std::string_view name) {
+    for (std::size_t i = 0; i < shading_names.size(); ++i)
+        if (shading_names[i] == name) return static_cast<Shading>(i);
+    return Shading::diffuse;
+}
+
+/// Colours, as linear light, of surfaces without looks of their own.
+class PlainShading {
+public:
+    /// `diagonal` is that of the scene's box: depths are shown in proportion to it.
+    PlainShading(const Camera& camera, float diagonal)
+        : up_(camera.up), light_(light_of(camera)), diagonal_(diagonal) {}
+
+    Vec3f background() const { return {0.28f, 0.36f, 0.48f}; }
+    /// `t` is a distance: directions have length 1.
+    Vec3f depth(float t) const { return Vec3f::all(std::exp(-1.5f * t / (diagonal_ + 1e-30f))); }
+    Vec3f normal(const Vec3f& n) const { return (n + Vec3f(1, 1, 1)) * 0.5f; }
+    /// The light of the sky on a surface with this normal.
+    Vec3f sky(const Vec3f& n) const {
+        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(n, up_)) * 0.62f;
+    }
+    /// The direction towards the distant light, and its light on a surface that faces it by this cosine and
+    /// is not in shadow.
+    const Vec3f& to_light() const { return light_; }
+    Vec3f direct(float facing) const { return Vec3f(0.85f, 0.80f, 0.70f) * facing * 0.62f; }
+
+private:
+    static Vec3f light_of(const Camera& c) {
+        if (length2(c.light) > 0) return normalized(c.light);
+        const Vec3f forward = normalized(c.target - c.eye);
+        return normalized(c.up + cross(forward, c.up) * 0.5f - forward * 0.35f);
+    }
+
+    Vec3f up_, light_;
+    float diagonal_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,56 @@
+/// The surface at a hit.
+#pragma once
+
+#include <hedgerow/geometry/offset.h>
+#include <hedgerow/surface.h>
+
+namespace hedgerow {
+
+/// Where a ray meets a surface.
+template <std::floating_point T>
+struct SurfacePoint {
+    Vec<T, 3> normal;  ///< of length 1, on the side that the ray comes from
+    Vec<T, 3> origin;  ///< of rays that leave on that side (geometry/offset.h)
+};
+
+/// The surfaces of a set, or of an index's primitives, behind one type. Const use is thread-safe.
+template <std::floating_point T>
+class Surfaces {
+public:
+    virtual ~Surfaces() = default;
+    /// The box of all surfaces, in O(n).
+    virtual Box<T, 3> bounds() const = 0;
+    /// The surface at a hit of a ray. O(1).
+    virtual SurfacePoint<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const = 0;
+};
+
+/// Surfaces of a set of primitives, or of instances. Borrows a set, keeps a view.
+template <class P>
+class SurfacesOf final : public Surfaces<typename P::Scalar> {
+public:
+    using T = typename P::Scalar;
+
+    explicit SurfacesOf(const P& primitives) : primitives_(view_of(primitives)) {}
+    Box<T, 3> bounds() const override {
+        Box<T, 3> box;
+        for (std::size_t i = 0; i < primitives_.size(); ++i) box.expand(primitives_.bounds(i));
+        return box;
+    }
+    SurfacePoint<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const override {
+        const Vec<T, 3> n = hedgerow::normal(primitives_, ray, hit);
+        const Vec<T, 3> normal = dot(n, ray.direction) > 0 ? -n : n;
+        return {normal, offset_origin(ray, hit.t, box_of(hit), normal, normal)};
+    }
+
+private:
+    Box<T, 3> box_of(const Hit<T>& hit) const {
+        if constexpr (Instanced<ViewOf<P>>)
+            return primitives_.bounds(hit.instance);
+        else
+            return primitives_.bounds(hit.element);
+    }
+
+    ViewOf<P> primitives_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,61 @@
+/// What finds the closest hit of each sample of a picture, and what that costs.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include <hedgerow/parallel/executor.h>
+#include <hedgerow/queries/hit.h>
+#include <hedgerow/render/visibility/samples.h>
+#include <hedgerow/walks/kernel.h>
+#include <hedgerow/walks/visits.h>
+
+namespace hedgerow {
+
+/// What drawing took. Kernels (raster_kernels.h), which draw tiles of floats, count triangles alone.
+struct RasterCounts {
+    std::uint64_t triangles = 0;  ///< drawn
+    std::uint64_t outside = 0;    ///< of these, how many have a box without samples
+    std::uint64_t tests = 0;      ///< of a triangle at a sample
+    std::uint64_t hidden = 0;     ///< times that a triangle is behind all hits of a tile, and passed over
+
+    RasterCounts& operator+=(const RasterCounts& more) {
+        triangles += more.triangles, outside += more.outside, tests += more.tests, hidden += more.hidden;
+        return *this;
+    }
+};
+
+/// What making a picture took.
+struct PictureCosts {
+    std::uint64_t rays = 0;  ///< cast, those to the light included
+    Visits visits;           ///< 0 unless counted
+    KernelUse use;           ///< which algorithms answered; no kernel if visits are counted
+    RasterCounts drawn;      ///< what rasterising took
+
+    PictureCosts& operator+=(const PictureCosts& more) {
+        rays += more.rays, visits += more.visits, use += more.use, drawn += more.drawn;
+        return *this;
+    }
+};
+
+/// One of the ways to find what is visible. All give a sample the same hit, bit for bit: the closest hit of
+/// its ray.
+template <std::floating_point T>
+class Visibility {
+public:
+    virtual ~Visibility() = default;
+
+    /// Whether samples of the whole picture are found at once, by `prepare`, which is then called before
+    /// `look`, once for each set of samples. Else each call of `look` finds its own.
+    virtual bool finds_whole_pictures() const { return false; }
+    virtual void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) {
+        static_cast<void>(samples), static_cast<void>(executor), static_cast<void>(costs);
+    }
+    /// Writes the hits of a box of pixels, by rows: those of the samples' rays. With `visits`, adds what was
+    /// visited to one count a sample. Threads may look at once.
+    virtual void look(const PixelBox& box, std::span<const Ray<T, 3>> rays, std::span<Hit<T>> hits,
+                      std::span<Visits> visits, PictureCosts& costs) const = 0;
+};
+
+}  // namespace hedgerow

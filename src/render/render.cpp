@@ -1,0 +1,222 @@
+#include <hedgerow/render/render.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include <hedgerow/base/error.h>
+
+namespace hedgerow {
+
+namespace {
+
+/// Size of a tile: large enough for the kernels, small enough to be cancelled soon.
+constexpr int band_rows = 8, tile_columns = 64;
+template <class V>
+using OfTile = std::array<V, static_cast<std::size_t>(band_rows) * tile_columns>;
+
+template <class T>
+void check(const PictureParts<T>& parts, const RenderOptions& o) {
+    check_camera(o.camera);
+    if (o.width < 1 || o.height < 1) throw InputError("a picture needs at least one pixel");
+    if (o.samples < 1) throw InputError("a picture needs at least one sample a pixel");
+    if (parts.visibility.finds_whole_pictures() && counted(o.shading))
+        throw InputError("this shading shows what rays cost, and a rasteriser casts none");
+    if (parts.tracer == nullptr && (o.shading == Shading::diffuse || o.shading == Shading::time))
+        throw InputError("this shading casts rays: give a tracer, or shade by normals or depth");
+}
+
+template <class T>
+class Rendering {
+public:
+    Rendering(const PictureParts<T>& parts, const RenderOptions& o)
+        : parts_(parts),
+          o_(o),
+          whole_(parts.visibility.finds_whole_pictures()),
+          shading_(o.camera, diagonal(parts.surfaces, o.shading)),
+          film_(o.width, o.height, o.layers) {}
+
+    Picture run(Executor& executor, const Progress& progress) {
+        // Samples of whole pictures are found one after the other, those of tiles all at once.
+        const int at_once = whole_ ? 1 : o_.samples, bands = (o_.height + band_rows - 1) / band_rows;
+        const auto all_rows =
+            static_cast<std::uint64_t>(o_.height) * static_cast<std::uint64_t>(o_.samples / at_once);
+        std::atomic<std::uint64_t> rows{0};
+        for (int first = 0; first < o_.samples && !progress.cancelled(); first += at_once) {
+            if (whole_) parts_.visibility.prepare(samples(first), executor, costs_);
+            const auto band_range = [&](std::size_t begin, std::size_t end) {
+                for (std::size_t k = begin; k < end && !progress.cancelled(); ++k) {
+                    const int top = static_cast<int>(k) * band_rows;
+                    const int height = std::min(band_rows, o_.height - top);
+                    if (!band(top, height, first, first + at_once, progress)) return;
+                    progress(rows += static_cast<std::uint64_t>(height), all_rows);
+                }
+            };
+            executor.for_each_piece(static_cast<std::size_t>(bands), 1, band_range);
+        }
+        const bool finished = film_.has(averages_counts() ? 1 : o_.samples);
+        Picture picture =
+            counted(o_.shading) ? std::move(film_).develop_heat(o_.scale) : std::move(film_).develop();
+        picture.costs = costs_, picture.whole = finished;
+        return picture;
+    }
+
+private:
+    /// Rays from the eye, one for each pixel of a tile, with their hits and the surfaces there.
+    struct Looks {
+        OfTile<Ray<T, 3>> rays;
+        OfTile<Hit<T>> hits;
+        OfTile<SurfacePoint<T>> surfaces;
+        OfTile<std::size_t> pixels;
+        std::size_t size;
+    };
+
+    static float diagonal(const Surfaces<T>& surfaces, Shading shading) {
+        const Box<T, 3> box = shading == Shading::depth ? surfaces.bounds() : Box<T, 3>();
+        return box.empty() ? 0 : static_cast<float>(length(box.extent()));
+    }
+    PictureSamples<T> samples(int sample) const {
+        return {o_.camera, o_.width, o_.height, o_.seed, sample, o_.samples};
+    }
+
+    /// Adds samples to a band of rows, tile by tile. Returns false if that was cancelled; then the rows are
+    /// as they were, or cleared.
+    bool band(int top, int height, int first, int last, const Progress& progress) {
+        PictureCosts costs;
+        for (int left = 0; left < o_.width; left += tile_columns) {
+            const PixelBox tile{left, top, std::min(left + tile_columns, o_.width) - 1, top + height - 1};
+            if (add(tile, first, last, costs, progress)) continue;
+            film_.clear_rows(top, height);
+            film_.finish_rows(top, height, 0);
+            return false;
+        }
+        film_.finish_rows(top, height, averages_counts() ? 1 : last);
+        const std::lock_guard lock(mutex_);
+        costs_ += costs;
+        return true;
+    }
+    /// Whether a pixel's value is the mean of its counts, not a sum of light.
+    bool averages_counts() const { return counts_visits(o_.shading); }
+
+    /// Adds samples to the pixels of a tile. Returns false if that was cancelled.
+    bool add(const PixelBox& tile, int first, int last, PictureCosts& costs, const Progress& progress) {
+        OfTile<Visits> visits{};
+        Looks looks;
+        looks.size = 0;
+        for (int y = tile.top; y <= tile.bottom; ++y)
+            for (int x = tile.left; x <= tile.right; ++x) looks.pixels[looks.size++] = film_.pixel(x, y);
+        for (int sample = first; sample < last; ++sample) {
+            if (!whole_ && progress.cancelled()) return false;  // else each pixel has the samples before
+            look(tile, sample, looks, visits, costs);
+            shade(looks, sample, costs);
+        }
+        for (std::size_t i = 0; i < looks.size; ++i) costs.visits += visits[i];
+        // Store the means of the counts.
+        for (std::size_t i = 0; i < looks.size && o_.counted(); ++i) {
+            const Visits& v = visits[i];
+            const auto mean = [&](std::uint64_t all) {
+                return static_cast<float>(double(all) / (last - first));
+            };
+            Vec3f& value = film_.light(looks.pixels[i]);
+            if (o_.shading == Shading::steps) value = Vec3f::all(mean(v.nodes + v.leaves + v.primitives));
+            if (o_.shading == Shading::tests) value = Vec3f::all(mean(v.primitives));
+            if (!o_.layers) continue;
+            Seen& seen = film_.seen(looks.pixels[i]);
+            seen.nodes = mean(v.nodes), seen.leaves = mean(v.leaves), seen.primitives = mean(v.primitives);
+        }
+        return true;
+    }
+    /// Finds the hits of a sample of each of a tile's pixels, in one batch.
+    void look(const PixelBox& tile, int sample, Looks& looks, OfTile<Visits>& visits, PictureCosts& costs) {
+        const PictureSamples<T> rays = samples(sample);
+        std::size_t i = 0;
+        for (int y = tile.top; y <= tile.bottom; ++y)
+            for (int x = tile.left; x <= tile.right; ++x) looks.rays[i++] = rays.ray(x, y);
+        parts_.visibility.look(tile, std::span(looks.rays).first(looks.size),
+                               std::span(looks.hits).first(looks.size),
+                               std::span(visits).first(o_.counted() ? looks.size : 0), costs);
+    }
+    /// Adds the light of a tile's hits to the film, and stores the layers of the first sample.
+    void shade(Looks& looks, int sample, PictureCosts& costs) {
+        for (std::size_t i = 0; i < looks.size; ++i) {
+            const Hit<T>& hit = looks.hits[i];
+            if (hit) looks.surfaces[i] = parts_.surfaces.at(looks.rays[i], hit);
+            const Vec3f normal(looks.surfaces[i].normal);
+            Vec3f& light = film_.light(looks.pixels[i]);
+            light = light + colour(looks.rays[i], hit, normal);
+            if (!o_.layers || sample > 0 || !hit) continue;
+            Seen& seen = film_.seen(looks.pixels[i]);
+            seen.depth = static_cast<float>(hit.t);  // directions have length 1
+            seen.normal = normal;
+            seen.id = hit.primitive;
+        }
+        if (o_.shading == Shading::diffuse) add_direct_light(looks, costs);
+    }
+    /// The value of a sample without its counts and without the direct light.
+    Vec3f colour(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& normal) const {
+        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(ray));
+        if (!hit) return shading_.background();
+        if (o_.shading == Shading::depth) return shading_.depth(static_cast<float>(hit.t));
+        if (o_.shading == Shading::normals) return shading_.normal(normal);
+        return shading_.sky(normal);
+    }
+    float nanoseconds(const Ray<T, 3>& ray) const {
+        using Clock = std::chrono::steady_clock;
+        auto least = Clock::duration::max();
+        for (int k = 0; k < 3; ++k) {
+            Hit<T> hit;
+            const auto start = Clock::now();
+            parts_.tracer->closest_hits(RayArray<T, 3>(&ray, 1), {&hit, 1});
+            least = std::min(least, Clock::now() - start);
+        }
+        return std::chrono::duration<float, std::nano>(least).count();
+    }
+    /// Adds direct light to the hits that face the light and are not in shadow.
+    void add_direct_light(const Looks& looks, PictureCosts& costs) {
+        OfTile<Ray<T, 3>> shadows;
+        OfTile<std::size_t> pixels;
+        OfTile<float> facing;
+        OfTile<bool> blocked;
+        OfTile<Visits> visits{};
+        // Make a shadow ray for each hit that faces the light.
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < looks.size; ++i) {
+            if (!looks.hits[i]) continue;
+            facing[n] = dot(Vec3f(looks.surfaces[i].normal), shading_.to_light());
+            if (!(facing[n] > 0)) continue;
+            shadows[n] = {looks.surfaces[i].origin, Vec<T, 3>(shading_.to_light())};
+            pixels[n++] = looks.pixels[i];
+        }
+        // Cast the shadow rays in one batch.
+        costs.rays += n;
+        costs.use += parts_.tracer->any_hits(std::span(shadows).first(n), std::span(blocked).first(n),
+                                             std::span(visits).first(o_.counted() ? n : 0));
+        for (std::size_t i = 0; i < n; ++i) {
+            Vec3f& light = film_.light(pixels[i]);
+            if (!blocked[i]) light = light + shading_.direct(facing[i]);
+            costs.visits += visits[i];
+        }
+    }
+
+    const PictureParts<T> parts_;
+    const RenderOptions& o_;
+    const bool whole_;  // samples of the whole picture are found at once
+    const PlainShading shading_;
+    Film film_;
+    std::mutex mutex_;
+    PictureCosts costs_;
+};
+
+}  // namespace
+
+template <std::floating_point T>
+Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
+               const Progress& progress) {
+    check(parts, options);
+    return Rendering<T>(parts, options).run(executor, progress);
+}
+template Picture render(const PictureParts<float>&, const RenderOptions&, Executor&, const Progress&);
+template Picture render(const PictureParts<double>&, const RenderOptions&, Executor&, const Progress&);
+
+}  // namespace hedgerow

@@ -1,0 +1,196 @@
+/// Pictures: their parts fit together in every combination, and the parts' pictures have the same bits.
+#include <gtest/gtest.h>
+
+#include <hedgerow/any_index.h>
+#include <hedgerow/instances/instance_set.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/render.h>
+#include <hedgerow/render/visibility/rasterise.h>
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/sets.h>
+#include <hedgerow/structures/bvh/bvh.h>
+
+using namespace hedgerow;
+
+namespace {
+
+template <class T>
+class Rendered : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Rendered, Scalars);
+
+template <class I>
+RenderOptions options_for(const I& index) {
+    RenderOptions options;
+    options.width = 75, options.height = 41;
+    options.camera = automatic_camera({Vec3f(index.bounds().low), Vec3f(index.bounds().high)});
+    return options;
+}
+void expect_same(const Picture& want, const Picture& is) {
+    EXPECT_EQ(want.image, is.image);
+    EXPECT_EQ(want.light, is.light);
+    ASSERT_EQ(want.seen.size(), is.seen.size());
+    for (std::size_t i = 0; i < want.seen.size(); ++i) {
+        ASSERT_EQ(want.seen[i].depth, is.seen[i].depth);
+        ASSERT_EQ(want.seen[i].normal, is.seen[i].normal);
+        ASSERT_EQ(want.seen[i].id, is.seen[i].id);
+    }
+}
+
+TYPED_TEST(Rendered, RaysAndTrianglesMakeTheSamePicture) {
+    using T = TypeParam;
+    const auto mesh = teapot_in_stadium<T>(2000);
+    const auto index = build<WideBvh>(mesh);
+    const IndexTracer tracer(index);
+    const SurfacesOf surfaces(mesh);
+    for (const auto shading : {Shading::normals, Shading::depth, Shading::diffuse})
+        for (const int samples : {1, 3})
+            for (const auto coverage : {Coverage::box, Coverage::tiles}) {
+                SCOPED_TRACE(shading_names[static_cast<std::size_t>(shading)]);
+                RenderOptions options = options_for(index);
+                options.camera = *camera_for("teapot-in-stadium");
+                options.samples = samples, options.seed = 7, options.shading = shading;
+                options.layers = true;
+                const Picture cast = render(index, mesh, options, default_executor());
+                Rasterising<T> rasterising(mesh.view(), coverage);
+                const Picture drawn = render(
+                    PictureParts<T>{rasterising, surfaces, shading == Shading::diffuse ? &tracer : nullptr},
+                    options, default_executor());
+                expect_same(cast, drawn);
+                EXPECT_EQ(drawn.costs.drawn.triangles, mesh.size() * static_cast<std::size_t>(samples));
+                EXPECT_EQ(cast.costs.drawn.triangles, 0u);
+                EXPECT_LT(drawn.costs.rays, cast.costs.rays);
+                EXPECT_TRUE(cast.whole && drawn.whole);
+            }
+}
+
+TYPED_TEST(Rendered, AnyIndexAndInstancesAreTracersToo) {
+    using T = TypeParam;
+    const auto mesh = teapot<T>(800);
+    const auto index = build<WideBvh>(mesh);
+    RenderOptions options = options_for(index);
+    options.layers = true;
+    const Picture want = render(index, mesh, options, default_executor());
+    expect_same(want, render(*build_any("kdtree", mesh), mesh, options, default_executor()));
+    // One instance that stays where it is shows the same hits.
+    const InstanceSet set{Instance(index)};
+    const auto placed = build<Bvh>(set);
+    const Picture instance = render(placed, set, options, default_executor());
+    ASSERT_EQ(want.seen.size(), instance.seen.size());
+    for (std::size_t i = 0; i < want.seen.size(); ++i) {
+        ASSERT_EQ(want.seen[i].id, instance.seen[i].id);
+        ASSERT_EQ(want.seen[i].depth, instance.seen[i].depth);
+    }
+    EXPECT_EQ(want.image.pixels.size(), instance.image.pixels.size());
+}
+
+TYPED_TEST(Rendered, TracersTakeFiltersAndCount) {
+    using T = TypeParam;
+    const auto mesh = soup<T>(300);
+    const auto index = build<WideBvh>(mesh);
+    const auto any = build_any("bvh", mesh);
+    const IndexTracer of_index(index);
+    const IndexTracer of_any(*any);
+    const auto options = options_for(index);
+    const auto rays = PictureSamples<T>(options.camera, 40, 30).rays();
+    const auto odd = [](std::size_t ray, const Hit<T>& hit) { return hit.element % 2 == ray % 2; };
+    std::vector<Hit<T>> want(rays.size()), found(rays.size());
+    const auto blocked = std::make_unique<bool[]>(rays.size());
+    closest_hits(index, rays, std::span(want), odd);
+    std::size_t hits = 0;
+    for (const auto& hit : want) hits += bool(hit);
+    EXPECT_GT(hits, rays.size() / 20);
+    for (const Tracer<T>* const tracer :
+         {static_cast<const Tracer<T>*>(&of_index), static_cast<const Tracer<T>*>(&of_any)}) {
+        EXPECT_EQ(tracer->bounds(), index.bounds());
+        tracer->closest_hits(rays, found, {}, odd);
+        EXPECT_EQ(found, want);
+        tracer->any_hits(rays, {blocked.get(), rays.size()}, {}, odd);
+        for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(blocked[i], bool(want[i])) << i;
+        std::vector<Visits> visits(rays.size());
+        tracer->closest_hits(rays, found, visits, odd);
+        EXPECT_EQ(found, want);
+        std::uint64_t nodes = 0;
+        for (const auto& v : visits) nodes += v.nodes;
+        EXPECT_GT(nodes, rays.size());
+        tracer->closest_hits(rays, found, visits);
+        for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(found[i], closest_hit(index, rays[i])) << i;
+        tracer->closest_hits(rays, found);
+        for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(found[i], closest_hit(index, rays[i])) << i;
+    }
+}
+
+TYPED_TEST(Rendered, EveryCameraSeesByRays) {
+    using T = TypeParam;
+    const auto mesh = cornell_box<T>(0);
+    const auto index = build<WideBvh>(mesh);
+    RenderOptions options = options_for(index);
+    options.shading = Shading::normals, options.samples = 2;
+    options.camera = *camera_for("cornell-box");
+    const auto seen = [&](auto change) {
+        RenderOptions changed = options;
+        change(changed.camera);
+        const Picture picture = render(index, mesh, changed, default_executor());
+        std::size_t shown = 0;
+        for (const auto& pixel : picture.image.pixels) shown += pixel != picture.image.at(0, 0);
+        EXPECT_GT(shown, picture.image.pixels.size() / 8);
+        return picture.image;
+    };
+    const Image pinhole = seen([](Camera&) {});
+    EXPECT_NE(pinhole, seen([](Camera& c) { c.projection = Projection::orthographic; }));
+    EXPECT_NE(pinhole, seen([](Camera& c) {
+                  c.projection = Projection::panorama, c.eye = {278, 273, 280}, c.target = {278, 273, 400};
+              }));
+    EXPECT_NE(pinhole, seen([](Camera& c) { c.lens_radius = 60; }));
+}
+
+TYPED_TEST(Rendered, PartsThatDoNotFitAreRefused) {
+    using T = TypeParam;
+    const auto mesh = cornell_box<T>(0);
+    const auto index = build<WideBvh>(mesh);
+    const RenderOptions sound = options_for(index);
+    const SurfacesOf surfaces(mesh);
+    const IndexTracer tracer(index);
+    Rasterising<T> rasterising(mesh.view());
+    const auto refused = [&](const Tracer<T>* asked, auto change) {
+        RenderOptions options = sound;
+        change(options);
+        EXPECT_THROW(render(PictureParts<T>{rasterising, surfaces, asked}, options, serial_executor()),
+                     InputError);
+    };
+    refused(nullptr, [](RenderOptions& o) { o.shading = Shading::diffuse; });
+    refused(&tracer, [](RenderOptions& o) { o.shading = Shading::steps; });
+    refused(&tracer, [](RenderOptions& o) { o.shading = Shading::time; });
+    refused(&tracer, [](RenderOptions& o) { o.width = 0; });
+    refused(&tracer, [](RenderOptions& o) { o.samples = 0; });
+    refused(&tracer, [](RenderOptions& o) { o.camera.field_of_view = 0; });
+    refused(&tracer, [](RenderOptions& o) { o.camera.projection = Projection::panorama; });
+    refused(&tracer, [](RenderOptions& o) { o.camera.lens_radius = 1; });
+}
+
+TYPED_TEST(Rendered, AnInterruptedRasterKeepsItsFinishedSamples) {
+    using T = TypeParam;
+    const auto mesh = teapot<T>(500);
+    const auto index = build<WideBvh>(mesh);
+    RenderOptions options = options_for(index);
+    options.shading = Shading::normals, options.samples = 4;
+    const SurfacesOf surfaces(mesh);
+    Rasterising<T> rasterising(mesh.view());
+    std::atomic<bool> cancelled = false;
+    std::uint64_t total = 0;
+    const Progress progress{[&](std::uint64_t done, std::uint64_t all) {
+                                total = all;
+                                cancelled = done >= 41 + 10;
+                            },
+                            &cancelled};
+    const Picture picture =
+        render(PictureParts<T>{rasterising, surfaces}, options, serial_executor(), progress);
+    EXPECT_EQ(total, 4u * 41);
+    EXPECT_FALSE(picture.whole);
+    EXPECT_EQ(picture.pixels, picture.image.pixels.size()) << "each has one or two samples";
+    // The last rows have only the first sample.
+    options.samples = 4;
+    for (int x = 0; x < options.width; ++x) EXPECT_NE(picture.image.at(x, 40), Image::Pixel{}) << x;
+}
+
+}  // namespace
