@@ -55,7 +55,7 @@ void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& s
     }
 }
 template <class T>
-Camera seen_from(const TriangleMesh<T>& mesh, std::uint64_t number, bool inside) {
+Camera seen_from(const TriangleMesh<T>& mesh, std::uint64_t number, bool inside, bool parallel = false) {
     Box<T, 3> box;
     for (const auto& v : mesh.vertices) box.expand(v);
     Random random(77, number);
@@ -72,6 +72,7 @@ Camera seen_from(const TriangleMesh<T>& mesh, std::uint64_t number, bool inside)
     if (inside) camera.target = camera.eye + in_cube();
     camera.up = number % 3 == 0 ? in_cube() : Vec3f(0, 0, 1);
     camera.field_of_view = number % 4 == 0 ? 110 : number % 4 == 1 ? 0.5f : 45;
+    if (parallel) camera.projection = Projection::orthographic;
     return camera;
 }
 
@@ -79,12 +80,15 @@ TYPED_TEST(RasterisedHits, OfGeneratedMeshesFromAllSides) {
     using T = TypeParam;
     const std::size_t views = matrix::in_long_runs(200, 6);
     for (std::uint64_t i = 0; i < views; ++i)
-        for (const bool inside : {false, true}) {
-            SCOPED_TRACE(std::to_string(i) + (inside ? " inside" : " outside"));
+        for (const int way : {0, 1, 2, 3}) {
+            const bool inside = way % 2 == 1, parallel = way >= 2;
+            SCOPED_TRACE(std::to_string(i) + (inside ? " inside" : " outside") +
+                         (parallel ? ", parallel rays" : ""));
             const auto expect = [&](const char* name, const TriangleMesh<T>& mesh) {
                 SCOPED_TRACE(name);
-                expect_hits_of_rays(mesh, PictureSamples<T>(seen_from(mesh, i, inside), 61, 43), i == 0);
-                expect_hits_of_rays(mesh, PictureSamples<T>(seen_from(mesh, i, inside), 50, 70, 5, 1, 4));
+                const Camera camera = seen_from(mesh, i, inside, parallel);
+                expect_hits_of_rays(mesh, PictureSamples<T>(camera, 61, 43), i == 0);
+                expect_hits_of_rays(mesh, PictureSamples<T>(camera, 50, 70, 5, 1, 4));
             };
             expect("soup", soup<T>(400));
             expect("terrain", terrain<T>(1500));
@@ -110,6 +114,10 @@ TYPED_TEST(RasterisedHits, OfTrianglesWithCornersOnRays) {
             camera.target[k] = camera.eye[k] + static_cast<float>(number(-1, 1));
         }
         camera.field_of_view = static_cast<float>(scene % 4 == 0 ? 0.2 : number(20, 140));
+        if (scene % 5 < 2) {
+            camera.projection = Projection::orthographic;
+            camera.height = static_cast<float>(std::exp2(number(-8, 8)));
+        }
         const PictureSamples<T> samples(camera, 24, 17, scene, 0, scene % 2 == 0 ? 1 : 4);
         const auto on_a_ray = [&](bool behind) {
             const auto ray =

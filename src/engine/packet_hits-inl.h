@@ -47,7 +47,7 @@ struct PacketHits : PacketRays {
         constexpr std::uint64_t every = (std::uint64_t(1) << lanes) - 1;
         int pairs = 0;
         bool found = false;
-        for (unsigned left = seen_of(block, corner); left != 0; left &= left - 1) {
+        for (unsigned left = seen_of<false>(block, corner); left != 0; left &= left - 1) {
             const int i = std::countr_zero(left);
             for (std::uint64_t rays = active[i]; rays != 0;) {
                 const int at = std::countr_zero(rays) / lanes * lanes;
@@ -220,7 +220,7 @@ private:
     HWY_INLINE bool test_triangles(const WideScene& scene, const TriangleBlock<float>& block,
                                    std::uint64_t active) {
         alignas(64) float corner[3][3][8];  // by the rays' axes; relative to the origin if they share it
-        const unsigned triangles = seen_of(block, corner);
+        const unsigned triangles = seen_of<true>(block, corner);
         // Filter: all rays against each triangle that some ray may meet.
         std::uint64_t candidates[8];
         for (unsigned left = triangles; left != 0; left &= left - 1) {
@@ -248,7 +248,9 @@ private:
         }
         return found;
     }
-    /// Writes the corners by the rays' axes. Returns which triangles some ray may meet, a bit each.
+    /// Writes the corners by the rays' axes. Returns which triangles some ray may meet, a bit each. Rays of
+    /// several origins are held against the triangles' boxes, unless the slabs are not prepared.
+    template <bool has_slabs>
     HWY_INLINE unsigned seen_of(const TriangleBlock<float>& block, float (&corner)[3][3][8]) const {
         unsigned seen = 0;
         for (int at = 0; at < 8; at += static_cast<int>(hn::MaxLanes(e))) {
@@ -259,8 +261,12 @@ private:
                     if (common_origin) c[k][i] = hn::Sub(c[k][i], hn::Set(e, origin[k][0]));
                     hn::Store(c[k][i], e, corner[k][i] + at);
                 }
-            const auto filled = hn::Eq(c[0][0], c[0][0]);  // not NaN
-            seen |= bits_of(e, hn::And(filled, common_origin ? around_origin(c) : entered(c))) << at;
+            auto some = hn::Eq(c[0][0], c[0][0]);  // filled: not NaN
+            if (common_origin)
+                some = hn::And(some, around_origin(c));
+            else if constexpr (has_slabs)
+                some = hn::And(some, entered(c));
+            seen |= bits_of(e, some) << at;
         }
         return seen;
     }

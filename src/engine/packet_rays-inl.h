@@ -89,14 +89,15 @@ struct PacketRays {
         }
         take_intervals();
     }
-    /// Prepares the rays that go this way, all from one origin, for triangles alone.
-    HWY_INLINE void prepare_from_eye(std::uint32_t way) {
+    /// Prepares the rays that go this way for triangles alone (`test_each`). `from_one_origin` says whether
+    /// they all start there.
+    HWY_INLINE void prepare_for_triangles(std::uint32_t way, bool from_one_origin) {
         const int leader = take_way(way);
         for (int p = 0; p < parts; ++p) {
             const Given given(*this, way, leader, p);
             prepare_tests(given, p);
         }
-        common_origin = true;
+        common_origin = from_one_origin;
         take_shears();
         take_last();
     }

@@ -57,14 +57,16 @@ public:
             farthest2 = hn::Max(farthest2, length2(from_eye));
             const V forward = along(from_eye, frame_.forward);
             nearest = hn::Min(nearest, forward);
-            const V pixels = hn::Div(hn::Set(d, frame_.pixels), forward);
+            const V pixels = by_forward(hn::Set(d, frame_.pixels), forward);
             corners.x[c] = hn::MulAdd(along(from_eye, frame_.right), pixels, hn::Set(d, frame_.middle[0]));
             corners.y[c] = hn::NegMulAdd(along(from_eye, frame_.up), pixels, hn::Set(d, frame_.middle[1]));
         }
         const V farthest = hn::Sqrt(farthest2);
-        const auto before = hn::Gt(nearest, hn::Mul(farthest, hn::Set(d, PixelBounds::cut_share)));
-        const double share = 2 * PixelBounds::error_share * frame_.reach * frame_.pixels;
-        const V room = hn::Div(hn::Mul(farthest, hn::Set(d, share)), nearest);
+        const auto before =
+            hn::Gt(nearest, frame_.parallel ? hn::Set(d, -std::numeric_limits<double>::infinity())
+                                            : hn::Mul(farthest, hn::Set(d, PixelBounds::cut_share)));
+        const V error = hn::MulAdd(farthest, hn::Set(d, PixelBounds::error_share), hn::Set(d, frame_.error));
+        const V room = by_forward(hn::Mul(error, hn::Set(d, 2 * frame_.reach * frame_.pixels)), nearest);
         const V left = first_at(hn::Sub(least(corners.x), room), frame_.width),
                 top = first_at(hn::Sub(least(corners.y), room), frame_.height),
                 bottom = last_at(hn::Add(greatest(corners.y), room), frame_.height);
@@ -78,8 +80,8 @@ public:
         alignas(64) PixelBox boxes[lanes];
         hn::StoreInterleaved4(side(left), side(top), side(right), side(bottom), I(), &boxes[0].left);
         alignas(64) float nearest_points[lanes];
-        const V error = hn::Mul(farthest, hn::Set(d, 4 * PixelBounds::error_share));
-        hn::Store(hn::DemoteTo(hn::Rebind<float, D>(), hn::Max(hn::Sub(nearest, error), hn::Zero(d))),
+        const V least_forward = hn::NegMulAdd(error, hn::Set(d, 4), nearest);
+        hn::Store(hn::DemoteTo(hn::Rebind<float, D>(), hn::Max(least_forward, hn::Zero(d))),
                   hn::Rebind<float, D>(), nearest_points);
         for (std::size_t i = 0; i < lanes; ++i) sights[i] = {boxes[i], nearest_points[i]};
     }
@@ -128,6 +130,7 @@ private:
         const auto told = hn::And(few, hn::Gt(hn::Abs(area), hn::Mul(rounding, largest)));
         return hn::AndNot(covered, told);
     }
+    HWY_INLINE V by_forward(V x, V forward) const { return frame_.parallel ? x : hn::Div(x, forward); }
     static HWY_INLINE V least(const V (&v)[3]) { return hn::Min(v[0], hn::Min(v[1], v[2])); }
     static HWY_INLINE V greatest(const V (&v)[3]) { return hn::Max(v[0], hn::Max(v[1], v[2])); }
 

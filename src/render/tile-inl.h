@@ -63,22 +63,24 @@ private:
         const auto scale = hn::Set(f, plane.scale);
         const auto right = hn::Mul(hn::Sub(x, hn::Set(f, plane.middle_x)), scale);
         const auto up = hn::Mul(hn::Sub(hn::Set(f, plane.middle_y), y), scale);
-        Coordinates<PacketRays::F> d = all_lanes(f, plane.forward);
+        Coordinates<PacketRays::F> d = all_lanes(f, plane.parallel ? plane.eye : plane.forward);
         d = plus(plus(d, times(all_lanes(f, plane.right), right)), times(all_lanes(f, plane.up), up));
+        const hn::Vec<PacketRays::F> places[3] = {d.x, d.y, d.z};
         const auto length = hn::Sqrt(product(d, d));
         const auto is = hn::Gt(length, hn::Zero(f));
-        const hn::Vec<PacketRays::F> directions[3] = {d.x, d.y, d.z};
         for (int k = 0; k < 3; ++k) {
-            hn::Store(hn::Set(f, plane.eye[k]), f, rays_.numbers[p][k]);
-            hn::Store(hn::IfThenElse(is, hn::Div(directions[k], length), directions[k]), f,
-                      rays_.numbers[p][3 + k]);
+            const auto origin = plane.parallel ? places[k] : hn::Set(f, plane.eye[k]);
+            const auto direction = plane.parallel ? hn::Set(f, plane.forward[k])
+                                                  : hn::IfThenElse(is, hn::Div(places[k], length), places[k]);
+            hn::Store(origin, f, rays_.numbers[p][k]);
+            hn::Store(direction, f, rays_.numbers[p][3 + k]);
         }
         hn::Store(hn::Zero(f), f, rays_.numbers[p][6]);
         hn::Store(hn::Set(f, std::numeric_limits<float>::infinity()), f, rays_.numbers[p][7]);
     }
     /// Draws for the rays that go this way.
     HWY_INLINE void draw(std::uint32_t way) {
-        rays_.prepare_from_eye(way);
+        rays_.prepare_for_triangles(way, !tile_.plane.parallel);
         rays_.clear_hits();
         if (tile_.onto)
             for_each_hit(

@@ -28,6 +28,10 @@ struct Sight {
 /// its place is within room = 2·e/f·(1 + |place|) of the sample's. Only samples in the picture count, so the
 /// box around the places of the corners, and room for the least f on all sides, holds them.
 ///
+/// Of parallel rays, a corner is at the place (a, b), and their origins, which are rounded too, lie on the
+/// picture's plane: e = 64u·(M + W), where W is how far the picture reaches from 0 and from the eye; room =
+/// 2·e.
+///
 /// A triangle with all corners behind the eye, or all beyond one side of the picture, covers nothing. Of one
 /// that comes near the eye's plane, what lies before f = M/1024 is cut off. That is seen only where the
 /// triangle passes the eye as closely; such a triangle may cover everything.
@@ -47,8 +51,10 @@ public:
                                                         ///< 1 is from it, and where samples are within theirs
         Vec3d eye, forward, right, up;                  ///< the axes dual to the camera's
         Box<double, 2> sides;                           ///< the places of the picture's sides
-        double reach;                                   ///< at least 1 + |place| in the picture
-        bool sound;                                     ///< whether the camera has axes
+        double reach;   ///< at least 1 + |place| in the picture; of parallel rays 1
+        double error;   ///< of corners, beside the share of their distance: of parallel rays
+        bool parallel;  ///< whether rays are parallel: forward distances make nothing smaller
+        bool sound;     ///< whether the camera has axes
     };
     const Frame& frame() const { return f_; }
     static constexpr double error_share = 64 * static_cast<double>(unit_roundoff<float>), cut_share = 0x1p-10;
@@ -63,7 +69,7 @@ public:
         Box<double, 2> places;
         double nearest = std::numeric_limits<double>::infinity();
         const auto add = [&](const Seen& p) {
-            places.expand(Vec2d(p.right / p.forward, p.up / p.forward));
+            places.expand(Vec2d(p.right / divisor(p), p.up / divisor(p)));
             nearest = std::min(nearest, p.forward);
         };
         bool is_cut = false;
@@ -96,7 +102,7 @@ public:
         for (int i = 0; i < 3; ++i) {
             const Seen& p = corners.seen[i];
             if (!(p.forward > corners.cut)) return std::nullopt;
-            const double by_forward = 1 / p.forward;
+            const double by_forward = 1 / divisor(p);
             to.corners[i] = Vec2d(plane_x(p.right * by_forward), plane_y(p.up * by_forward));
             nearest = std::min(nearest, p.forward);
         }
@@ -120,7 +126,10 @@ private:
         f_.sound = std::abs(volume) > 0.5;  // about 1, unless the camera looks along its up
         f_.forward = cross(r, u) / volume, f_.right = cross(u, f) / volume, f_.up = cross(f, r) / volume;
         f_.sides = {{-x * scale, (y - height) * scale}, {(width - x) * scale, y * scale}};
-        f_.reach = 1 + max_component(abs(f_.sides.low)) + max_component(abs(f_.sides.high));
+        const double places = max_component(abs(f_.sides.low)) + max_component(abs(f_.sides.high));
+        f_.parallel = plane.parallel;
+        f_.reach = plane.parallel ? 1 : 1 + places;
+        f_.error = plane.parallel ? error_share * (2 * places + max_component(abs(f_.eye))) : 0;
     }
 
     /// The corners of a triangle, the error of each, and how far before the eye's plane it is cut.
@@ -134,13 +143,16 @@ private:
                    bounds.seen(Vec3d(t.c) - bounds.f_.eye)} {
             const double farthest = std::sqrt(
                 std::max({length2(seen[0].from_eye), length2(seen[1].from_eye), length2(seen[2].from_eye)}));
-            error = error_share * farthest, cut = cut_share * farthest;
+            error = error_share * farthest + bounds.f_.error;
+            cut = bounds.f_.parallel ? -std::numeric_limits<double>::infinity() : cut_share * farthest;
         }
     };
 
     Seen seen(const Vec3d& p) const { return {p, dot(p, f_.forward), dot(p, f_.right), dot(p, f_.up)}; }
+    /// By which the coordinates of a point are divided in perspective.
+    double divisor(const Seen& p) const { return f_.parallel ? 1 : p.forward; }
     double room(const Corners& corners, double nearest) const {
-        return 2 * corners.error / nearest * f_.reach;
+        return 2 * corners.error / (f_.parallel ? 1 : nearest) * f_.reach;
     }
     /// Whether all corners are behind the eye, or beyond one side of the picture, by more than their errors.
     bool beyond_a_side(const Corners& corners) const {
@@ -148,10 +160,11 @@ private:
         bool behind = true, left = true, right = true, below = true, above = true;
         for (const Seen& p : corners.seen) {
             behind &= p.forward < -room;
-            left &= p.right < f_.sides.low[0] * p.forward - room;
-            right &= p.right > f_.sides.high[0] * p.forward + room;
-            below &= p.up < f_.sides.low[1] * p.forward - room;
-            above &= p.up > f_.sides.high[1] * p.forward + room;
+            const double by = divisor(p);
+            left &= p.right < f_.sides.low[0] * by - room;
+            right &= p.right > f_.sides.high[0] * by + room;
+            below &= p.up < f_.sides.low[1] * by - room;
+            above &= p.up > f_.sides.high[1] * by + room;
         }
         return behind || left || right || below || above;
     }

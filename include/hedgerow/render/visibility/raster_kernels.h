@@ -17,8 +17,8 @@ inline constexpr int tile_side = 8;
 /// A tile of a picture, and the triangles that may cover some of its samples.
 struct RasterTile {
     /// The rays of its samples, by rows of `tile_side`, all or none of them usable (RayProbe), from the eye
-    /// of the plane; places beyond the picture repeat others. Null: those through the middles of the pixels,
-    /// as RayMaker makes them.
+    /// of the plane or parallel; places beyond the picture repeat others. Null: those through the middles of
+    /// the pixels, as RayMaker makes them.
     const Ray<float, 3>* rays;
     const PicturePlane& plane;
     PixelBox pixels;  ///< in the picture

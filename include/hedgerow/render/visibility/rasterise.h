@@ -36,8 +36,7 @@ public:
           bounds_(samples),
           columns_((samples.width() + tile_side - 1) / tile_side),
           tiles_(columns_ * ((samples.height() + tile_side - 1) / tile_side)) {
-        if (!samples.has_plane() || plane_.parallel)
-            throw InputError("a panorama or a lens cannot be rasterised: cast rays");
+        if (!samples.has_plane()) throw InputError("a panorama or a lens cannot be rasterised: cast rays");
     }
 
     /// Draws triangles: the view has `triangle(i)`, `id(i)` and `size()`. `hits` has a place for each sample,
