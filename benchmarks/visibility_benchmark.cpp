@@ -41,9 +41,7 @@ double measure_scene(const std::string& name, int size) {
     Rasteriser<float> rasteriser(samples);
     std::vector<Hit<float>> cast(rays.size()), drawn(rays.size());
     Contest contest;
-    contest.add("raster", [&] {
-        return rasteriser.draw(mesh.view(), Coverage::tiles, drawn, serial_executor()).triangles;
-    });
+    contest.add("raster", [&] { return rasteriser.draw(mesh.view(), drawn, serial_executor()).triangles; });
     contest.add("cast", [&] {
         closest_hits(index, rays, std::span(cast), serial_executor());
         return rays.size();

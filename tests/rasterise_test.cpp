@@ -7,6 +7,7 @@
 #include <hedgerow/scenes/random.h>
 
 #include "matrix.h"
+#include "placements.h"
 #include "using.h"
 
 using namespace hedgerow;
@@ -45,7 +46,7 @@ void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& s
             SCOPED_TRACE(static_cast<int>(coverage));
             // What the buffer held does not matter.
             std::vector<Hit<T>> hits(samples.size(), Hit<T>{T(1e-30), T(2), T(3), 4, 5, 6, 7});
-            const RasterCounts counts = rasteriser.draw(mesh.view(), coverage, hits, default_executor());
+            const RasterCounts counts = rasteriser.draw(mesh.view(), hits, default_executor(), {coverage});
             expect_same(want, hits);
             EXPECT_EQ(counts.triangles, mesh.size());
             if (coverage == Coverage::all) {
@@ -136,6 +137,133 @@ TYPED_TEST(RasterisedHits, OfTrianglesWithCornersOnRays) {
     }
 }
 
+/// Compares the buffers of instances with the hits of rays on two levels.
+template <class I>
+void expect_hits_on_two_levels(const InstanceSet<I>& set, const PictureSamples<typename I::Scalar>& samples) {
+    using T = typename I::Scalar;
+    const auto rays = samples.rays();
+    std::vector<Hit<T>> want(rays.size());
+    closest_hits(build<Bvh>(set), rays, std::span(want));
+    for (const auto name : instruction_sets()) {
+        SCOPED_TRACE(name);
+        const Using use(name);
+        Rasteriser<T> rasteriser(samples);
+        for (const Coverage coverage : {Coverage::box, Coverage::tiles})
+            for (const bool onto : {false, true}) {
+                std::vector<Hit<T>> hits(samples.size(),
+                                         onto ? Hit<T>() : Hit<T>{T(1e-30), 2, 3, 4, 5, 6, 7});
+                rasteriser.draw(set.view(), hits, default_executor(), {coverage, onto});
+                expect_same(want, hits);
+            }
+    }
+}
+
+TYPED_TEST(RasterisedHits, OfInstances) {
+    using T = TypeParam;
+    const auto mesh = teapot<T>(300);
+    const auto index = build<WideBvh>(mesh);
+    const std::size_t views = matrix::in_long_runs(100, 4);
+    for (std::uint64_t view = 0; view < views; ++view)
+        for (const auto scales : {Scales::none, Scales::even, Scales::any}) {
+            SCOPED_TRACE(view);
+            std::vector<Instance<std::remove_cvref_t<decltype(index)>>> instances;
+            std::uint32_t number = 0;
+            for (const auto& transform : transforms<3>(9, scales, view % 2 == 0 ? 12 : 1000))
+                instances.push_back(Instance(index, transform, ~0u, 7 * number++));
+            const InstanceSet set(instances);
+            TriangleMesh<T> corners;  // of the world
+            for (std::size_t i = 0; i < set.size(); ++i) {
+                corners.vertices.push_back(set.view().bounds(i).low);
+                corners.vertices.push_back(set.view().bounds(i).high);
+            }
+            const Camera camera = seen_from(corners, view, view % 3 == 1, view % 4 == 3);
+            expect_hits_on_two_levels(set, PictureSamples<T>(camera, 61, 43, 5, 1, view % 2 == 0 ? 1 : 4));
+        }
+}
+
+TYPED_TEST(RasterisedHits, OfInstancesWithCornersOnRays) {
+    using T = TypeParam;
+    const std::size_t scenes = matrix::in_long_runs(2000, 40);
+    for (std::uint64_t scene = 0; scene < scenes; ++scene) {
+        SCOPED_TRACE(scene);
+        Random random(79, scene);
+        Camera camera;
+        for (int k = 0; k < 3; ++k) {
+            camera.eye[k] = static_cast<float>(random.uniform(-3, 3));
+            camera.target[k] = camera.eye[k] + static_cast<float>(random.uniform(-1, 1));
+        }
+        camera.field_of_view = static_cast<float>(random.uniform(20, 140));
+        if (scene % 3 == 0) camera.projection = Projection::orthographic, camera.height = 2;
+        const PictureSamples<T> samples(camera, 24, 17, scene, 0, scene % 2 == 0 ? 1 : 4);
+        Transform<3> placed = transform_of<3>(scene, Scales::any, scene % 4 == 0 ? 1000 : 2);
+        // Some are all but flat.
+        if (scene % 5 == 0)
+            placed = placed * Transform<3>::scaling({1, 1, std::exp2(random.uniform(-12, 12))});
+        TriangleMesh<T> mesh;
+        for (std::uint32_t i = 0; i < 40; ++i) {
+            for (int c = 0; c < 3; ++c) {
+                const auto ray =
+                    samples.ray(static_cast<int>(random.bits() % 24), static_cast<int>(random.bits() % 17));
+                const auto t = static_cast<T>(std::exp2(random.uniform(-6, 6)));
+                const auto there = ray.at(i % 5 == 0 && c == 0 ? -t : t);
+                mesh.vertices.push_back(Vec<T, 3>(placed.back().point(Vec3d(there))));
+            }
+            mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        const auto index = build<WideBvh>(mesh);
+        expect_hits_on_two_levels(InstanceSet{Instance(index, placed), Instance(index, placed)}, samples);
+    }
+}
+
+/// A set in parts, in any order, has the hits of the whole.
+TYPED_TEST(RasterisedHits, OfPartsOfASet) {
+    using T = TypeParam;
+    auto mesh = soup<T>(600);
+    mesh.triangles[599] = mesh.triangles[2];  // equal t
+    mesh.triangles[301] = mesh.triangles[300];
+    const PictureSamples<T> samples(seen_from(mesh, 1, false), 90, 60);
+    const auto want = hits_of_rays(mesh, samples);
+    for (const auto name : instruction_sets())
+        for (const Coverage coverage : {Coverage::box, Coverage::tiles})
+            for (const bool backwards : {false, true}) {
+                const Using use(name);
+                std::vector<Hit<T>> hits(samples.size());
+                Rasteriser<T> rasteriser(samples);
+                for (int k = 0; k < 6; ++k) {
+                    const auto first = static_cast<std::uint32_t>(100 * (backwards ? 5 - k : k));
+                    TriangleMesh<T> part;
+                    part.vertices = mesh.vertices;
+                    part.triangles.assign(mesh.triangles.begin() + first,
+                                          mesh.triangles.begin() + first + 100);
+                    RasterOptions options{coverage, k > 0};
+                    options.first_element = first;
+                    rasteriser.draw(part.view(), hits, default_executor(), options);
+                }
+                expect_same(want, hits);
+            }
+}
+
+TYPED_TEST(RasterisedHits, AreCountedOnRequest) {
+    using T = TypeParam;
+    const auto mesh = soup<T>(300);
+    const PictureSamples<T> samples(seen_from(mesh, 1, false), 90, 60);
+    const auto want = hits_of_rays(mesh, samples);
+    std::vector<Hit<T>> hits(samples.size());
+    Rasteriser<T> rasteriser(samples);
+    EXPECT_EQ(rasteriser.bytes(), 0u);
+    const auto counts = [&](Coverage coverage) {
+        const auto c = rasteriser.draw(mesh.view(), hits, default_executor(), {coverage, false, true});
+        expect_same(want, hits);
+        return c;
+    };
+    const auto all = counts(Coverage::all), box = counts(Coverage::box), tiles = counts(Coverage::tiles);
+    EXPECT_EQ(all.tests, mesh.size() * samples.size());
+    EXPECT_LT(box.tests, all.tests);
+    EXPECT_LT(tiles.tests, box.tests);
+    EXPECT_GT(tiles.tests, 0u);
+    EXPECT_GT(rasteriser.bytes(), mesh.size() * sizeof(Sight));
+}
+
 TYPED_TEST(RasterisedHits, OntoThoseOfOthersAndByAnyExecutor) {
     using T = TypeParam;
     const auto mesh = soup<T>(700);
@@ -151,15 +279,15 @@ TYPED_TEST(RasterisedHits, OntoThoseOfOthersAndByAnyExecutor) {
                 const Using use(name);
                 Rasteriser<T> rasteriser(samples);
                 std::vector<Hit<T>> hits(samples.size());
-                rasteriser.draw(half.view(), coverage, hits, *executor);
+                rasteriser.draw(half.view(), hits, *executor, {coverage});
                 expect_same(first, hits);
-                rasteriser.draw(mesh.view(), coverage, hits, *executor, true);
+                rasteriser.draw(mesh.view(), hits, *executor, {coverage, true});
                 expect_same(want, hits);
-                rasteriser.draw(mesh.view(), coverage, hits, *executor, true);
+                rasteriser.draw(mesh.view(), hits, *executor, {coverage, true});
                 expect_same(want, hits);
-                rasteriser.draw(TriangleMesh<T>().view(), coverage, hits, *executor, true);
+                rasteriser.draw(TriangleMesh<T>().view(), hits, *executor, {coverage, true});
                 expect_same(want, hits);
-                rasteriser.draw(TriangleMesh<T>().view(), coverage, hits, *executor);
+                rasteriser.draw(TriangleMesh<T>().view(), hits, *executor, {coverage});
                 expect_same(std::vector<Hit<T>>(samples.size()), hits);
             }
 }
@@ -181,7 +309,7 @@ TYPED_TEST(RasterisedHits, OfTrianglesThatFillThePicture) {
     const auto want = hits_of_rays(mesh, samples);
     Rasteriser<T> rasteriser(samples);
     std::vector<Hit<T>> hits(samples.size());
-    const auto counts = rasteriser.draw(mesh.view(), Coverage::tiles, hits, default_executor());
+    const auto counts = rasteriser.draw(mesh.view(), hits, default_executor());
     expect_same(want, hits);
     EXPECT_EQ(counts.outside, 0u);
 }
@@ -201,7 +329,7 @@ TYPED_TEST(RasterisedHits, NeedAPlaceForEachSample) {
     using T = TypeParam;
     Rasteriser<T> rasteriser(PictureSamples<T>(Camera{{0, 0, 1}, {1, 0, 1}}, 5, 4));
     std::vector<Hit<T>> hits(19);
-    EXPECT_THROW(rasteriser.draw(soup<T>(5).view(), Coverage::tiles, hits, serial_executor()), InputError);
+    EXPECT_THROW(rasteriser.draw(soup<T>(5).view(), hits, serial_executor()), InputError);
 }
 
 }  // namespace

@@ -64,8 +64,8 @@ public:
         const V farthest = hn::Sqrt(farthest2);
         const auto before =
             hn::Gt(nearest, frame_.parallel ? hn::Set(d, -std::numeric_limits<double>::infinity())
-                                            : hn::Mul(farthest, hn::Set(d, PixelBounds::cut_share)));
-        const V error = hn::MulAdd(farthest, hn::Set(d, PixelBounds::error_share), hn::Set(d, frame_.error));
+                                            : hn::Mul(farthest, hn::Set(d, frame_.cut_share)));
+        const V error = hn::MulAdd(farthest, hn::Set(d, frame_.corner_share), hn::Set(d, frame_.error));
         const V room = by_forward(hn::Mul(error, hn::Set(d, 2 * frame_.reach * frame_.pixels)), nearest);
         const V left = first_at(hn::Sub(least(corners.x), room), frame_.width),
                 top = first_at(hn::Sub(least(corners.y), room), frame_.height),

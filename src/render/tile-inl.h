@@ -27,7 +27,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 class TileDrawing {
 public:
     TileDrawing(const TriangleMeshView<float>& mesh, const RasterTile& tile)
-        : mesh_(mesh), tile_(tile), scene_{no_tree(), nullptr, mesh.faces()} {}
+        : mesh_(mesh), tile_(tile), scene_{no_tree(), nullptr, {}} {}
 
     HWY_INLINE void draw() {
         const std::uint32_t ways =
@@ -86,8 +86,7 @@ private:
             for_each_hit(
                 way, [&](int i, Hit<float>& hit) __attribute__((always_inline)) {
                     if (!hit) return;
-                    rays_.t_limit[i] = hit.t, rays_.u[i] = hit.u, rays_.v[i] = hit.v;
-                    rays_.element[i] = hit.element;
+                    rays_.t_limit[i] = hit.t, rays_.element[i] = element_so_far(hit);
                     rays_.s_limit[i] = s_limit_of(hit.t, rays_.z_length[i]);
                 });
         float farthest = farthest_of(way);
@@ -111,8 +110,23 @@ private:
         if (count > 0) test();
         for_each_hit(
             way, [&](int i, Hit<float>& hit) __attribute__((always_inline)) {
-                hit = hit_of(scene_, rays_.t_limit[i], rays_.u[i], rays_.v[i], rays_.element[i]);
+                if (!tile_.onto || rays_.t_limit[i] != hit.t || rays_.element[i] != element_so_far(hit))
+                    hit = hit_of(i);
             });
+    }
+    /// The element of a hit so far, as ties see it: equal t goes to the lowest (instance, element).
+    HWY_INLINE std::uint32_t element_so_far(const Hit<float>& hit) const {
+        if (hit.instance == tile_.names.instance) return hit.element;
+        return hit.instance < tile_.names.instance ? 0 : Hit<float>::none;
+    }
+    HWY_INLINE Hit<float> hit_of(int i) const {
+        const RasterNames& names = tile_.names;
+        const std::uint32_t element = rays_.element[i];
+        if (element == Hit<float>::none) return {};
+        return {rays_.t_limit[i], rays_.u[i],
+                rays_.v[i],       mesh_.id(element - names.first_element) + names.first_element,
+                names.geometry,   names.instance,
+                element};
     }
     /// No hit of the rays that go this way is farther forward of the eye.
     HWY_INLINE float farthest_of(std::uint32_t way) const {
@@ -121,8 +135,8 @@ private:
         auto most = hn::Zero(f);
         for (int p = 0; p < PacketRays::parts; ++p) {
             const int at = p * PacketRays::lanes;
-            auto forward = hn::Zero(f);
-            for (int k = 0; k < 3; ++k)
+            auto forward = hn::Set(f, tile_.names.placed ? 1.0f : 0.0f);  // at most that in the world
+            for (int k = 0; k < 3 && !tile_.names.placed; ++k)
                 forward = hn::MulAdd(hn::Load(f, rays_.numbers[p][3 + k]), hn::Set(f, tile_.plane.forward[k]),
                                      forward);
             const auto goes = hn::RebindMask(f, hn::Eq(hn::Load(u32, rays_.ways + at), hn::Set(u32, way)));
@@ -150,7 +164,7 @@ private:
             const Vec<float, 3> p = mesh_.vertex(corners[c]);
             for (std::size_t k = 0; k < 3; ++k) block.corner[k][c][place] = p[static_cast<int>(k)];
         }
-        block.id[place] = number;
+        block.id[place] = number + tile_.names.first_element;
     }
     /// The samples of the tile in a box that meets it, a bit each.
     HWY_INLINE std::uint64_t samples_in(const PixelBox& box) const {

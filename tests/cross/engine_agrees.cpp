@@ -85,7 +85,7 @@ bool draws(const char* name, const TriangleMesh<float>& mesh) {
     closest_hits(index, std::span<const Ray3f>(rays), std::span(want));
     for (const auto set : instruction_sets()) {
         use_instruction_set(set);
-        Rasteriser<float>(samples).draw(mesh.view(), Coverage::tiles, got, serial_executor());
+        Rasteriser<float>(samples).draw(mesh.view(), got, serial_executor());
         if (got == want) continue;
         std::printf("%s, drawn: differs with %s\n", name, std::string(set).c_str());
         return false;

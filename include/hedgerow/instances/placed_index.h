@@ -29,6 +29,16 @@ struct Instance {
 template <std::floating_point T>
 inline constexpr T shortest_direction = std::numeric_limits<T>::min() * (16 / unit_roundoff<T>);
 
+/// The ray in the space of an object, to which `back` leads: each component is computed in double and rounded
+/// once. The direction is 0 if it is shorter than `shortest_direction`.
+template <class T, int D>
+Ray<T, D> ray_inside(const Affine<D>& back, const Ray<T, D>& ray) {
+    const Vec<T, D> direction(back.vector(Vec<double, D>(ray.direction)));
+    const bool usable = max_component(abs(direction)) >= shortest_direction<T>;
+    return {Vec<T, D>(back.point(Vec<double, D>(ray.origin))), usable ? direction : Vec<T, D>(), ray.t_min,
+            ray.t_max};
+}
+
 /// An instance prepared for queries, and bounds on the errors of its answers.
 ///
 /// Let A x + a be the map to the world and N x + n the map back, ‖·‖ the greatest sum of a row's magnitudes,
@@ -97,15 +107,7 @@ public:
                                               scale_);
     }
 
-    /// The ray in the object's space: each component is computed in double and rounded once. The direction is
-    /// 0 if it is shorter than `shortest_direction`.
-    Ray<T, D> inside(const Ray<T, D>& ray) const {
-        const auto& back = transform_.back();
-        const Vec<T, D> direction(back.vector(Vec<double, D>(ray.direction)));
-        const bool usable = max_component(abs(direction)) >= shortest_direction<T>;
-        return {Vec<T, D>(back.point(Vec<double, D>(ray.origin))), usable ? direction : Vec<T, D>(),
-                ray.t_min, ray.t_max};
-    }
+    Ray<T, D> inside(const Ray<T, D>& ray) const { return ray_inside(transform_.back(), ray); }
 
     /// `center` is a point of the world, mapped to the object's space. Everything within squared distance d
     /// of the point in the world is within squared distance `radius2(d)` of `center` in the object's space.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <hedgerow/geometry/shapes.h>
+#include <hedgerow/geometry/transform.h>
 #include <hedgerow/render/visibility/samples.h>
 
 namespace hedgerow {
@@ -32,14 +33,19 @@ struct Sight {
 /// picture's plane: e = 64u·(M + W), where W is how far the picture reaches from 0 and from the eye; room =
 /// 2·e.
 ///
+/// Of an instance, the picture's axes are mapped to the object's space, where the triangle is as it is given.
+/// They are no longer of length 1 there: errors are up to A times as large in the coordinates that they give,
+/// A the greatest length of the axes dual to them. The eye is rounded, so e = 64u·(M + |eye|).
+///
 /// A triangle with all corners behind the eye, or all beyond one side of the picture, covers nothing. Of one
 /// that comes near the eye's plane, what lies before f = M/1024 is cut off. That is seen only where the
 /// triangle passes the eye as closely; such a triangle may cover everything.
 class PixelBounds {
 public:
+    /// `back` leads to the space of the triangles; null: they are in the world.
     template <class T>
-    explicit PixelBounds(const PictureSamples<T>& samples)
-        : PixelBounds(samples.plane(), samples.width(), samples.height()) {
+    explicit PixelBounds(const PictureSamples<T>& samples, const Affine<3>* back = nullptr)
+        : PixelBounds(samples.plane(), back, samples.width(), samples.height()) {
         f_.least = static_cast<double>(samples.within_pixel().least);
         f_.most = static_cast<double>(samples.within_pixel().most);
     }
@@ -51,14 +57,15 @@ public:
                                                         ///< 1 is from it, and where samples are within theirs
         Vec3d eye, forward, right, up;                  ///< the axes dual to the camera's
         Box<double, 2> sides;                           ///< the places of the picture's sides
-        double reach;   ///< at least 1 + |place| in the picture; of parallel rays 1
-        double error;   ///< of corners, beside the share of their distance: of parallel rays
-        bool parallel;  ///< whether rays are parallel: forward distances make nothing smaller
-        bool sound;     ///< whether the camera has axes
+        double reach;         ///< at least 1 + |place| in the picture; of parallel rays 1
+        double corner_share;  ///< errors of corners, as a share of the farthest one's distance
+        double error;         ///< and a part that is the same for all: of parallel rays and of instances
+        double cut_share;     ///< how far before the eye a triangle is cut, as a share of the same
+        double span;          ///< the greatest length of the picture's axes in the triangle's space
+        bool parallel;        ///< whether rays are parallel: forward distances make nothing smaller
+        bool sound;           ///< whether the camera has axes
     };
     const Frame& frame() const { return f_; }
-    static constexpr double error_share = 64 * static_cast<double>(unit_roundoff<float>), cut_share = 0x1p-10;
-
     PixelBox whole() const { return {0, 0, f_.width - 1, f_.height - 1}; }
     template <class T>
     Sight of(const Triangle<T, 3>& t) const {
@@ -111,25 +118,36 @@ public:
     }
 
 private:
+    static constexpr double error_share = 64 * static_cast<double>(unit_roundoff<float>), cut_share = 0x1p-10;
+
     /// A point from the eye, and its coordinates along the picture's axes.
     struct Seen {
         Vec3d from_eye;
         double forward, right, up;
     };
 
-    PixelBounds(const PicturePlane& plane, int width, int height) {
-        const Vec3d f(plane.forward), r(plane.right), u(plane.up);
+    PixelBounds(const PicturePlane& plane, const Affine<3>* back, int width, int height) {
+        const auto there = [&](const Vec3f& axis) { return back ? back->vector(Vec3d(axis)) : Vec3d(axis); };
+        const Vec3d f = there(plane.forward), r = there(plane.right), u = there(plane.up);
         const double volume = dot(f, cross(r, u)), scale = static_cast<double>(plane.scale);
         const double x = static_cast<double>(plane.middle_x), y = static_cast<double>(plane.middle_y);
         f_.width = width, f_.height = height, f_.middle[0] = x, f_.middle[1] = y, f_.pixels = 1 / scale;
-        f_.eye = Vec3d(plane.eye);
-        f_.sound = std::abs(volume) > 0.5;  // about 1, unless the camera looks along its up
+        f_.eye = back ? back->point(Vec3d(plane.eye)) : Vec3d(plane.eye);
+        // Not 0, unless the camera looks along its up or the object is all but flat.
+        f_.sound = std::abs(volume) > 0x1p-20 * length(f) * length(r) * length(u);
         f_.forward = cross(r, u) / volume, f_.right = cross(u, f) / volume, f_.up = cross(f, r) / volume;
         f_.sides = {{-x * scale, (y - height) * scale}, {(width - x) * scale, y * scale}};
         const double places = max_component(abs(f_.sides.low)) + max_component(abs(f_.sides.high));
         f_.parallel = plane.parallel;
         f_.reach = plane.parallel ? 1 : 1 + places;
-        f_.error = plane.parallel ? error_share * (2 * places + max_component(abs(f_.eye))) : 0;
+        const auto longest = [](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+            return std::sqrt(std::max({length2(a), length2(b), length2(c)}));
+        };
+        const double dual = longest(f_.forward, f_.right, f_.up);
+        f_.span = longest(f, r, u);
+        f_.corner_share = error_share * dual, f_.cut_share = cut_share * dual;
+        f_.error = f_.corner_share * ((plane.parallel ? 2 * places * f_.span : 0) +
+                                      (plane.parallel || back ? length(f_.eye) : 0));
     }
 
     /// The corners of a triangle, the error of each, and how far before the eye's plane it is cut.
@@ -143,8 +161,9 @@ private:
                    bounds.seen(Vec3d(t.c) - bounds.f_.eye)} {
             const double farthest = std::sqrt(
                 std::max({length2(seen[0].from_eye), length2(seen[1].from_eye), length2(seen[2].from_eye)}));
-            error = error_share * farthest + bounds.f_.error;
-            cut = bounds.f_.parallel ? -std::numeric_limits<double>::infinity() : cut_share * farthest;
+            error = bounds.f_.corner_share * farthest + bounds.f_.error;
+            cut = bounds.f_.parallel ? -std::numeric_limits<double>::infinity()
+                                     : bounds.f_.cut_share * farthest;
         }
     };
 
@@ -173,7 +192,7 @@ private:
     bool passes_eye(const Corners& corners) const {
         const Vec3d& a = corners.seen[0].from_eye;
         const Vec3d normal = cross(corners.seen[1].from_eye - a, corners.seen[2].from_eye - a);
-        return !(std::abs(dot(normal, a)) > 4 * corners.cut * f_.reach * length(normal));
+        return !(std::abs(dot(normal, a)) > 4 * corners.cut * f_.reach * f_.span * length(normal));
     }
     double plane_x(double place) const { return f_.middle[0] + place * f_.pixels; }
     double plane_y(double place) const { return f_.middle[1] - place * f_.pixels; }

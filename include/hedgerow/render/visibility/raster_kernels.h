@@ -14,6 +14,13 @@ namespace hedgerow {
 /// The side of a tile, in pixels.
 inline constexpr int tile_side = 8;
 
+/// What the hits of a set of triangles report, beside t, u and v.
+struct RasterNames {
+    std::uint32_t first_element = 0;  ///< that of the set's first triangle; added to its id, too
+    std::uint32_t instance = 0, geometry = 0;
+    bool placed = false;  ///< whether the set is an instance: rays are in its space
+};
+
 /// A tile of a picture, and the triangles that may cover some of its samples.
 struct RasterTile {
     /// The rays of its samples, by rows of `tile_side`, all or none of them usable (RayProbe), from the eye
@@ -31,6 +38,7 @@ struct RasterTile {
     Hit<float>* hits;
     std::size_t row;
     bool onto;
+    RasterNames names;
 };
 
 struct RasterKernels {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -13,6 +14,7 @@
 
 #include <hedgerow/ask/asking.h>
 #include <hedgerow/base/bare_vector.h>
+#include <hedgerow/instances/instance_set.h>
 #include <hedgerow/parallel/blocks.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/probes/ray.h>
@@ -26,6 +28,17 @@ namespace hedgerow {
 /// tile of 8 × 8 pixels and front to back, but in no tile of which all hits are nearer.
 enum class Coverage { all, box, tiles };
 
+struct RasterOptions {
+    Coverage coverage = Coverage::tiles;
+    /// Whether what the buffer holds counts too: hits of sets that were drawn before. Else it is written
+    /// over.
+    bool onto = false;
+    /// Whether tests are counted, which rules out the kernels.
+    bool counts = false;
+    /// The number of the first triangle: where a set is a part of a larger one.
+    std::uint32_t first_element = 0;
+};
+
 /// Draws sets of triangles, one after the other, into a buffer with a Hit for each sample.
 template <class T>
 class Rasteriser {
@@ -33,23 +46,50 @@ public:
     explicit Rasteriser(const PictureSamples<T>& samples)
         : samples_(samples),
           plane_(samples.plane()),
-          bounds_(samples),
           columns_((samples.width() + tile_side - 1) / tile_side),
           tiles_(columns_ * ((samples.height() + tile_side - 1) / tile_side)) {
         if (!samples.has_plane()) throw InputError("a panorama or a lens cannot be rasterised: cast rays");
     }
 
-    /// Draws triangles: the view has `triangle(i)`, `id(i)` and `size()`. `hits` has a place for each sample,
-    /// by number; what it holds is written over, unless the set is drawn `onto` the hits of others, which
-    /// then count too. The hits do not depend on the coverage or on the executor. Takes about 64 MiB beside
-    /// them, however many triangles there are. Throws InputError for too few places.
-    template <class Triangles>
-    RasterCounts draw(const Triangles& triangles, Coverage coverage, std::span<Hit<T>> hits,
-                      Executor& executor, bool onto = false) {
+    /// Draws triangles: the view has `triangle(i)`, `id(i)` and `size()`; or the instances of an
+    /// InstanceSetView, one after the other. `hits` has a place for each sample, by number. The hits are
+    /// those of the samples' rays, and do not depend on the coverage, on the executor, or on the order in
+    /// which sets are drawn. Takes about 64 MiB beside them, however many triangles there are. Throws
+    /// InputError for too few places.
+    template <class Set>
+    RasterCounts draw(const Set& set, std::span<Hit<T>> hits, Executor& executor,
+                      const RasterOptions& options = {}) {
         detail::expect_room("samples", samples_.size(), hits.size());
         IeeeExecutor threads(executor);
-        if (rays_.empty() && !(coverage == Coverage::tiles && uses_kernels<Triangles>()))
-            prepare_rays(threads);
+        if constexpr (Instanced<Set>) {
+            RasterCounts counts;
+            if (!options.onto) std::fill_n(hits.begin(), samples_.size(), Hit<T>());
+            for (std::uint32_t i = 0; i < set.size(); ++i)
+                counts += draw_in(&set[i].transform().back(), {0, i, set[i].geometry(), true},
+                                  set[i].index().primitives(), hits, threads, options, true);
+            return counts;
+        } else {
+            return draw_in(nullptr, {options.first_element, 0, 0, false}, set, hits, threads, options,
+                           options.onto);
+        }
+    }
+    /// Bytes of memory that drawing has taken so far, beside the hits.
+    std::size_t bytes() const {
+        const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+        std::size_t lists = of(lists_);
+        for (const auto& list : lists_) lists += of(list);
+        return of(rays_) + of(sights_) + lists + of(places_) + of(begins_) + of(listed_);
+    }
+
+private:
+    /// Draws triangles of the space to which `back` leads; null: of the world.
+    template <class Triangles>
+    RasterCounts draw_in(const Affine<3>* back, const RasterNames& names, const Triangles& triangles,
+                         std::span<Hit<T>> hits, Executor& threads, const RasterOptions& options, bool onto) {
+        back_ = back, names_ = names, counts_ = options.counts;
+        bounds_ = PixelBounds(samples_, back);
+        const Coverage coverage = options.coverage;
+        if (!(coverage == Coverage::tiles && uses_kernels<Triangles>())) prepare_rays(threads);
         RasterCounts counts;
         for (std::size_t first = 0; first < std::max<std::size_t>(triangles.size(), 1) && tiles_ > 0;
              first += at_once) {
@@ -64,7 +104,6 @@ public:
         return counts;
     }
 
-private:
     /// Triangles that are looked at together, and entries of triangles in tiles that are sorted together.
     static constexpr std::size_t at_once = std::size_t(1) << 20, entries_at_once = std::size_t(1) << 21;
     static constexpr int band_rows = 64;
@@ -73,17 +112,30 @@ private:
         bool usable = false;
     };
 
+    /// The kernels for such triangles, or null.
     template <class Triangles>
-    static bool uses_kernels() {
-        return std::is_same_v<Triangles, TriangleMeshView<float>> && raster_kernels() != nullptr;
+    const RasterKernels* kernels() const {
+        return std::is_same_v<Triangles, TriangleMeshView<float>> && !counts_ ? raster_kernels() : nullptr;
     }
+    template <class Triangles>
+    bool uses_kernels() const {
+        return kernels<Triangles>() != nullptr;
+    }
+    /// The ray of a sample, in the space of the triangles.
+    Ray<T, 3> ray(int x, int y) const {
+        const Ray<T, 3> ray = samples_.ray(x, y);
+        return back_ != nullptr ? ray_inside(*back_, ray) : ray;
+    }
+    /// Prepares the rays of all samples, unless they are those that were prepared last.
     void prepare_rays(Executor& threads) {
-        rays_.resize(samples_.size());
+        if (!rays_.empty() && back_ == nullptr && !rays_placed_) return;
+        rays_placed_ = back_ != nullptr;
+        rays_.assign(samples_.size(), Prepared());
         const auto width = static_cast<std::size_t>(samples_.width());
         threads.for_each_piece(rays_.size(), 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                const auto ray = samples_.ray(static_cast<int>(i % width), static_cast<int>(i / width));
-                const RayProbe<T, 3> probe(ray, {ray.origin, ray.origin});
+                const auto given = ray(static_cast<int>(i % width), static_cast<int>(i / width));
+                const RayProbe<T, 3> probe(given, {given.origin, given.origin});
                 if (probe.usable()) rays_[i] = {probe.watertight(), true};
             }
         });
@@ -99,8 +151,8 @@ private:
                       Sight{coverage == Coverage::all ? bounds_.whole() : uncut, 0});
             if (coverage == Coverage::all) return;
             if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>)
-                if (const RasterKernels* const kernels = raster_kernels())
-                    kernels->bounds(bounds_, triangles, first + begin, some);
+                if (const RasterKernels* const in_lanes = kernels<Triangles>())
+                    in_lanes->bounds(bounds_, triangles, first + begin, some);
             for (std::size_t i = begin; i < end; ++i)
                 if (sights_[i].box == uncut) sights_[i] = bounds_.of(triangles.triangle(first + i));
         });
@@ -235,8 +287,8 @@ private:
         if (list.empty()) return onto ? void() : clear(here, hits);
         order_front_to_back(list);
         if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>)
-            if (const RasterKernels* const kernels = raster_kernels())
-                return draw_by_kernel(*kernels, triangles, first, here, list, hits, onto);
+            if (const RasterKernels* const in_lanes = kernels<Triangles>())
+                return draw_by_kernel(*in_lanes, triangles, first, here, list, hits, onto);
         if (!onto) clear(here, hits);
         float farthest = farthest_of(here, hits);
         for (const std::uint32_t i : list) {
@@ -266,7 +318,7 @@ private:
         for (std::size_t k = 0; k < steps; ++k) places[k + 1] += places[k];
         for (const std::uint32_t i : given) list[places[step(i)]++] = i;
     }
-    void draw_by_kernel(const RasterKernels& kernels, const TriangleMeshView<float>& triangles,
+    void draw_by_kernel(const RasterKernels& in_lanes, const TriangleMeshView<float>& triangles,
                         std::size_t first, const PixelBox& pixels, std::span<const std::uint32_t> list,
                         std::span<Hit<float>> hits, bool onto) const {
         RasterTile tile{nullptr,
@@ -277,18 +329,37 @@ private:
                         sights_.data(),
                         &hits[samples_.number(pixels.left, pixels.top)],
                         static_cast<std::size_t>(samples_.width()),
-                        onto};
+                        onto,
+                        names_};
+        if (samples_.in_the_middle() && back_ == nullptr) return in_lanes.draw(triangles, tile);
+        // Make the rays. Those of an instance may be unusable: others take their places.
         std::array<Ray<float, 3>, tile_side * tile_side> rays;
-        if (!samples_.in_the_middle()) {
-            int place = 0;
-            for (Ray<float, 3>& ray : rays) {
-                ray = samples_.ray(std::min(pixels.left + place % tile_side, pixels.right),
-                                   std::min(pixels.top + place / tile_side, pixels.bottom));
-                ++place;
-            }
-            tile.rays = rays.data();
+        std::uint64_t unusable = 0;
+        int usable = -1;
+        for (int i = 0; i < tile_side * tile_side; ++i) {
+            Ray<float, 3>& one = rays[static_cast<std::size_t>(i)];
+            one = ray(std::min(pixels.left + i % tile_side, pixels.right),
+                      std::min(pixels.top + i / tile_side, pixels.bottom));
+            if (back_ != nullptr && !RayProbe<float, 3>(one, {one.origin, one.origin}).usable())
+                unusable |= std::uint64_t(1) << i;
+            else
+                usable = i;
         }
-        kernels.draw(triangles, tile);
+        tile.rays = rays.data();
+        if (unusable == 0 || usable < 0) return in_lanes.draw(triangles, tile);
+        std::array<Hit<float>, tile_side * tile_side> before;
+        const auto each_unusable = [&](auto f) {
+            for (std::uint64_t left = unusable; left != 0; left &= left - 1) {
+                const int i = std::countr_zero(left), x = i % tile_side, y = i / tile_side;
+                if (pixels.left + x <= pixels.right && pixels.top + y <= pixels.bottom)
+                    f(static_cast<std::size_t>(i), hits[samples_.number(pixels.left + x, pixels.top + y)]);
+            }
+        };
+        each_unusable([&](std::size_t i, const Hit<float>& hit) { before[i] = onto ? hit : Hit<float>(); });
+        for (std::uint64_t left = unusable; left != 0; left &= left - 1)
+            rays[static_cast<std::size_t>(std::countr_zero(left))] = rays[static_cast<std::size_t>(usable)];
+        in_lanes.draw(triangles, tile);
+        each_unusable([&](std::size_t i, Hit<float>& hit) { hit = before[i]; });
     }
 
     // ---- A triangle at some samples ----
@@ -307,7 +378,7 @@ private:
               RasterCounts& counts) const {
         if (box.empty()) return false;
         const auto triangle = triangles.triangle(i);
-        const auto element = static_cast<std::uint32_t>(i);
+        const std::uint32_t element = static_cast<std::uint32_t>(i) + names_.first_element;
         bool found = false;
         for (int y = box.top; y <= box.bottom; ++y)
             for (int x = box.left; x <= box.right; ++x) {
@@ -316,8 +387,18 @@ private:
                 if (!rays_[s].usable) continue;
                 const auto m = meet(rays_[s].ray, triangle);
                 if (!m || !(m->t >= 0 && m->t <= std::numeric_limits<T>::max())) continue;
-                if (m->t > hits[s].t || (m->t == hits[s].t && element > hits[s].element)) continue;
-                hits[s] = {m->t, m->u, m->v, triangles.id(i), 0, 0, element};
+                Hit<T>& hit = hits[s];
+                if (m->t > hit.t) continue;
+                if (m->t == hit.t &&
+                    std::pair(hit.instance, hit.element) < std::pair(names_.instance, element))
+                    continue;
+                hit = {m->t,
+                       m->u,
+                       m->v,
+                       triangles.id(i) + names_.first_element,
+                       names_.geometry,
+                       names_.instance,
+                       element};
                 found = true;
             }
         return found;
@@ -333,9 +414,14 @@ private:
 
     const PictureSamples<T> samples_;
     const PicturePlane plane_;
-    const PixelBounds bounds_;
     const int columns_, tiles_;
+    // What is drawn at the moment.
+    PixelBounds bounds_{samples_};
+    const Affine<3>* back_ = nullptr;
+    RasterNames names_;
+    bool counts_ = false;
     std::vector<Prepared> rays_;  // empty until they are needed
+    bool rays_placed_ = false;    // whether these are in the space of an instance
     // Of the triangles that are drawn at the moment: where each is seen, and lists of those in each tile.
     struct InTile {
         std::uint32_t tile, triangle;
@@ -345,8 +431,8 @@ private:
     BareVector<std::uint32_t> places_, begins_, listed_;
 };
 
-/// Finds what is visible by drawing triangles. Borrows the view's arrays. Takes 28 bytes a sample of float,
-/// 48 of double, beside what the rasteriser takes.
+/// Finds what is visible by drawing triangles, or instances. Borrows the view's arrays. Takes 28 bytes a
+/// sample of float, 48 of double, beside what the rasteriser takes.
 template <std::floating_point T, class Triangles = TriangleMeshView<T>>
 class Rasterising final : public Visibility<T> {
 public:
@@ -356,7 +442,7 @@ public:
     void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) override {
         hits_.resize(samples.size());
         width_ = static_cast<std::size_t>(samples.width());
-        costs.drawn += Rasteriser<T>(samples).draw(triangles_, coverage_, hits_, executor);
+        costs.drawn += Rasteriser<T>(samples).draw(triangles_, hits_, executor, {coverage_});
     }
     void look(const PixelBox& box, std::span<const Ray<T, 3>>, std::span<Hit<T>> hits, std::span<Visits>,
               PictureCosts&) const override {
