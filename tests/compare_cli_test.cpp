@@ -45,6 +45,44 @@ protected:
     }
 };
 
+TEST_F(Compare, TellsWhatEachWayToSeeCosts) {
+    const json j =
+        parsed("gen:teapot --visibility --sizes 100,1k --pixels 40x30,80x60 --structures wide,kdtree");
+    ASSERT_EQ(j["cases"].size(), 4u);
+    std::vector<std::pair<int, int>> seen;
+    for (const auto& c : j["cases"]) {
+        seen.emplace_back(c["triangles"].get<int>(), c["width"].get<int>());
+        EXPECT_GT(c["share_hit"], 0.05);
+        EXPECT_TRUE(c["left_out"].empty());
+        ASSERT_EQ(c["ways"].size(), 5u);
+        double tests_of_all = 0;
+        for (const auto& w : c["ways"]) {
+            EXPECT_GT(w["seconds"], 0);
+            EXPECT_GT(w["tests_per_sample"], 0) << w["way"];
+            const bool casts = w["way"].get<std::string>().starts_with("cast:");
+            EXPECT_EQ(w["build_seconds"] > 0, casts);
+            EXPECT_EQ(w["nodes_per_sample"] > 0, casts);
+            EXPECT_GT(w["bytes"], 0);
+            if (w["way"] == "raster:all") tests_of_all = w["tests_per_sample"];
+        }
+        EXPECT_EQ(tests_of_all, c["triangles"]);
+    }
+    EXPECT_LT(seen[1].first, seen[2].first);
+    EXPECT_EQ(seen[0], std::pair(seen[1].first, 40));
+    EXPECT_EQ(seen[3].second, 80);
+}
+
+TEST_F(Compare, ShowsWaysToSeeAsTableAndPage) {
+    const auto r = run("gen:cornell-box --visibility --pixels 64x48 --html " + file("v.html"));
+    ASSERT_EQ(r.code, 0) << r.errors;
+    for (const char* said : {"raster:tiles", "cast:wide", "pays from", "bit for bit"})
+        EXPECT_NE(r.output.find(said), std::string::npos) << r.output;
+    const std::string page = bytes_of(file("v.html"));
+    EXPECT_EQ(ill_formed(page) + asked_for(page), "");
+    EXPECT_NE(page.find("<svg"), std::string::npos);
+    EXPECT_NE(page.find("raster:all"), std::string::npos);
+}
+
 TEST_F(Compare, TellsWhatEachStructureCosts) {
     const json j = parsed("gen:teapot:400 --time 50 --structures bvh,kdtree,octree");
     ASSERT_EQ(j["structures"].size(), 4u) << "brute force is always there";
@@ -216,6 +254,12 @@ TEST_F(Compare, RefusesWhatIsWrong) {
     expect_refused(2, "", "scene");
     expect_refused(2, "gen:cube --for nonsense", "nonsense");
     expect_refused(2, "gen:cube --sizes 1,2,3", "--scale");
+    expect_refused(2, "gen:cube --pixels 10x10", "--visibility");
+    expect_refused(2, "gen:cube --visibility --pixels 10", "WIDTHxHEIGHT");
+    expect_refused(2, "gen:cube --visibility --pixels 10x10,", "WIDTHxHEIGHT");
+    expect_refused(2, "gen:cube --visibility --scale", "leave out");
+    expect_refused(2, "gen:cube --visibility --structures kdtre", "kdtree");
+    expect_refused(3, "gen:points --visibility", "only triangles");
     expect_refused(2, "gen:cube --queries 1", "1");
     expect_refused(3, "gen:points2d:100 --eye 1,2,3", "in space");
     expect_refused(2, "gen:cube --eye 0,0,9 --target 0,0,0", "--eye");

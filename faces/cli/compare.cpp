@@ -11,6 +11,7 @@
 #include <hedgerow/render/camera/presets.h>
 
 #include "compare_report.h"
+#include "compare_visibility.h"
 #include "verbs.h"
 #include "view.h"
 
@@ -19,9 +20,9 @@ namespace hedgerow::cli {
 namespace {
 
 struct CompareArguments : Common {
-    std::string structures, html, sizes, ask;
+    std::string structures, html, sizes, ask, pixels = "256x256,1024x1024";
     std::vector<std::string> sweeps;
-    bool scale = false, full = false, counts = false;
+    bool scale = false, full = false, counts = false, visibility = false;
     ViewArguments view;
     unsigned threads = 1;
     std::size_t queries = 10'000;
@@ -69,6 +70,87 @@ void check_structures(const std::vector<std::string>& structures, int dimension)
             build_any(s, PointCloud<float, 2>{{{0, 0}}});
     }
 }
+
+// ---- What is visible, by rasterising and by casting ----
+
+/// The sizes of pictures in a list, as 256x256,1024x768.
+std::vector<std::pair<int, int>> picture_sizes(const std::string& list) {
+    std::vector<std::pair<int, int>> sizes;
+    for (std::size_t at = 0; at <= list.size();) {
+        const std::size_t comma = std::min(list.find(',', at), list.size());
+        sizes.push_back(parse_size(list.substr(at, comma - at)));
+        at = comma + 1;
+    }
+    return sizes;
+}
+template <class P>
+void measure_visibility(const CompareArguments& a, const P& primitives, VisibilityReport& report) {
+    if constexpr (!std::same_as<P, TriangleMesh<typename P::Scalar>>) {
+        throw InputError(a.scene +
+                         ": only triangles can be rasterised, so --visibility compares nothing here");
+    } else {
+        Box3f box;
+        for (const auto& v : primitives.vertices) box.expand(Vec3f(v));
+        for (const auto& [width, height] : picture_sizes(a.pixels)) {
+            measure::VisibilityOptions options;
+            options.width = width, options.height = height;
+            ViewArguments view = a.view;
+            view.size = fmt::format("{}x{}", width, height);
+            options.camera = camera_of(view, a, box, upright_of(view, a, primitives));
+            if (!a.structures.empty()) options.structures = measure::structures_of(a.structures);
+            check_structures(options.structures, 3);
+            ProgressLine line(fmt::format("{} triangles, {}", primitives.size(), view.size), a.quiet);
+            report.cases.push_back(measure::compare_visibility(primitives, options, line.progress()));
+        }
+    }
+}
+/// Calls f with the scene, or with scenes of all --sizes, until an interrupt.
+template <class T, class F>
+void for_each_size(const CompareArguments& a, F f) {
+    try {
+        if (a.sizes.empty()) return std::visit(f, load<T>(a));
+        if (!a.scene.starts_with("gen:"))
+            throw UsageError(a.scene + ": --sizes needs a scene of any size, as gen:terrain");
+        SceneSpec spec = parse_scene_spec(a.scene);
+        for (const std::uint64_t size : measure::sizes_of(a.sizes)) {
+            spec.size = size;
+            std::visit(f, generate_scene<T>(a, spec));
+        }
+    } catch (const Cancelled&) {  // what was measured before is still shown
+    }
+}
+template <class T>
+int compare_visibility_in(const CompareArguments& a) {
+    const ThreadLimit limit(1);
+    VisibilityReport report{a.scene, {}};
+    for_each_size<T>(a, [&](const auto& set) { measure_visibility(a, set, report); });
+    if (report.cases.empty()) throw Cancelled("nothing was measured");
+    if (a.json) {
+        print_json(json_of(report));
+    } else {
+        fmt::print("{}\n\n", a.scene);
+        for (const std::string& line : break_even_lines(report)) fmt::print("{}.\n", line);
+        for (const Table& t : tables_of(report)) fmt::print("\n{}", text_of(t));
+        fmt::print(
+            "\nNote: one thread; times are medians of {} rounds, in which all ways take turns; every way "
+            "found "
+            "the same hits, bit for bit.\n",
+            measure::VisibilityOptions().rounds);
+        for (const auto& c : report.cases)
+            for (const std::string& way : c.left_out)
+                fmt::print("Note: {} is left out at {} triangles and {} x {} pixels: it would take long.\n",
+                           way, c.triangles, c.width, c.height);
+    }
+    if (!a.html.empty()) {
+        std::fflush(stdout);
+        const std::string page = interrupted ? unfinished_name(a.html) : a.html;
+        save_text(page, page_of(report));
+        if (!a.json) fmt::print("{}\n", page);
+    }
+    return interrupted ? 130 : 0;
+}
+
+// ---- Structures ----
 
 class Comparing {
 public:
@@ -273,8 +355,14 @@ Run add_compare(CLI::App& verb) {
         ->allow_extra_args(false)
         ->option_text("TEXT, may be repeated");
     verb.add_flag("--scale", a->scale, "how costs grow with a generated scene, and which laws fit");
-    verb.add_option("--sizes", a->sizes, "of --scale: FROM..TO or a list; 1000 to 64000 if not given")
-        ->needs("--scale");
+    verb.add_option("--sizes", a->sizes,
+                    "of a generated scene, for --scale or --visibility: FROM..TO or a list; for --scale 1000 "
+                    "to 64000 if not given");
+    verb.add_flag("--visibility", a->visibility,
+                  "what a picture costs by rasterising its triangles and by casting rays at --structures");
+    verb.add_option("--pixels", a->pixels, "of --visibility: sizes of pictures, as 256x256,1024x768")
+        ->capture_default_str()
+        ->needs("--visibility");
     const auto names = question_names<TriangleMesh<float>>();
     verb.add_option("--for", a->ask, "the query that break-even, advice and growth are about")
         ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
@@ -293,6 +381,16 @@ Run add_compare(CLI::App& verb) {
         ->check(CLI::Range(0, 1024));
     return [a] {
         if (!a->html.empty()) check_writable(a->html);
+        if (!a->sizes.empty() && !a->scale && !a->visibility)
+            throw UsageError("--sizes requires --scale or --visibility");
+        if (a->visibility && (a->scale || !a->sweeps.empty() || !a->ask.empty() || a->counts || a->full))
+            throw UsageError(
+                "--visibility compares ways to see a picture: leave out --scale, --sweep, --for, --counts, "
+                "--full");
+        if (a->visibility) {
+            picture_sizes(a->pixels);
+            return in_precision(*a, [&]<class T>(T) { return compare_visibility_in<T>(*a); });
+        }
         return in_precision(*a, [&]<class T>(T) { return compare_in<T>(*a); });
     };
 }
