@@ -172,6 +172,18 @@ TEST_F(Cli, RasterisingMakesThePictureOfRays) {
         // Without light there is no need for an index.
         EXPECT_EQ(drawn.output.find("\"rays\": 0") != std::string::npos, !options.empty()) << drawn.output;
     }
+    // An STL file is drawn as it is read.
+    ASSERT_EQ(run("generate gen:teapot:3000 -o " + file("a.stl")).code, 0);
+    for (const std::string options : {"normals -o a.png", "depth --spp 3 -o a.png", "normals -o a.exr"}) {
+        const std::string scene = "render " + file("a.stl") + " --quiet --size 133x71 --shading ";
+        const std::string ending = options.substr(options.size() - 4);
+        const auto words = options.substr(0, options.find("-o"));
+        ASSERT_EQ(run(scene + words + "-o " + file("cast" + ending)).code, 0);
+        ASSERT_EQ(run(scene + words + "--visibility raster -o " + file("drawn" + ending)).code, 0);
+        if (ending == ".png") {
+            EXPECT_EQ(bytes_of(file("cast.png")), bytes_of(file("drawn.png")));
+        }
+    }
     expect_usage("render gen:cube --visibility raster --shading steps -o " + file("x.png"),
                  "--visibility cast");
     expect_bad("render gen:points --visibility raster -o " + file("x.png"), "only triangles");

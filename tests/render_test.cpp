@@ -6,6 +6,7 @@
 #include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/render.h>
 #include <hedgerow/render/visibility/rasterise.h>
+#include <hedgerow/render/visibility/rasterise_stream.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
 #include <hedgerow/structures/bvh/bvh.h>
@@ -191,6 +192,35 @@ TYPED_TEST(Rendered, AnInterruptedRasterKeepsItsFinishedSamples) {
     // The last rows have only the first sample.
     options.samples = 4;
     for (int x = 0; x < options.width; ++x) EXPECT_NE(picture.image.at(x, 40), Image::Pixel{}) << x;
+}
+
+/// A mesh with corners of its own for each triangle, as a stream.
+template <class T>
+MadeTriangles<T> stream_of(const TriangleMesh<T>& mesh) {
+    return {static_cast<std::uint32_t>(mesh.size()),
+            [view = mesh.view()](std::uint32_t i) { return view.triangle(i); }};
+}
+TYPED_TEST(Rendered, AStreamOfTrianglesMakesThePictureOfTheMesh) {
+    using T = TypeParam;
+    const auto mesh = terrain<T>(150'000);  // three parts
+    ASSERT_GT(mesh.size(), 2 * TriangleStream<T>::part_size);
+    const auto index = build<WideBvh>(mesh);
+    RenderOptions options = options_for(index);
+    options.layers = true, options.samples = 2;
+    for (const auto shading : {Shading::normals, Shading::depth}) {
+        options.shading = shading;
+        const Picture want = render(index, mesh, options, default_executor());
+        auto stream = stream_of(mesh);
+        RasterisingStream<T> rasterising(stream);
+        EXPECT_EQ(rasterising.bounds(), index.bounds());
+        const Picture drawn = render(PictureParts<T>{rasterising, rasterising}, options, default_executor());
+        expect_same(want, drawn);
+        EXPECT_EQ(drawn.costs.drawn.triangles, 2 * mesh.size());
+    }
+    MadeTriangles<T> none(0, {});
+    RasterisingStream<T> nothing(none);
+    const Picture empty = render(PictureParts<T>{nothing, nothing}, options, serial_executor());
+    EXPECT_EQ(empty.seen[5].id, Hit<T>::none);
 }
 
 }  // namespace

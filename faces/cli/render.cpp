@@ -7,6 +7,7 @@
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/render/render.h>
 #include <hedgerow/render/visibility/rasterise.h>
+#include <hedgerow/render/visibility/rasterise_stream.h>
 
 #include "kernel_use.h"
 #include "verbs.h"
@@ -119,8 +120,21 @@ std::unique_ptr<Visibility<T>> visibility_of(const RenderArguments& a, const P& 
     else
         throw InputError(a.scene + ": only triangles can be rasterised; use --visibility cast");
 }
-/// Renders `primitives` by an index over them, or by none, saves the picture and reports. Returns the exit
-/// code.
+/// Makes the picture, saves it and reports. After an interruption the finished rows are saved. Returns the
+/// exit code.
+template <class T>
+int finish(const RenderArguments& a, const PictureParts<T>& parts, const RenderOptions& options, Outcome o,
+           const Progress& progress) {
+    o.counted = options.counted(), o.up = options.camera.up;
+    const double start = now();
+    o.picture = render(parts, options, default_executor(), progress);
+    o.seconds = now() - start;
+    o.finished = finish_picture(a.output, o.picture.pixels > 0, o.picture.whole);
+    save(o.finished.output, o.picture);
+    report(a, o);
+    return o.finished.exit_code();
+}
+/// Renders `primitives` by an index over them, or by none. Returns the exit code.
 template <class T, class P>
 int render(const RenderArguments& a, const AnyIndex<T, 3>* index, const P& primitives, Outcome o) {
     const SurfacesOf<P> surfaces(primitives);
@@ -131,20 +145,27 @@ int render(const RenderArguments& a, const AnyIndex<T, 3>* index, const P& primi
     o.upright = upright_of(a.view, a, primitives);
     const Box<T, 3> box = index != nullptr ? index->bounds() : surfaces.bounds();
     const RenderOptions options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, o.upright);
-    o.counted = options.counted(), o.up = options.camera.up;
     const auto visibility = visibility_of<T>(a, primitives, asked);
-    // Render. After an interruption the finished rows are saved.
-    {
-        ProgressLine line("rendering", a.quiet, "rows");
-        const double start = now();
-        o.picture = render(PictureParts<T>{*visibility, surfaces, asked}, options, default_executor(),
-                           line.progress());
-        o.seconds = now() - start;
-        o.finished = finish_picture(a.output, o.picture.pixels > 0, o.picture.whole);
-    }
-    save(o.finished.output, o.picture);
-    report(a, o);
-    return o.finished.exit_code();
+    ProgressLine line("rendering", a.quiet, "rows");
+    return finish(a, PictureParts<T>{*visibility, surfaces, asked}, options, std::move(o), line.progress());
+}
+/// Renders the triangles of a file without loading them all.
+template <class T>
+int render_stream(const RenderArguments& a) {
+    const ThreadLimit limit(a.threads);
+    Outcome o;
+    ProgressLine line("reading " + a.scene, a.quiet, "bytes");
+    const Progress progress = line.progress();
+    const auto stream = stream_triangles<T>(a.scene, progress);
+    RasterisingStream<T> rasterising(*stream);
+    Box3f box;
+    stream->for_each_part([&](const TriangleMesh<T>& part, std::uint32_t) {
+        for (const auto& p : part.vertices) box.expand(Vec3f(p));
+        o.primitives += part.size();
+    });
+    o.upright = a.view.up == "auto" ? upright_by_format(a.scene, {}) : Upright{a.view.up[0] - 'x', ""};
+    const RenderOptions options = options_of(a, box, o.upright);
+    return finish(a, PictureParts<T>{rasterising, rasterising}, options, std::move(o), {{}, progress.cancel});
 }
 template <class P>
 int render(const RenderArguments& a, const P& primitives) {
@@ -222,6 +243,8 @@ Run add_render(CLI::App& verb) {
         return in_precision(*a, [&]<class T>(T) {
             if (saved && a->structure == "wide" && !index_file_info(a->scene).holds_points)
                 return render_saved<T>(*a);
+            if (!a->needs_index() && !a->drop_bad && !a->scene.starts_with("gen:") && can_stream(a->scene))
+                return render_stream<T>(*a);
             return std::visit([&](const auto& set) { return render(*a, set); }, load<T>(*a));
         });
     };
