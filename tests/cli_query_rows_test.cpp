@@ -157,6 +157,9 @@ TEST_F(QueryRows, WrongUsageIsTwo) {
     const std::string from = " --from " + file("p.csv"), to = " -o " + file("x.csv");
     expect_usage("query closest-pint gen:cube" + from + to, "did you mean 'closest-point'");
     expect_usage("query nearest gen:cube" + from + to, "needs --count");
+    expect_usage("query first-hits gen:cube" + from + to, "needs --count");
+    expect_usage("query first-hits gen:cube --count 2 --radius 1" + from + to, "takes no --radius");
+    expect_usage("query first-hits gen:cube --count 2 --factor 2" + from + to, "takes no --factor");
     expect_usage("query nearest gen:cube --count 0" + from + to, "at least 1");
     expect_usage("query within gen:cube" + from + to, "needs --radius");
     expect_usage("query within gen:cube --radius -1" + from + to, "at least 0");

@@ -167,6 +167,26 @@ void expect_equal_answers(const Indexes<T, D>& indexes, const std::vector<typena
     }
 }
 
+/// Rays, the numbers of hits to find, and places to go on from: the start, a hit of the first index, or the
+/// place before or after that hit.
+template <class T, int D>
+std::vector<HitsAlong<T, D>> hits_along(const AnyIndex<T, D>& index, const std::vector<Ray<T, D>>& rays) {
+    constexpr std::size_t counts[] = {1, 2, 3, 8, 100, 0};
+    std::vector<HitsAlong<T, D>> all;
+    std::vector<Hit<T>> hits;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        HitsAlong<T, D> given{rays[i], counts[i % std::size(counts)]};
+        index.all_hits(rays[i], hits);
+        if (i % 4 != 0 && !hits.empty()) {
+            given.after = hits[i % hits.size()];
+            given.after.element += i % 4 == 1 ? 1u : 0u;
+            given.after.element -= i % 4 == 2 && given.after.element > 0 ? 1u : 0u;
+        }
+        all.push_back(given);
+    }
+    return all;
+}
+
 /// Compares all other indexes with the first, on rays `begin` to `end` of the scene. Questions that are asked
 /// one by one get every eighth.
 template <class T, int D>
@@ -184,6 +204,9 @@ void expect_equal_rays(const Indexes<T, D>& indexes, const Points<T, D>& targets
                 constexpr bool all = AsksMany<Question>;
                 if (!testing::Test::HasFatalFailure())
                     expect_equal_answers<Question>(indexes, all ? rays : eighth, 256, begin, all ? 1 : 8);
+            } else if constexpr (std::same_as<typename Question::Given, HitsAlong<T, D>>) {
+                if (!testing::Test::HasFatalFailure())
+                    expect_equal_answers<Question>(indexes, hits_along(*indexes[0], eighth), 256, begin, 8);
             }
         });
         if (testing::Test::HasFatalFailure()) return;
@@ -248,7 +271,7 @@ void expect_equal_regions(const Indexes<T, D>& indexes, std::size_t count) {
     const Regions<T, D> regions(*indexes[0], count);
     for_each_question<T, D>([&]<class Question>(Question) {
         using Given = typename Question::Given;
-        if constexpr (!std::same_as<Given, Ray<T, D>>) {
+        if constexpr (!detail::is_ray<Given>) {
             constexpr bool every = Question::name == "closest-point" || Question::name == "nearest" ||
                                    Question::name == "within" || Question::name == "overlap";
             const std::size_t stride = every && !AsksFacets<Question> ? 1 : 4;

@@ -41,7 +41,7 @@ TEST(Measure, CountsWhatIsVisited) {
         EXPECT_EQ(s.items, index->item_count());
         EXPECT_EQ(s.depth, index->depth());
         EXPECT_EQ(s.builds, 1);
-        ASSERT_EQ(s.queries.size(), 24u) << "9 of rays, 4 of points, 8 of regions, 3 of insides";
+        ASSERT_EQ(s.queries.size(), 27u) << "12 of rays, 4 of points, 8 of regions, 3 of insides";
         for (const auto& q : s.queries) {
             EXPECT_EQ(q.asked, 64u) << q.kind;
             EXPECT_GT(q.seconds, 0) << q.kind;
@@ -153,8 +153,8 @@ TEST(Measure, TakesEveryKindOfPrimitives) {
         EXPECT_EQ(c.structures.size(), 2u);
         return c.structures.at(0).queries.size();
     };
-    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 20u) << "no features, no insides";
-    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 24u);
+    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 23u) << "no features, no insides";
+    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 27u);
     EXPECT_EQ(kinds(points<float>(200), "octree"), 11u) << "rays pass between points";
     EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 11u);
 }

@@ -79,6 +79,32 @@ TYPED_TEST(OfEverySet, StructuresAnswerWithTheBitsOfBruteForce) {
     });
 }
 
+TYPED_TEST(OfEverySet, FirstHitsInPiecesOfAnySizeAreAllHits) {
+    using T = typename TypeParam::Scalar;
+    expect_always([] {
+        const AnyCase<TypeParam> one;
+        const auto indexes = every_index(one.set);
+        const auto ray = one.ray();
+        std::vector<Hit<T>> all;
+        indexes[0]->all_hits(ray, all);
+        for (const auto& index : indexes)
+            for (std::size_t k = 1; k <= all.size() + 1; ++k) {
+                // Each piece goes on after the last hit of the one before.
+                std::vector<Hit<T>> joined, piece(k);
+                AfterHit<T> after;
+                std::size_t n = k;
+                while (n == k) {
+                    n = index->first_hits(ray, piece, after);
+                    joined.insert(joined.end(), piece.begin(),
+                                  piece.begin() + static_cast<std::ptrdiff_t>(n));
+                    RC_ASSERT(joined.size() <= all.size());
+                    after = piece.back();
+                }
+                if (joined != all) RC_FAIL(std::string(index->structure()) + ", k " + std::to_string(k));
+            }
+    });
+}
+
 /// Cases that failed once, shrunk: rays that graze the scene's own faces and lean outward by less than the
 /// error of the primitives' tests.
 TEST(Structures, RaysThatGrazeTheFacesOfTheSceneAreAnsweredToTheirEnd) {

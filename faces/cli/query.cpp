@@ -128,9 +128,10 @@ concept TellsFeatures = requires {
 template <class Question, std::floating_point T, int D>
 void check_options(const QueryArguments& a) {
     using Rows = RowsOf<typename Question::Given>;
-    constexpr bool near = TakesNearOptions<Question, T, D> || Rows::takes_count;
+    constexpr bool near =
+        TakesNearOptions<Question, T, D> || (Rows::takes_count && !detail::is_ray<typename Question::Given>);
     if (Rows::takes_count && a.count == 0)
-        throw UsageError(a.kind + " needs --count: how many neighbours, at least 1");
+        throw UsageError(a.kind + " needs --count: how many to find, at least 1");
     if (Rows::takes_radius && a.radius < 0)
         throw UsageError(a.kind + " needs --radius: a distance, at least 0");
     if (!Rows::takes_count && a.count != 0) throw UsageError(a.kind + " takes no --count");
@@ -285,7 +286,7 @@ Run add_query(CLI::App& verb) {
     verb.add_option("--with", a->with, "the other scene, for kinds between two");
     verb.add_option("--format", a->format, "of --from: npy, csv or json; needed for a pipe");
     verb.add_option("--output-format", a->output_format, "of -o: npy, csv or json; needed for a pipe");
-    verb.add_option("-k,--count", a->count, "nearest: how many neighbours");
+    verb.add_option("-k,--count", a->count, "nearest, first-hits: how many to find");
     verb.add_option(
         "--radius", a->radius,
         "the distance, not squared. within and pairs-within need it; closest-point and nearest find "

@@ -22,9 +22,9 @@
 namespace hedgerow {
 
 /// An index of any structure. A batch of closest or any hits or closest points costs one virtual call, inside
-/// which the structure is known at compile time. So does each list of the engine (`all_hits`, `nearest`,
-/// `within`, and all that boxes and balls are asked) whose visits are not counted. All other queries share
-/// one walk a probe, in which each candidate costs a virtual call. Const use is thread-safe.
+/// which the structure is known at compile time. So does each list of the engine (`all_hits`, `first_hits`,
+/// `nearest`, `within`, and all that boxes and balls are asked) whose visits are not counted. All other
+/// queries share one walk a probe, in which each candidate costs a virtual call. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
@@ -85,6 +85,12 @@ public:
     std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits = nullptr) const {
         if (visits == nullptr) return all_hits_uncounted(ray, hits);
         return answer<AllHits<AnyIndex>>(*visits, ray, hits);
+    }
+    /// Writes the next hits after a place, as the function of this name in ask/rays.h does.
+    std::size_t first_hits(const Ray<T, D>& ray, std::span<Hit<T>> hits, const AfterHit<T>& after = {},
+                           Visits* visits = nullptr) const {
+        if (visits == nullptr) return first_hits_uncounted(ray, hits, after);
+        return answer<FirstHits<AnyIndex>>(*visits, ray, hits, after);
     }
     /// Writes the closest point for each of `points`, false where there is no primitive within the options'
     /// distance. With `visits`, adds to one count a point, and no kernel answers.
@@ -176,6 +182,10 @@ protected:
                                           const NearOptions<T>& options) const = 0;
     virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const {
         return answer<AllHits<AnyIndex>>(no_visits, ray, hits);
+    }
+    virtual std::size_t first_hits_uncounted(const Ray<T, D>& ray, std::span<Hit<T>> hits,
+                                             const AfterHit<T>& after) const {
+        return answer<FirstHits<AnyIndex>>(no_visits, ray, hits, after);
     }
     virtual std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k,
                                           const NearOptions<T>& options,

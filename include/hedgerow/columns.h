@@ -17,7 +17,7 @@ namespace hedgerow {
 
 /// What is given to a question beside its rows, the same for all of them.
 struct RowOptions {
-    /// How many neighbours to find, at least 1.
+    /// How many neighbours or hits to find, at least 1.
     std::size_t count = 0;
     /// Not squared, at least 0; infinite for no limit.
     double radius = std::numeric_limits<double>::infinity();
@@ -87,6 +87,14 @@ struct RowsOf<Ray<T, D>> {
     }
     static Ray<T, D> of(const T* row, const RowOptions&) {
         return {detail::vec_at<D>(row), detail::vec_at<D>(row + D), row[2 * D], row[2 * D + 1]};
+    }
+};
+/// A ray, of which the first hits are asked.
+template <std::floating_point T, int D>
+struct RowsOf<HitsAlong<T, D>> : RowsOf<Ray<T, D>> {
+    static constexpr bool takes_count = true;
+    static HitsAlong<T, D> of(const T* row, const RowOptions& o) {
+        return {RowsOf<Ray<T, D>>::of(row, o), o.count};
     }
 };
 template <std::floating_point T, int D>

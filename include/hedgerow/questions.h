@@ -24,6 +24,14 @@ struct Neighbours {
     NearOptions<T> options = {};
 };
 
+/// What is given to a question for the next hits of a ray: how many, and after which place.
+template <std::floating_point T, int D>
+struct HitsAlong {
+    Ray<T, D> ray;
+    std::size_t k;
+    AfterHit<T> after = {};
+};
+
 /// A question: its name; the words for it in a sentence; what is given to it, and what it answers, in memory
 /// that the next answer may use again. A question has either `ask`, which asks an index once, or `ask_all`,
 /// which asks many times in one call. Visits are added to those given; an `ask` without them is faster on the
@@ -60,6 +68,24 @@ struct AskAllHits {
     }
     static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits) {
         index.all_hits(ray, hits);
+    }
+};
+template <std::floating_point T, int D>
+struct AskFirstHits {
+    static constexpr std::string_view name = "first-hits", words = "first hits";
+    using Given = HitsAlong<T, D>;
+    using Answer = std::vector<Hit<T>>;
+    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Visits& visits) {
+        ask(index, given, hits, &visits);
+    }
+    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits) {
+        ask(index, given, hits, nullptr);
+    }
+
+private:
+    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Visits* visits) {
+        hits.resize(std::min(given.k, index.size()));  // a ray has no more hits than there are primitives
+        hits.resize(index.first_hits(given.ray, hits, given.after, visits));
     }
 };
 template <std::floating_point T, int D>
@@ -258,6 +284,7 @@ void for_each_question(F f) {
     f(AskClosestHit<T, D>());
     f(AskAnyHit<T, D>());
     f(AskAllHits<T, D>());
+    f(AskFirstHits<T, D>());
     f(AskClosestPoint<T, D>());
     f(AskFeature<T, D>());
     f(AskNearest<T, D>());
@@ -274,6 +301,8 @@ template <class Given>
 inline constexpr bool is_ray = false;
 template <std::floating_point T, int D>
 inline constexpr bool is_ray<Ray<T, D>> = true;
+template <std::floating_point T, int D>
+inline constexpr bool is_ray<HitsAlong<T, D>> = true;
 }  // namespace detail
 
 template <class Question>

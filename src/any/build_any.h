@@ -121,6 +121,13 @@ public:
         else
             return Any::all_hits_uncounted(ray, hits);
     }
+    std::size_t first_hits_uncounted(const Ray<T, D>& ray, std::span<Hit<T>> hits,
+                                     const AfterHit<T>& after) const override {
+        if constexpr (is_engine)
+            return hedgerow::first_hits(index_, ray, hits, after);
+        else
+            return Any::first_hits_uncounted(ray, hits, after);
+    }
     std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearOptions<T>& options,
                                   std::vector<Near<T, D>>& found) const override {
         if constexpr (is_engine)

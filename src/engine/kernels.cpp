@@ -10,6 +10,7 @@
 
 #include "compiled.h"
 #if HWY_TARGET != HWY_SCALAR
+#include "first_hits-inl.h"
 #include "instances-inl.h"
 #include "many-inl.h"
 
@@ -50,6 +51,18 @@ template <Wanted wanted, class Answer>
 inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, answer_ray<wanted, Answer>,
                                                    answer_rays<wanted, Answer>};
 
+template <int W>
+struct FirstOnes {
+    static std::size_t answer(const WideScene& scene, const Ray<float, 3>* ray, std::span<Hit<float>> hits,
+                              const AfterHit<float>* after) {
+        return first_hits_of<W>(scene, *ray, hits, *after);
+    }
+};
+inline std::size_t answer_first_hits(const WideScene& scene, const Ray<float, 3>& ray,
+                                     std::span<Hit<float>> hits, const AfterHit<float>& after) {
+    return by_width<FirstOnes>(scene, &ray, hits, &after);
+}
+
 extern const AllPointKernels point_kernels;        // in point_kernels.cpp
 extern const ElementKernels element_kernels;       // in near_element_kernels.cpp
 extern const WindingKernel winding_kernel;         // in winding_kernels.cpp
@@ -59,6 +72,7 @@ inline constexpr int best_width = HWY_TARGET == HWY_AVX3 ? 16 : HWY_TARGET == HW
 inline constexpr WideKernels kernels{best_width,
                                      ray_kernels<Wanted::closest, Hit<float>>,
                                      ray_kernels<Wanted::any, bool>,
+                                     answer_first_hits,
                                      &point_kernels,
                                      &element_kernels,
                                      &winding_kernel,

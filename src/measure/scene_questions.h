@@ -21,6 +21,8 @@ public:
     using Rays = std::vector<Ray<T, D>>;
     /// How many neighbours a question for the nearest asks for.
     static constexpr std::size_t neighbours = 8;
+    /// How many hits a question for the first hits asks for.
+    static constexpr std::size_t hits_along = 8;
 
     SceneQuestions(const Scene<T, D>& scene, const AnyIndex<T, D>& index, const MeasureOptions& options)
         : scene_(scene), index_(index), box_(index.bounds()), o_(options) {}
@@ -87,6 +89,12 @@ private:
         const std::string words(Question::words);
         if constexpr (std::same_as<Given, Ray<T, D>>)
             for (const auto& [kind, rays] : sets) add_kind(words + ", " + kind + " rays", rays);
+        else if constexpr (std::same_as<Given, HitsAlong<T, D>>)
+            for (const auto& [kind, rays] : sets) {
+                std::vector<Given> given;
+                for (const auto& ray : rays) given.push_back({ray, hits_along});
+                add_kind(std::to_string(hits_along) + " " + words + ", " + kind + " rays", given);
+            }
         else if constexpr (std::same_as<Given, Vec<T, D>>)
             add_kind(words, random_points());
         else if constexpr (std::same_as<Given, Neighbours<T, D>>)

@@ -1,6 +1,7 @@
 /// Answers of a structure over instances, compared with those of brute force over brute force.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <hedgerow/hedgerow.h>
@@ -14,14 +15,24 @@ template <class T>
 struct PlacedRayAnswer {
     Hit<T> closest;
     bool any = false;
-    std::vector<Hit<T>> all;
+    std::vector<Hit<T>> all, in_pieces;
 
     friend bool operator==(const PlacedRayAnswer&, const PlacedRayAnswer&) = default;
 };
 template <class Index, class T>
 PlacedRayAnswer<T> placed_answer(const Index& index, const Ray<T, 3>& ray) {
-    PlacedRayAnswer<T> said{closest_hit(index, ray), any_hit(index, ray), {}};
+    PlacedRayAnswer<T> said{closest_hit(index, ray), any_hit(index, ray), {}, {}};
     all_hits(index, ray, said.all);
+    // The first hits, and those after them.
+    std::array<Hit<T>, 3> piece;
+    AfterHit<T> after;
+    std::size_t n = piece.size();
+    while (n == piece.size()) {
+        n = first_hits(index, ray, piece, after);
+        said.in_pieces.insert(said.in_pieces.end(), piece.begin(),
+                              piece.begin() + static_cast<std::ptrdiff_t>(n));
+        after = piece.back();
+    }
     return said;
 }
 template <class Index, class T>

@@ -133,6 +133,7 @@ std::vector<Shape> scene(Places<T, D>& places) {
 template <class T, int D>
 struct Questions {
     std::vector<Ray<T, D>> rays;
+    std::vector<HitsAlong<T, D>> hits_along;
     std::vector<Vec<T, D>> points;
     std::vector<Box<T, D>> boxes;
     std::vector<Neighbours<T, D>> neighbours;
@@ -143,7 +144,7 @@ struct Questions {
     template <class Given>
     const std::vector<Given>& given() const {
         return std::get<const std::vector<Given>&>(
-            std::tie(rays, points, boxes, neighbours, balls, solid_balls, regions));
+            std::tie(rays, hits_along, points, boxes, neighbours, balls, solid_balls, regions));
     }
 };
 
@@ -181,6 +182,7 @@ public:
             d[0] += across[0] * T(i % 16) / 64, d[1] += across[1] * T(i / 16) / 64;
             all.rays.back() = {eye, d};
         }
+        for (const auto& r : all.rays) all.hits_along.push_back(hits_along(r));
         // Boxes may be flat or a single point.
         for (std::size_t i = 0; i < others; ++i) {
             all.points.push_back(place());
@@ -211,6 +213,16 @@ private:
         if (below(2) == 0) n.options.radius = distance();
         n.options.factor = factors[below(std::size(factors))];
         return n;
+    }
+    /// The next hits after the start of a ray, or after a place on it: that of a corner or a special one.
+    HitsAlong<T, D> hits_along(const Ray<T, D>& r) {
+        constexpr std::size_t counts[] = {1, 1, 2, 4, 9, 1000, 0};
+        HitsAlong<T, D> along{r, counts[below(std::size(counts))]};
+        if (below(2) == 0) return along;
+        along.after.t = below(8) == 0 ? special() : T(below(3)) / 2;
+        if (below(2) == 0) along.after.t = (corner() - r.origin)[0] / r.direction[0];
+        along.after.element = static_cast<std::uint32_t>(below(below(2) == 0 ? 4 : 64));
+        return along;
     }
     RegionThrough<T, D> region() {
         constexpr T sizes[] = {T(0), T(0x1p-10), T(0.5), T(1), T(8)};

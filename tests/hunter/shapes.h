@@ -65,6 +65,11 @@ void for_each_number(Ray<T, D>& r, F f) {
     for_each_number(r.direction, f);
     f(r.t_min), f(r.t_max);
 }
+template <class T, int D, class F>
+void for_each_number(HitsAlong<T, D>& h, F f) {
+    for_each_number(h.ray, f);
+    f(h.after.t);
+}
 
 template <class T, int D, class F>
 void for_each_number(Neighbours<T, D>& n, F f) {
@@ -139,6 +144,14 @@ template <class T, int D>
 void write(std::ostream& out, const Ray<T, D>& r) {
     write_list(out, r.origin, r.direction, r.t_min, r.t_max);
 }
+template <class T, int D>
+void write(std::ostream& out, const HitsAlong<T, D>& h) {
+    out << '{';
+    write(out, h.ray);
+    out << ", " << h.k << ", {";
+    write(out, h.after.t);
+    out << ", " << h.after.instance << ", " << h.after.element << "}}";
+}
 
 template <class T>
 constexpr const char* scalar_name = std::is_same_v<T, float> ? "float" : "double";
@@ -156,6 +169,8 @@ template <>
 inline constexpr const char* word_for<Box> = "Box";
 template <>
 inline constexpr const char* word_for<Ray> = "Ray";
+template <>
+inline constexpr const char* word_for<HitsAlong> = "HitsAlong";
 
 template <>
 inline constexpr const char* word_for<Neighbours> = "Neighbours";

@@ -1,4 +1,5 @@
-/// The questions of a ray, one at a time or many in a batch: closest hit, any hit, all hits, how many hits.
+/// The questions of a ray, one at a time or many in a batch: closest hit, any hit, all hits, the first hits,
+/// how many hits.
 #pragma once
 
 #include <atomic>
@@ -12,6 +13,7 @@
 #include <hedgerow/queries/any_hit.h>
 #include <hedgerow/queries/closest_hit.h>
 #include <hedgerow/queries/filter.h>
+#include <hedgerow/queries/first_hits.h>
 #include <hedgerow/queries/hit_count.h>
 
 namespace hedgerow {
@@ -45,6 +47,27 @@ std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::
                      std::vector<Hit<typename P::Scalar>>& hits, const Filter& filter = {},
                      Count& count = no_visits) {
     return index.template answer<AllHits<P, Filter>>(count, ray, hits, filter);
+}
+/// Writes the next hits to `hits`, as many as there is room for, each primitive once, in the order of (t,
+/// instance, element). Returns how many there are: fewer than there is room for where the ray has no more.
+/// The hits are those after a place in that order, or the first. So calls that each go on after the last hit
+/// of the call before give the hits of `all_hits`, also where many have the same t:
+///
+///   std::array<Hit<float>, 8> some;
+///   std::size_t n = first_hits(index, ray, some);
+///   for (; n > 0; n = first_hits(index, ray, some, some[n - 1])) ...
+///
+/// `index` may be any index; that of an AnyIndex's own structure answers where there is no filter.
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits,
+                       const AfterHit<typename I::Scalar>& after = {}, const Filter& filter = {},
+                       Count& count = no_visits) {
+    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
+                  requires { index.first_hits(ray, hits, after); })
+        return index.first_hits(ray, hits, after);
+    else
+        return index.template answer<FirstHits<typename I::Primitives, Filter>>(count, ray, hits, after,
+                                                                                filter);
 }
 /// The number of primitives hit (two at a shared edge). Where a primitive may be offered twice, the hits are
 /// first collected, in memory that the thread keeps, and repeated ones are removed.
@@ -145,6 +168,40 @@ AnswerLists<Hit<typename P::Scalar>> all_hits(const Index<S, P>& index,
                                               const RayArray<typename P::Scalar, P::dimension>& rays,
                                               const Filter& filter) {
     return all_hits(index, rays, Threads(), filter);
+}
+
+/// The arrays of a caller in which a batch of first hits writes its answers: k places for each ray, of which
+/// counts[i] are filled for ray i. The other places become Hits that are false. `counts` may be empty.
+template <std::floating_point T>
+struct FirstHitsColumns {
+    std::span<Hit<T>> hits;
+    std::span<std::uint32_t> counts = {};
+};
+/// Writes the next k hits of each ray, as `first_hits` finds them: those after after[i] for ray i, or the
+/// first where `after` is empty. Throws InputError, and writes nothing, if an array that is not empty is too
+/// short. Threads and filters are those of `closest_hits`.
+template <class I, class Filter = KeepAll>
+void first_hits(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays, std::size_t k,
+                const FirstHitsColumns<typename I::Scalar>& columns,
+                std::span<const AfterHit<typename I::Scalar>> after = {}, Threads threads = {},
+                const Filter& filter = {}) {
+    if (k > 0 && columns.hits.size() / k < rays.size())
+        detail::expect_room("places (k for each ray)", k * rays.size(), columns.hits.size());
+    if (!columns.counts.empty()) detail::expect_room("rays", rays.size(), columns.counts.size());
+    if (!after.empty() && after.size() < rays.size())
+        throw InputError("there are " + std::to_string(rays.size()) + " rays, but places to go on from for " +
+                         std::to_string(after.size()) + ": give one for each ray, or none");
+    detail::executor_for<Filter>(threads, rays.size())
+        .for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const auto hits = columns.hits.subspan(i * k, k);
+                const std::size_t found = first_hits(
+                    index, rays[i], hits, after.empty() ? AfterHit<typename I::Scalar>() : after[i],
+                    filter_of_ray(filter, i));
+                std::fill(hits.begin() + static_cast<std::ptrdiff_t>(found), hits.end(), HitOf<I>());
+                if (!columns.counts.empty()) columns.counts[i] = static_cast<std::uint32_t>(found);
+            }
+        });
 }
 
 }  // namespace hedgerow

@@ -19,6 +19,7 @@
 #include <hedgerow/engine/winding_walk.h>
 #include <hedgerow/probes/point_batch.h>
 #include <hedgerow/probes/ray_array.h>
+#include <hedgerow/queries/first_hits.h>
 #include <hedgerow/queries/point_query.h>
 #include <hedgerow/queries/signed_crossings.h>
 #include <hedgerow/walks/kernel.h>
@@ -69,6 +70,11 @@ struct RayKernels {
     Answer (*among_instances)(const WideInstances&, const Ray<float, 3>&);
     KernelUse (*many)(const WideScene&, const RayArray<float, 3>&, Answer*);
 };
+
+/// Writes the next hits of a ray after a place, as many as there is room for, and returns how many there are
+/// (queries/first_hits.h).
+using FirstHitsKernel = std::size_t (*)(const WideScene&, const Ray<float, 3>&, std::span<Hit<float>>,
+                                        const AfterHit<float>&);
 
 /// What a kernel needs to know of an index of points: the tree, and the points of its leaves.
 struct WidePoints {
@@ -204,6 +210,7 @@ struct WideKernels {
     int width;
     RayKernels<Hit<float>> closest;
     RayKernels<bool> any;
+    FirstHitsKernel first_hits;
     const AllPointKernels* points;
     const ElementKernels* elements;
     const WindingKernel* winding_number;

@@ -1,5 +1,5 @@
 /// The engine's specialisations of Kernel (walks/kernel.h): the kernels answer closest and any hits of float
-/// triangles in a WideBvh, and of instances of such indexes.
+/// triangles in a WideBvh, and of instances of such indexes; of the former also the first hits.
 #pragma once
 
 #include <type_traits>
@@ -10,6 +10,7 @@
 #include <hedgerow/geometry/transform.h>
 #include <hedgerow/queries/any_hit.h>
 #include <hedgerow/queries/closest_hit.h>
+#include <hedgerow/queries/first_hits.h>
 #include <hedgerow/walks/kernel.h>
 
 namespace hedgerow {
@@ -94,6 +95,20 @@ requires(detail::TrianglesForKernels<I> || detail::InstancesForKernels<I>)  //
                       std::uint32_t geometry, Q& query) const {
         return this->hit_inside(index, ray, instance, geometry, query) ? query.found() : Flow::go_on;
     }
+};
+
+/// Inside of instances the walk answers: the kernel writes hits of one index alone.
+template <class Set, class Filter, detail::TrianglesForKernels I>
+requires std::same_as<Set, typename I::Primitives>
+struct Kernel<FirstHits<Set, Filter>, I> {
+    explicit operator bool() const { return kernels_ != nullptr; }
+    std::size_t answer(const I& index, const Ray<float, 3>& ray, std::span<Hit<float>> hits,
+                       const AfterHit<float>& after, const Filter& filter = {}) const {
+        return kernels_->first_hits(detail::kernel_scene(index, ray, hit_filter(filter)), ray, hits, after);
+    }
+
+private:
+    const WideKernels* kernels_ = wide_kernels();
 };
 
 /// Makes the WideInstance of an index, whose pointers are to members of that index.
