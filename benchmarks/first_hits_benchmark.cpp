@@ -1,5 +1,5 @@
 /// What the first hits of a ray cost beside its closest hit and beside the list of all hits, by how many are
-/// found in a call; and what the kernel gains over the walk.
+/// found in a call; what the kernel gains over the walk; and what pictures of transparent layers cost.
 ///
 ///   first_hits_benchmark [SCENE ...]    a mesh file, gen:NAME[:SIZE], or stack:N, N layers one behind the
 ///                                       other; default: gen:hairball:200000 gen:soup:50000 stack:1000
@@ -7,6 +7,7 @@
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
 #include <hedgerow/render/camera.h>
+#include <hedgerow/render/shading/transparency.h>
 
 #include "scene.h"
 
@@ -84,6 +85,32 @@ void queries(const MeshIndexOf& index, const std::vector<Ray3f>& rays) {
     }
 }
 
+/// Times of pictures with layers of one opacity.
+void pictures(const MeshIndexOf& index, const std::vector<Ray3f>& rays) {
+    std::vector<Composite> composites(rays.size());
+    std::printf("  %7s %9s %14s %12s %12s\n", "opacity", "layers", "saved by ends", "calls a ray",
+                "back / front");
+    for (const float opacity : {0.02f, 0.2f, 0.5f, 0.9f}) {
+        const auto layer = [&](const Ray3f&, const Hit<float>& hit) {
+            return Layer{{float(hit.element % 3), 0.5f, 0.25f}, opacity};
+        };
+        const auto counts = composite_front_to_back(index, rays, layer, composites, {.counts_saved = true},
+                                                    serial_executor());
+        TransparencyCounts ending;
+        const auto rate = rates(
+            repeats, rays.size(),
+            {[&] {
+                 ending = composite_front_to_back(index, rays, layer, composites, {}, serial_executor());
+                 return ending.layers;
+             },
+             [&] { return composite_back_to_front(index, rays, layer, composites, serial_executor()); }});
+        std::printf("  %7.2f %9zu %12.1f %% %12.2f %12.2f\n", double(opacity),
+                    std::size_t(counts.layers + counts.saved),
+                    100 * double(counts.saved) / double(counts.layers + counts.saved),
+                    double(ending.calls) / double(rays.size()), rate[0] / rate[1]);
+    }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -97,5 +124,6 @@ int main(int count, char** arguments) {
         const auto rays = hitting_rays(index);
         if (rays.empty()) continue;
         queries(index, rays);
+        pictures(index, rays);
     }
 }
