@@ -1,13 +1,18 @@
 /// What the first hits of a ray cost beside its closest hit and beside the list of all hits, by how many are
-/// found in a call; what the kernel gains over the walk; and what pictures of transparent layers cost.
+/// found in a call; what the kernel gains over the walk; what pictures of transparent layers cost; and the
+/// rasteriser's lists of fragments beside the lists of rays.
 ///
 ///   first_hits_benchmark [SCENE ...]    a mesh file, gen:NAME[:SIZE], or stack:N, N layers one behind the
 ///                                       other; default: gen:hairball:200000 gen:soup:50000 stack:1000
+#include <array>
+
 #include <hedgerow/ask.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/render/shading/transparency.h>
+#include <hedgerow/render/visibility/fragments.h>
 
 #include "scene.h"
 
@@ -111,6 +116,38 @@ void pictures(const MeshIndexOf& index, const std::vector<Ray3f>& rays) {
     }
 }
 
+/// Times of the lists of all samples of a picture, by triangles and by rays.
+void lists(const TriangleMesh<float>& mesh, const MeshIndexOf& index) {
+    const PictureSamples<float> samples(automatic_camera(index.bounds()), 512, 512);
+    const auto rays = samples.rays();
+    FragmentCounts counts;
+    std::vector<Hit<float>> hits;
+    std::array<Hit<float>, 8> piece;
+    const auto rate = rates(repeats, rays.size(),
+                            {[&] {
+                                 counts = FragmentLists<float>(samples).list(
+                                     mesh.view(), [](const FragmentBand<float>&) {}, {}, serial_executor());
+                                 return std::size_t(counts.fragments);
+                             },
+                             [&] {
+                                 std::size_t all = 0;
+                                 for (const auto& ray : rays) all += all_hits(index, ray, hits);
+                                 return all;
+                             },
+                             [&] {
+                                 std::size_t all = 0;
+                                 for (const auto& ray : rays) all += in_pieces(index, ray, piece);
+                                 return all;
+                             }});
+    const auto milliseconds = [&](double millions) { return double(rays.size()) / millions * 1e-3; };
+    std::printf(
+        "  512 x 512: %zu fragments in %zu bands, %.1f tests each; lists by triangles %.0f ms, by rays "
+        "%.0f ms, in pieces of 8 %.0f ms\n",
+        std::size_t(counts.fragments), std::size_t(counts.bands),
+        double(counts.raster.tests) / double(counts.fragments), milliseconds(rate[0]), milliseconds(rate[1]),
+        milliseconds(rate[2]));
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -125,5 +162,6 @@ int main(int count, char** arguments) {
         if (rays.empty()) continue;
         queries(index, rays);
         pictures(index, rays);
+        lists(mesh, index);
     }
 }

@@ -9,6 +9,7 @@
 #include "matrix.h"
 #include "placements.h"
 #include "using.h"
+#include "views.h"
 
 using namespace hedgerow;
 
@@ -55,28 +56,6 @@ void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& s
         }
     }
 }
-template <class T>
-Camera seen_from(const TriangleMesh<T>& mesh, std::uint64_t number, bool inside, bool parallel = false) {
-    Box<T, 3> box;
-    for (const auto& v : mesh.vertices) box.expand(v);
-    Random random(77, number);
-    const Vec3f middle(box.center()), extent(box.extent());
-    const auto in_cube = [&] {
-        return Vec3f(static_cast<float>(random.uniform()) - 0.5f, static_cast<float>(random.uniform()) - 0.5f,
-                     static_cast<float>(random.uniform()) - 0.5f);
-    };
-    Camera camera;
-    const Vec3f away = in_cube();
-    camera.eye = middle;
-    for (int k = 0; k < 3; ++k) camera.eye[k] += extent[k] * away[k] * (inside ? 0.8f : 3.f);
-    camera.target = middle;
-    if (inside) camera.target = camera.eye + in_cube();
-    camera.up = number % 3 == 0 ? in_cube() : Vec3f(0, 0, 1);
-    camera.field_of_view = number % 4 == 0 ? 110 : number % 4 == 1 ? 0.5f : 45;
-    if (parallel) camera.projection = Projection::orthographic;
-    return camera;
-}
-
 TYPED_TEST(RasterisedHits, OfGeneratedMeshesFromAllSides) {
     using T = TypeParam;
     const std::size_t views = matrix::in_long_runs(200, 6);
@@ -262,6 +241,43 @@ TYPED_TEST(RasterisedHits, AreCountedOnRequest) {
     EXPECT_LT(tiles.tests, box.tests);
     EXPECT_GT(tiles.tests, 0u);
     EXPECT_GT(rasteriser.bytes(), mesh.size() * sizeof(Sight));
+}
+
+/// Forward shading shades each fragment that is nearest so far, and the last is what is seen.
+TYPED_TEST(RasterisedHits, AreShadedWhenTheyAreNearestSoFar) {
+    using T = TypeParam;
+    const auto mesh = soup<T>(600);
+    const auto index = build<WideBvh>(mesh);
+    const InstanceSet set{Instance(index), Instance(index, Transform<3>::translation({0, 0, 0.3}))};
+    const PictureSamples<T> samples(seen_from(mesh, 1, false), 90, 60);
+    const auto expect = [&](const auto& drawn, const std::vector<Hit<T>>& want) {
+        std::vector<std::uint64_t> shaded;
+        for (const Coverage coverage : {Coverage::all, Coverage::box, Coverage::tiles}) {
+            std::vector<Hit<T>> hits(samples.size()), last(samples.size());
+            std::vector<std::uint32_t> times(samples.size());
+            Rasteriser<T> rasteriser(samples);
+            const auto counts = rasteriser.draw(drawn, hits, default_executor(), {coverage},
+                                                [&](std::size_t i, const Hit<T>& hit) {
+                                                    EXPECT_TRUE(hit.t <= last[i].t);
+                                                    last[i] = hit;
+                                                    ++times[i];
+                                                });
+            expect_same(want, hits);
+            expect_same(want, last);
+            shaded.push_back(0);
+            for (std::size_t i = 0; i < times.size(); ++i) {
+                EXPECT_EQ(times[i] > 0, bool(want[i]));
+                shaded.back() += times[i];
+            }
+            EXPECT_EQ(counts.nearest, shaded.back());
+        }
+        EXPECT_EQ(shaded[0], shaded[1]) << "in the order of the triangles";
+        EXPECT_LT(shaded[2], shaded[1]) << "front to back";
+    };
+    expect(mesh.view(), hits_of_rays(mesh, samples));
+    std::vector<Hit<T>> want(samples.size());
+    closest_hits(build<Bvh>(set), samples.rays(), std::span(want));
+    expect(set.view(), want);
 }
 
 TYPED_TEST(RasterisedHits, OntoThoseOfOthersAndByAnyExecutor) {

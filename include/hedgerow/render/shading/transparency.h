@@ -87,8 +87,8 @@ TransparencyCounts composite_front_to_back(const I& index,
     return counts;
 }
 
-/// The layers of a list of hits of one ray, front to back as `all_hits` has them, composited from the last to
-/// the first.
+/// The layers of a list of hits of one ray, front to back as `all_hits` and lists of fragments
+/// (visibility/fragments.h) have them, composited from the last to the first.
 template <std::floating_point T, int D, class LayerOf>
 Composite composite_list(const Ray<T, D>& ray, std::span<const Hit<T>> hits, const LayerOf& layer) {
     Vec3d colour;

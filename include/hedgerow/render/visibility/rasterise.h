@@ -18,6 +18,7 @@
 #include <hedgerow/parallel/blocks.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/probes/ray.h>
+#include <hedgerow/queries/first_hits.h>
 #include <hedgerow/render/visibility/pixel_bounds.h>
 #include <hedgerow/render/visibility/raster_kernels.h>
 #include <hedgerow/render/visibility/visibility.h>
@@ -37,6 +38,12 @@ struct RasterOptions {
     bool counts = false;
     /// The number of the first triangle: where a set is a part of a larger one.
     std::uint32_t first_element = 0;
+};
+
+/// Shades no fragment: what is seen is shaded later, once (Saito and Takahashi 1990), or not at all.
+struct NoShading {
+    template <class T>
+    void operator()(std::size_t, const Hit<T>&) const {}
 };
 
 /// Draws sets of triangles, one after the other, into a buffer with a Hit for each sample.
@@ -59,19 +66,45 @@ public:
     template <class Set>
     RasterCounts draw(const Set& set, std::span<Hit<T>> hits, Executor& executor,
                       const RasterOptions& options = {}) {
+        return draw(set, hits, executor, options, NoShading());
+    }
+    /// Forward shading: also calls shade(number, hit) for each fragment that is the nearest of its sample so
+    /// far, which rules out the kernels. The last call for a sample is that for its hit. Threads of the
+    /// executor call it at the same time, for different samples.
+    template <class Set, class Shade>
+    RasterCounts draw(const Set& set, std::span<Hit<T>> hits, Executor& executor,
+                      const RasterOptions& options, const Shade& shade) {
         detail::expect_room("samples", samples_.size(), hits.size());
         IeeeExecutor threads(executor);
-        if constexpr (Instanced<Set>) {
-            RasterCounts counts;
-            if (!options.onto) std::fill_n(hits.begin(), samples_.size(), Hit<T>());
-            for (std::uint32_t i = 0; i < set.size(); ++i)
-                counts += draw_in(&set[i].transform().back(), {0, i, set[i].geometry(), true},
-                                  set[i].index().primitives(), hits, threads, options, true);
-            return counts;
-        } else {
-            return draw_in(nullptr, {options.first_element, 0, 0, false}, set, hits, threads, options,
-                           options.onto);
-        }
+        counts_ = options.counts;
+        bool onto = options.onto;
+        if constexpr (Instanced<Set>)
+            if (!std::exchange(onto, true)) std::fill_n(hits.begin(), samples_.size(), Hit<T>());
+        return in_each_space(set, options.first_element, [&](const auto& triangles) {
+            return draw_set(triangles, options.coverage, hits, threads, onto, shade);
+        });
+    }
+
+    /// Calls f(number, hit) for each sample in some rows of the picture and each triangle that covers it, of
+    /// one sample in the order of the triangles: the fragments of the rows. Threads of the executor call f at
+    /// the same time, for different samples.
+    template <class Set, class F>
+    RasterCounts for_each_fragment(const Set& set, int top, int bottom, Executor& executor, F f) {
+        IeeeExecutor threads(executor);
+        constexpr int rows_at_once = 16;
+        const auto bands = static_cast<std::size_t>((bottom - top + rows_at_once) / rows_at_once);
+        return in_each_space(set, 0, [&](const auto& triangles) {
+            prepare_rays(threads);
+            return in_parts(triangles, Coverage::box, threads, [&](std::size_t first) {
+                return counted(bands, 1, threads, [&](std::size_t band, RasterCounts& counts) {
+                    const int from = top + static_cast<int>(band) * rows_at_once;
+                    const PixelBox rows{0, from, samples_.width() - 1,
+                                        std::min(from + rows_at_once - 1, bottom)};
+                    for (std::size_t i = 0; i < sights_.size(); ++i)
+                        meet_samples(triangles, first + i, common(sights_[i].box, rows), counts, f);
+                });
+            });
+        });
     }
     /// Bytes of memory that drawing has taken so far, beside the hits.
     std::size_t bytes() const {
@@ -82,26 +115,36 @@ public:
     }
 
 private:
-    /// Draws triangles of the space to which `back` leads; null: of the world.
-    template <class Triangles>
-    RasterCounts draw_in(const Affine<3>* back, const RasterNames& names, const Triangles& triangles,
-                         std::span<Hit<T>> hits, Executor& threads, const RasterOptions& options, bool onto) {
-        back_ = back, names_ = names, counts_ = options.counts;
-        bounds_ = PixelBounds(samples_, back);
-        const Coverage coverage = options.coverage;
-        if (!(coverage == Coverage::tiles && uses_kernels<Triangles>())) prepare_rays(threads);
+    /// Calls work(triangles) for a set of triangles, or for each instance of a set, in its space.
+    template <class Set, class Work>
+    RasterCounts in_each_space(const Set& set, std::uint32_t first_element, Work work) {
+        const auto enter = [&](const Affine<3>* back, const RasterNames& names) {
+            back_ = back, names_ = names;
+            bounds_ = PixelBounds(samples_, back);
+        };
         RasterCounts counts;
-        for (std::size_t first = 0; first < std::max<std::size_t>(triangles.size(), 1) && tiles_ > 0;
-             first += at_once) {
-            const std::size_t count = std::min(at_once, triangles.size() - first);
-            look(triangles, first, count, coverage, threads);
-            counts += coverage == Coverage::tiles ? draw_in_tiles(triangles, first, hits, threads, onto)
-                                                  : draw_in_bands(triangles, first, hits, threads, onto);
-            for (const Sight& sight : sights_) counts.outside += sight.box.empty();
-            counts.triangles += count;
-            onto = true;
+        if constexpr (Instanced<Set>) {
+            for (std::uint32_t i = 0; i < set.size(); ++i) {
+                enter(&set[i].transform().back(), {0, i, set[i].geometry(), true});
+                counts += work(set[i].index().primitives());
+            }
+        } else {
+            enter(nullptr, {first_element, 0, 0, false});
+            counts = work(set);
         }
         return counts;
+    }
+    /// Draws triangles of one space.
+    template <class Triangles, class Shade>
+    RasterCounts draw_set(const Triangles& triangles, Coverage coverage, std::span<Hit<T>> hits,
+                          Executor& threads, bool onto, const Shade& shade) {
+        if (!(coverage == Coverage::tiles && shades_nothing<Shade> && uses_kernels<Triangles>()))
+            prepare_rays(threads);
+        return in_parts(triangles, coverage, threads, [&](std::size_t first) {
+            const bool over = std::exchange(onto, true);
+            return coverage == Coverage::tiles ? draw_in_tiles(triangles, first, hits, threads, over, shade)
+                                               : draw_in_bands(triangles, first, hits, threads, over, shade);
+        });
     }
 
     /// Triangles that are looked at together, and entries of triangles in tiles that are sorted together.
@@ -112,6 +155,8 @@ private:
         bool usable = false;
     };
 
+    template <class Shade>
+    static constexpr bool shades_nothing = std::is_same_v<Shade, NoShading>;
     /// The kernels for such triangles, or null.
     template <class Triangles>
     const RasterKernels* kernels() const {
@@ -139,6 +184,20 @@ private:
                 if (probe.usable()) rays_[i] = {probe.watertight(), true};
             }
         });
+    }
+    /// Calls work(first) for some triangles after the other, once it is known where they are seen.
+    template <class Triangles, class Work>
+    RasterCounts in_parts(const Triangles& triangles, Coverage coverage, Executor& threads, Work work) {
+        RasterCounts counts;
+        for (std::size_t first = 0; first < std::max<std::size_t>(triangles.size(), 1) && tiles_ > 0;
+             first += at_once) {
+            const std::size_t count = std::min(at_once, triangles.size() - first);
+            look(triangles, first, count, coverage, threads);
+            counts += work(first);
+            for (const Sight& sight : sights_) counts.outside += sight.box.empty();
+            counts.triangles += count;
+        }
+        return counts;
     }
     /// Finds where triangles from `first` on are seen.
     template <class Triangles>
@@ -171,9 +230,9 @@ private:
 
     // ---- Bands of rows: in each, all triangles in their order, each at the samples in its box ----
 
-    template <class Triangles>
+    template <class Triangles, class Shade>
     RasterCounts draw_in_bands(const Triangles& triangles, std::size_t first, std::span<Hit<T>> hits,
-                               Executor& threads, bool onto) {
+                               Executor& threads, bool onto, const Shade& shade) {
         const auto bands = static_cast<std::size_t>((samples_.height() + band_rows - 1) / band_rows);
         return counted(bands, 1, threads, [&](std::size_t band, RasterCounts& counts) {
             const int top = static_cast<int>(band) * band_rows;
@@ -181,22 +240,22 @@ private:
                 common({0, top, samples_.width() - 1, top + band_rows - 1}, bounds_.whole());
             if (!onto) clear(rows, hits);
             for (std::size_t i = 0; i < sights_.size(); ++i)
-                test(triangles, first + i, common(sights_[i].box, rows), hits, counts);
+                test(triangles, first + i, common(sights_[i].box, rows), hits, counts, shade);
         });
     }
 
     // ---- Tiles: in each, the triangles that may cover a sample of it ----
 
-    template <class Triangles>
+    template <class Triangles, class Shade>
     RasterCounts draw_in_tiles(const Triangles& triangles, std::size_t first, std::span<Hit<T>> hits,
-                               Executor& threads, bool onto) {
+                               Executor& threads, bool onto, const Shade& shade) {
         RasterCounts counts;
         std::size_t begin = 0;
         do {
             begin = list_triangles(triangles, first, begin, threads);
             counts += counted(static_cast<std::size_t>(tiles_), 16, threads,
                               [&](std::size_t tile, RasterCounts& c) {
-                                  draw_tile(triangles, first, static_cast<int>(tile), hits, onto, c);
+                                  draw_tile(triangles, first, static_cast<int>(tile), hits, onto, c, shade);
                               });
             onto = true;
         } while (begin < sights_.size());
@@ -278,15 +337,15 @@ private:
             for (int x = left; x <= right; ++x)
                 if (!edges.exclude(pixels_of(static_cast<int>(number(x, y))))) f(number(x, y));
     }
-    template <class Triangles>
+    template <class Triangles, class Shade>
     void draw_tile(const Triangles& triangles, std::size_t first, int tile, std::span<Hit<T>> hits, bool onto,
-                   RasterCounts& counts) {
+                   RasterCounts& counts, const Shade& shade) {
         const PixelBox here = pixels_of(tile);
         const auto t = static_cast<std::size_t>(tile);
         const std::span<std::uint32_t> list(listed_.data() + begins_[t], begins_[t + 1] - begins_[t]);
         if (list.empty()) return onto ? void() : clear(here, hits);
         order_front_to_back(list);
-        if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>)
+        if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>> && shades_nothing<Shade>)
             if (const RasterKernels* const in_lanes = kernels<Triangles>())
                 return draw_by_kernel(*in_lanes, triangles, first, here, list, hits, onto);
         if (!onto) clear(here, hits);
@@ -294,7 +353,7 @@ private:
         for (const std::uint32_t i : list) {
             if (sights_[i].nearest > farthest)
                 ++counts.hidden;
-            else if (test(triangles, first + i, common(sights_[i].box, here), hits, counts))
+            else if (test(triangles, first + i, common(sights_[i].box, here), hits, counts, shade))
                 farthest = farthest_of(here, hits);
         }
     }
@@ -372,14 +431,12 @@ private:
         for (int y = box.top; y <= box.bottom; ++y)
             std::fill_n(&hits[samples_.number(box.left, y)], box.right - box.left + 1, Hit<T>());
     }
-    /// Tests a triangle at the samples of a box. Returns whether it is the closest hit of any.
-    template <class Triangles>
-    bool test(const Triangles& triangles, std::size_t i, const PixelBox& box, std::span<Hit<T>> hits,
-              RasterCounts& counts) const {
-        if (box.empty()) return false;
+    /// Calls f(number, hit) for the samples of a box that a triangle covers.
+    template <class Triangles, class F>
+    void meet_samples(const Triangles& triangles, std::size_t i, const PixelBox& box, RasterCounts& counts,
+                      F f) const {
+        if (box.empty()) return;
         const auto triangle = triangles.triangle(i);
-        const std::uint32_t element = static_cast<std::uint32_t>(i) + names_.first_element;
-        bool found = false;
         for (int y = box.top; y <= box.bottom; ++y)
             for (int x = box.left; x <= box.right; ++x) {
                 const std::size_t s = samples_.number(x, y);
@@ -387,20 +444,22 @@ private:
                 if (!rays_[s].usable) continue;
                 const auto m = meet(rays_[s].ray, triangle);
                 if (!m || !(m->t >= 0 && m->t <= std::numeric_limits<T>::max())) continue;
-                Hit<T>& hit = hits[s];
-                if (m->t > hit.t) continue;
-                if (m->t == hit.t &&
-                    std::pair(hit.instance, hit.element) < std::pair(names_.instance, element))
-                    continue;
-                hit = {m->t,
-                       m->u,
-                       m->v,
-                       triangles.id(i) + names_.first_element,
-                       names_.geometry,
-                       names_.instance,
-                       element};
-                found = true;
+                f(s, Hit<T>{m->t, m->u, m->v, triangles.id(i) + names_.first_element, names_.geometry,
+                            names_.instance, static_cast<std::uint32_t>(i) + names_.first_element});
             }
+    }
+    /// Tests a triangle at the samples of a box. Returns whether it is the closest hit of any.
+    template <class Triangles, class Shade>
+    bool test(const Triangles& triangles, std::size_t i, const PixelBox& box, std::span<Hit<T>> hits,
+              RasterCounts& counts, const Shade& shade) const {
+        bool found = false;
+        meet_samples(triangles, i, box, counts, [&](std::size_t s, const Hit<T>& hit) {
+            if (hit_before(hits[s], hit)) return;
+            hits[s] = hit;
+            shade(s, hit);
+            ++counts.nearest;
+            found = true;
+        });
         return found;
     }
     /// No hit in a box of pixels is farther forward of the eye than this: directions have length 1, but for

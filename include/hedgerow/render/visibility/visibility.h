@@ -18,10 +18,12 @@ struct RasterCounts {
     std::uint64_t triangles = 0;  ///< drawn
     std::uint64_t outside = 0;    ///< of these, how many have a box without samples
     std::uint64_t tests = 0;      ///< of a triangle at a sample
+    std::uint64_t nearest = 0;    ///< fragments that were the nearest of their sample so far
     std::uint64_t hidden = 0;     ///< times that a triangle is behind all hits of a tile, and passed over
 
     RasterCounts& operator+=(const RasterCounts& more) {
-        triangles += more.triangles, outside += more.outside, tests += more.tests, hidden += more.hidden;
+        triangles += more.triangles, outside += more.outside, tests += more.tests, nearest += more.nearest,
+            hidden += more.hidden;
         return *this;
     }
 };
