@@ -1,6 +1,7 @@
 /// What is seen through each pixel of a picture, on one thread: by rasterising and by casting rays, with the
-/// build of an index and without; beside Mesa's rasteriser, if it was found. Times in milliseconds, and the
-/// geometric mean of the ratios to Mesa's.
+/// build of an index and without, and by beams; beside Mesa's rasteriser, if it was found. Times in
+/// milliseconds, and the geometric means of Mesa's times to the rasteriser's, and of those of rays to those
+/// of beams.
 ///
 ///   visibility_benchmark [SIZE] [SCENE ...]     default: 1024, and the dragon if it is there,
 ///   gen:teapot-in-stadium:50000 gen:terrain:200000 gen:hairball:200000 gen:cornell-box
@@ -15,6 +16,7 @@
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
 #include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 
 #include "peers/rasterisers.h"
@@ -27,8 +29,13 @@ namespace {
 
 constexpr int rounds = 9;
 
-/// Measures one scene. Returns Mesa's time by ours, or 0 without Mesa.
-double measure_scene(const std::string& name, int size) {
+/// What is measured of a scene: Mesa's time by the rasteriser's, or 0 without Mesa; the time of rays by that
+/// of beams, and the visits of beams by those of packets.
+struct Ratios {
+    double mesa = 1, beams = 1, visits = 1;
+    void multiply(const Ratios& r) { mesa *= r.mesa, beams *= r.beams, visits *= r.visits; }
+};
+Ratios measure_scene(const std::string& name, int size) {
     const auto mesh = scene(name);
     Box3f box;
     for (const auto& v : mesh.vertices) box.expand(v);
@@ -39,13 +46,14 @@ double measure_scene(const std::string& name, int size) {
 
     const auto index = build<WideBvh>(mesh, {}, serial_executor());
     Rasteriser<float> rasteriser(samples);
-    std::vector<Hit<float>> cast(rays.size()), drawn(rays.size());
+    std::vector<Hit<float>> cast(rays.size()), drawn(rays.size()), beamed(rays.size());
     Contest contest;
     contest.add("raster", [&] { return rasteriser.draw(mesh.view(), drawn, serial_executor()).triangles; });
     contest.add("cast", [&] {
         closest_hits(index, rays, std::span(cast), serial_executor());
         return rays.size();
     });
+    contest.add("beams", [&] { return beam_hits(index, samples, beamed, serial_executor()).beams; });
     contest.add("build and cast", [&] {
         closest_hits(build<WideBvh>(mesh, {}, serial_executor()), rays, std::span(cast), serial_executor());
         return rays.size();
@@ -60,13 +68,23 @@ double measure_scene(const std::string& name, int size) {
         measured_in_turn(rounds, contest, Clock::thread, [](const std::string&) { return true; });
 
     std::size_t hit = 0, differ = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) hit += bool(cast[i]), differ += !(cast[i] == drawn[i]);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        hit += bool(cast[i]), differ += !(cast[i] == drawn[i]) + !(cast[i] == beamed[i]);
     std::printf("%-28s %7zu triangles, %5.1f%% of pixels hit, %zu samples differ\n",
                 kind.empty() ? "file" : kind.c_str(), mesh.size(), 100 * double(hit) / double(rays.size()),
                 differ);
     for (std::size_t i = 0; i < times.size(); ++i)
         std::printf("    %-16s %9.2f ms\n", contest.names[i].c_str(), times[i].median * 1e3);
-    if (!peer) return 0;
+    // Beams beside rays.
+    const BeamCounts packets = beam_hits(index, samples, beamed, serial_executor(), {.widest = 0}),
+                     beams = beam_hits(index, samples, beamed, serial_executor());
+    Ratios ratios{0, times[1].median / times[2].median, double(beams.visits) / double(packets.visits)};
+    std::printf(
+        "    beams are %.2f times as fast as rays, with %.1f%% of their visits; %.1f%% of the samples "
+        "filled, %llu tiles by packets, %llu again\n",
+        ratios.beams, 100 * ratios.visits, 100 * double(beams.filled) / double(rays.size()),
+        static_cast<unsigned long long>(beams.packets), static_cast<unsigned long long>(beams.again));
+    if (!peer) return ratios;
     std::vector<std::uint32_t> elements(rays.size());
     peer->read(elements);
     std::size_t other = 0;
@@ -74,7 +92,8 @@ double measure_scene(const std::string& name, int size) {
     std::printf("    %.2f times as fast as %s, which shows another triangle at %.3f%% of the pixels\n",
                 times.back().median / times[0].median, peer->name().c_str(),
                 100 * double(other) / double(rays.size()));
-    return times.back().median / times[0].median;
+    ratios.mesa = times.back().median / times[0].median;
+    return ratios;
 }
 
 }  // namespace
@@ -94,11 +113,12 @@ int main(int count, char** arguments) try {
     }
     std::printf("%s, %s, one thread, %d x %d, medians of %d\n", processor().c_str(), compiler().c_str(), size,
                 size, rounds);
-    double product = 1;
-    for (const auto& name : names) product *= measure_scene(name, size);
-    if (product > 0)
-        std::printf("geometric mean: %.2f times as fast as Mesa\n",
-                    std::pow(product, 1 / double(names.size())));
+    Ratios product;
+    for (const auto& name : names) product.multiply(measure_scene(name, size));
+    const auto mean = [&](double of_all) { return std::pow(of_all, 1 / double(names.size())); };
+    if (product.mesa > 0) std::printf("geometric mean: %.2f times as fast as Mesa\n", mean(product.mesa));
+    std::printf("geometric mean: beams %.2f times as fast as rays, with %.1f%% of their visits\n",
+                mean(product.beams), 100 * mean(product.visits));
 } catch (const InputError& error) {
     std::fprintf(stderr, "visibility_benchmark: %s\n", error.what());
     return 3;

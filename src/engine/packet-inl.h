@@ -34,13 +34,13 @@ public:
         return rays_.look(rays, first, row);
     }
     const PacketRays& rays() const { return rays_; }
+    PacketHits<wanted>& hits() { return rays_; }
     /// Answers the rays that go this way.
     template <class Answer>
     HWY_INLINE void answer(std::uint32_t way, Answer* answers) {
         rays_.prepare(way, scene_.tree.bounds);
         rays_.clear_hits();
-        for (int k = 0; k < 3; ++k) near_row_[k] = static_cast<std::size_t>(2 * k + rays_.down[k]) * 4 * W;
-        trace();
+        trace([&](Stack & stack) __attribute__((always_inline)) { open_root(stack); });
         for (int row = 0; row < size; row += static_cast<int>(block_side)) {
             Answer* const to = answers + rays_.number(row);
             for (int c = 0; c < static_cast<int>(block_side); ++c)
@@ -48,9 +48,50 @@ public:
         }
     }
 
-    /// Boxes that were tested since the last `count_anew`, and rays that entered them.
+    /// The walk of prepared rays. `start(stack)` opens the root, or pushes up to `most` children to begin
+    /// with, the nearest last, each as the place in its node (node · W + child).
+    using Stack = WalkStack<W, wanted>;
+    template <int most = 0, class Start>
+    HWY_INLINE void trace(Start start) {
+        for (int k = 0; k < 3; ++k) near_row_[k] = static_cast<std::size_t>(2 * k + rays_.down[k]) * 4 * W;
+        constexpr int room = Stack::room(bvh_max_depth + 1) + most;
+        typename Stack::Place places[room];
+        Stack stack(places, 0, 0);
+        stack.clear();
+        start(stack);
+        for (std::uint32_t place = stack.pop(); place != Stack::end; place = stack.pop()) {
+            // The popped child, and the box that bounds it.
+            const std::byte* const node = scene_.tree.nodes.at(place / W);
+            const int child = static_cast<int>(place % W);
+            const std::uint32_t word = children_of<W>(node)[child];
+            const bool is_leaf = (word & WideChild::leaf_bit) != 0;
+            // Skip the child if no ray enters it.
+            const std::uint64_t active = entering(node, child);
+            ++counts_.boxes;
+            if (active == 0) continue;
+            counts_.rays += static_cast<std::size_t>(std::popcount(active));
+            // An inner node: push its children.
+            if (!is_leaf) {
+                open(stack, word);
+                continue;
+            }
+            ++counts_.visits;
+            // A leaf: test the rays that enter it. After a hit, drop children beyond the greatest limit, or
+            // end where all rays have their answers.
+            if (!rays_.test_leaf(scene_, scene_.blocks[word & ~WideChild::leaf_bit], active)) continue;
+            rays_.take_last();
+            if constexpr (wanted == Wanted::closest)
+                stack.sweep(rays_.s_last);
+            else if (rays_.s_last < 0)
+                return;
+        }
+    }
+    HWY_INLINE void open_root(Stack& stack) { open(stack, 0); }
+
+    /// Boxes that were tested since the last `count_anew`, rays that entered them, and nodes and leaves that
+    /// were opened.
     struct Counts {
-        std::size_t boxes = 0, rays = 0;
+        std::size_t boxes = 0, rays = 0, visits = 0;
     };
     const Counts& counts() const { return counts_; }
     void count_anew() { counts_ = {}; }
@@ -59,7 +100,6 @@ private:
     using Rays = PacketHits<wanted>;
     using V = PacketRays::V;
     using M = PacketRays::M;
-    using Stack = WalkStack<W, wanted>;
     static constexpr PacketRays::F f{};
 
     template <class Answer>
@@ -112,6 +152,7 @@ private:
     /// Pushes the children of a node that some ray may enter. The stack stores the node and the child's
     /// place in it, not the child, so that the child's box is found at the pop.
     HWY_INLINE void open(Stack& stack, std::uint32_t number) {
+        ++counts_.visits;
         const std::byte* const node = scene_.tree.nodes.at(number);
         const Boxes<W> boxes = boxes_of(node);
         for (unsigned left = boxes.bits(); left != 0; left &= left - 1)
@@ -120,39 +161,6 @@ private:
         for (std::uint32_t i = 0; i < W; ++i) places[i] = number * W + i;
         stack.push(boxes, places);
     }
-    HWY_INLINE void trace() {
-        constexpr int room = Stack::room(bvh_max_depth + 1);
-        typename Stack::Place places[room];
-        Stack stack(places, 0, 0);
-        stack.clear();
-        open(stack, 0);
-        for (std::uint32_t place = stack.pop(); place != Stack::end; place = stack.pop()) {
-            // The popped child, and the box that bounds it.
-            const std::byte* const node = scene_.tree.nodes.at(place / W);
-            const int child = static_cast<int>(place % W);
-            const std::uint32_t word = children_of<W>(node)[child];
-            const bool is_leaf = (word & WideChild::leaf_bit) != 0;
-            // Skip the child if no ray enters it.
-            const std::uint64_t active = entering(node, child);
-            ++counts_.boxes;
-            if (active == 0) continue;
-            counts_.rays += static_cast<std::size_t>(std::popcount(active));
-            // An inner node: push its children.
-            if (!is_leaf) {
-                open(stack, word);
-                continue;
-            }
-            // A leaf: test the rays that enter it. After a hit, drop children beyond the greatest limit, or
-            // end where all rays have their answers.
-            if (!rays_.test_leaf(scene_, scene_.blocks[word & ~WideChild::leaf_bit], active)) continue;
-            rays_.take_last();
-            if constexpr (wanted == Wanted::closest)
-                stack.sweep(rays_.s_last);
-            else if (rays_.s_last < 0)
-                return;
-        }
-    }
-
     const WideScene& scene_;
     const Prefetch<W> prefetch_;
     Rays rays_;

@@ -1,0 +1,93 @@
+/// Pictures by beams: tiles of a picture descend through an index together with its cells, so that a tile
+/// that lies within one triangle, or sees nothing, is found at once (Heckbert and Hanrahan, SIGGRAPH 1984).
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include <hedgerow/ask/rays.h>
+#include <hedgerow/base/error.h>
+#include <hedgerow/parallel/ieee_executor.h>
+#include <hedgerow/render/visibility/beam_kernels.h>
+
+namespace hedgerow {
+
+struct BeamOptions {
+    /// The side of the largest tiles in pixels: 64, 32, 16 or 8. With 0 all rays go in packets, from the
+    /// root; to measure what beams save.
+    int widest = beam_side;
+};
+
+namespace detail {
+/// The tiles of a picture, over a kernel.
+class BeamPicture {
+public:
+    BeamPicture(const WideScene& scene, const PictureSamples<float>& samples, int widest)
+        : scene_(scene), samples_(samples), plane_(samples.plane()), bounds_(samples), widest_(widest) {}
+
+    int columns() const { return (samples_.width() + beam_side - 1) / beam_side; }
+    std::size_t tiles() const {
+        return static_cast<std::size_t>(columns()) *
+               static_cast<std::size_t>((samples_.height() + beam_side - 1) / beam_side);
+    }
+    /// Writes the hits of tile `number`, by rows from the top left.
+    void trace(const BeamKernels& kernels, std::size_t number, std::span<Hit<float>> hits,
+               BeamCounts& counts) const {
+        const int left = static_cast<int>(number) % columns() * beam_side,
+                  top = static_cast<int>(number) / columns() * beam_side;
+        const PixelBox pixels{left, top, std::min(left + beam_side, samples_.width()) - 1,
+                              std::min(top + beam_side, samples_.height()) - 1};
+        std::vector<Ray<float, 3>> rays;
+        if (!samples_.in_the_middle()) {
+            rays.resize(std::size_t(beam_side) * beam_side);
+            for (int y = pixels.top; y <= pixels.bottom; ++y)
+                for (int x = pixels.left; x <= pixels.right; ++x)
+                    rays[static_cast<std::size_t>((y - top) * beam_side + x - left)] = samples_.ray(x, y);
+        }
+        kernels.trace(
+            scene_,
+            {plane_, bounds_.frame(), rays.empty() ? nullptr : rays.data(), pixels,
+             &hits[samples_.number(left, top)], static_cast<std::size_t>(samples_.width()), widest_},
+            counts);
+    }
+
+private:
+    const WideScene scene_;
+    const PictureSamples<float>& samples_;
+    const PicturePlane plane_;
+    const PixelBounds bounds_;
+    const int widest_;
+};
+}  // namespace detail
+
+/// Writes the closest hit of each sample of a picture to `hits`, by number: the bits that closest_hits writes
+/// for the samples' rays, for any executor and options. Beams go through a WideBvh of triangles of float, by
+/// kernels, if they come from one eye; any other index or camera, or a processor without kernels, is asked
+/// the rays, and then nothing is counted. Throws InputError for too few places, and UsageError for another
+/// width.
+template <class S, class P>
+BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samples,
+                     std::span<Hit<float>> hits, Executor& executor, const BeamOptions& options = {}) {
+    detail::expect_room("samples", samples.size(), hits.size());
+    if (const int w = options.widest; w != 0 && w != 8 && w != 16 && w != 32 && w != beam_side)
+        throw UsageError("beams are 64, 32, 16 or 8 pixels wide, or 0 for none: not " + std::to_string(w));
+    BeamCounts sum;
+    if constexpr (detail::TrianglesForKernels<Index<S, P>>) {
+        const bool from_one_eye = samples.has_plane() && !samples.plane().parallel;
+        if (const BeamKernels* const kernels = beam_kernels(); kernels != nullptr && from_one_eye) {
+            const detail::BeamPicture picture(detail::kernel_scene(index), samples, options.widest);
+            std::vector<BeamCounts> counts(picture.tiles());
+            IeeeExecutor threads(executor);
+            threads.for_each_piece(counts.size(), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) picture.trace(*kernels, i, hits, counts[i]);
+            });
+            for (const BeamCounts& c : counts) sum += c;
+            return sum;
+        }
+    }
+    closest_hits(index, samples.rays(), hits.first(samples.size()), executor);
+    return sum;
+}
+
+}  // namespace hedgerow

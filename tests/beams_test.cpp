@@ -1,0 +1,222 @@
+/// The hits of beams against those of rays, bit for bit.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include <hedgerow/hedgerow.h>
+#include <hedgerow/io/mesh_file.h>
+#include <hedgerow/render/visibility/beams.h>
+#include <hedgerow/scenes/meshes.h>
+#include <hedgerow/scenes/random.h>
+
+#include "matrix.h"
+#include "using.h"
+
+using namespace hedgerow;
+
+namespace {
+
+using Mesh = TriangleMesh<float>;
+
+void expect_same(const std::vector<Hit<float>>& want, const std::vector<Hit<float>>& hits) {
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) differ += !(hits[i] == want[i]);
+    EXPECT_EQ(differ, 0u) << "of " << hits.size();
+}
+/// Compares what beams of every width and instruction set find with the hits of rays, in trees of every
+/// width. Returns the counts of the widest beams, summed up.
+BeamCounts expect_hits_of_rays(const Mesh& mesh, const PictureSamples<float>& samples) {
+    std::vector<Hit<float>> want(samples.size());
+    closest_hits(build<BruteForce>(mesh), samples.rays(), std::span(want));
+    BeamCounts sum;
+    for (const int width : wide_widths) {
+        const auto index = build<WideBvh>(mesh, {.width = width});
+        for (const auto name : instruction_sets())
+            for (const int widest : {64, 16, 8, 0}) {
+                SCOPED_TRACE(std::string(name) + ", tree of " + std::to_string(width) + ", beams of " +
+                             std::to_string(widest));
+                const Using use(name);
+                // What the buffer held does not matter.
+                std::vector<Hit<float>> hits(samples.size(), Hit<float>{1e-30f, 2, 3, 4, 5, 6, 7});
+                const auto counts = beam_hits(index, samples, hits, default_executor(), {.widest = widest});
+                expect_same(want, hits);
+                if (widest == 64) sum += counts;
+            }
+    }
+    return sum;
+}
+Camera seen_from(const Mesh& mesh, std::uint64_t number, bool inside) {
+    Box3f box;
+    for (const auto& v : mesh.vertices) box.expand(v);
+    Random random(77, number);
+    const auto in_cube = [&] { return Vec3f(random.in_cube<3>() - Vec3d::all(0.5)); };
+    const Vec3f extent = box.extent(), away = in_cube();
+    Camera camera;
+    camera.eye = camera.target = box.center();
+    for (int k = 0; k < 3; ++k) camera.eye[k] += extent[k] * away[k] * (inside ? 0.8f : 3.f);
+    if (inside) camera.target = camera.eye + in_cube();
+    camera.up = number % 3 == 0 ? in_cube() : Vec3f(0, 0, 1);
+    camera.field_of_view = number % 4 == 0 ? 110 : number % 4 == 1 ? 0.5f : 45;
+    return camera;
+}
+
+TEST(Beams, OfGeneratedMeshesFromAllSides) {
+    const std::size_t views = matrix::in_long_runs(200, 4);
+    for (std::uint64_t i = 0; i < views; ++i)
+        for (const bool inside : {false, true}) {
+            SCOPED_TRACE(std::to_string(i) + (inside ? " inside" : " outside"));
+            const auto expect = [&](const char* name, const Mesh& mesh) {
+                SCOPED_TRACE(name);
+                expect_hits_of_rays(mesh, PictureSamples<float>(seen_from(mesh, i, inside), 141, 83));
+                expect_hits_of_rays(mesh, PictureSamples<float>(seen_from(mesh, i, inside), 50, 70, 5, 1, 4));
+            };
+            expect("soup", soup<float>(200));
+            expect("terrain", terrain<float>(1500));
+            expect("stadium", teapot_in_stadium<float>(1500));
+            expect("hairball", hairball<float>(800));
+            expect("cornell box", cornell_box<float>(0));
+        }
+}
+
+/// Triangles with corners on the rays of samples, before and behind the eye, near and far: whether a ray hits
+/// them depends on the last bits.
+TEST(Beams, OfTrianglesWithCornersOnRays) {
+    const std::size_t scenes = matrix::in_long_runs(3000, 40);
+    BeamCounts counts;
+    for (std::uint64_t scene = 0; scene < scenes; ++scene) {
+        SCOPED_TRACE(scene);
+        Random random(78, scene);
+        const auto number = [&](double from, double to) { return from + (to - from) * random.uniform(); };
+        Camera camera;
+        const double far = scene % 3 == 0 ? 1e4 : 1;
+        for (int k = 0; k < 3; ++k) {
+            camera.eye[k] = static_cast<float>(number(-far, far));
+            camera.target[k] = camera.eye[k] + static_cast<float>(number(-1, 1));
+        }
+        camera.field_of_view = static_cast<float>(scene % 4 == 0 ? 0.2 : number(20, 140));
+        const PictureSamples<float> samples(camera, 70, 37, scene, 0, scene % 2 == 0 ? 1 : 4);
+        const auto on_a_ray = [&](bool behind) {
+            // Often at the border of a tile.
+            const auto pixel = [&](int count) {
+                const auto any = static_cast<int>(random.bits() % static_cast<unsigned>(count));
+                return scene % 5 < 2 ? std::min(any / 8 * 8 + (any % 2 == 0 ? 0 : 7), count - 1) : any;
+            };
+            const auto ray = samples.ray(pixel(70), pixel(37));
+            const auto t = static_cast<float>(std::exp2(number(-6, 6)));
+            return ray.at(behind ? -t : t);
+        };
+        Mesh mesh;
+        for (std::uint32_t i = 0; i < 40; ++i) {
+            const bool crosses = i % 5 == 0;
+            for (int c = 0; c < 3; ++c) mesh.vertices.push_back(on_a_ray(crosses && c == 0));
+            if (i % 7 == 0) mesh.vertices.back() = mesh.vertices[3 * i] + mesh.vertices[3 * i + 1] * 1e-6f;
+            mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        counts += expect_hits_of_rays(mesh, samples);
+    }
+    if (beam_kernels() != nullptr) {
+        EXPECT_GT(counts.packets, 0u);
+    }
+}
+
+/// Walls of large triangles, some of them twice, some in one plane with others, some passing the eye closely:
+/// tiles lie within one triangle, or within several at one depth.
+TEST(Beams, OfWallsAndCoplanarFaces) {
+    const std::size_t scenes = matrix::in_long_runs(2000, 24);
+    BeamCounts counts;
+    for (std::uint64_t scene = 0; scene < scenes; ++scene) {
+        SCOPED_TRACE(scene);
+        Random random(79, scene);
+        const auto number = [&](double from, double to) { return from + (to - from) * random.uniform(); };
+        Mesh mesh;
+        const auto add = [&](const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+            const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+            for (const auto& v : {a, b, c}) mesh.vertices.push_back(v);
+            mesh.triangles.push_back({first, first + 1, first + 2});
+        };
+        const int walls = 1 + static_cast<int>(random.bits() % 4);
+        for (int wall = 0; wall < walls; ++wall) {
+            // Two triangles, and parts of the same plane.
+            const auto at = static_cast<float>(number(1, 4)), tilt = static_cast<float>(number(-1, 1));
+            const auto corner = [&](float x, float y) { return Vec3f(x, y, at + tilt * x); };
+            const float w = static_cast<float>(number(0.5, 6));
+            add(corner(-w, -w), corner(w, -w), corner(w, w));
+            add(corner(-w, -w), corner(w, w), corner(-w, w));
+            for (int i = 0; i < 3; ++i) {
+                const auto x = static_cast<float>(number(-1, 1)), y = static_cast<float>(number(-1, 1));
+                add(corner(x, y), corner(x + 1, y), corner(x, y + 1));
+                if (scene % 2 == 0) add(corner(x, y), corner(x + 1, y), corner(x, y + 1));
+            }
+        }
+        // A sliver, and a floor just below the eye.
+        add({-3, 0.1f, 0.9f}, {3, 0.1f, 0.9f}, {3, std::nextafter(0.1f, 1.f), 0.9f});
+        add({-9, scene % 3 == 0 ? 0 : -1e-4f, -9}, {9, -1e-4f, -9}, {0, -1e-3f, 50});
+        Camera camera{{0, 0, 0}, {static_cast<float>(number(-0.3, 0.3)), 0, 1}, {0, 1, 0}};
+        camera.field_of_view = static_cast<float>(number(5, 90));
+        counts +=
+            expect_hits_of_rays(mesh, PictureSamples<float>(camera, 150, 130, 3, 1, scene % 4 == 0 ? 4 : 1));
+    }
+    if (beam_kernels() == nullptr) return;
+    EXPECT_GT(counts.filled, counts.packets);
+    EXPECT_GT(counts.beams, 0u);
+}
+
+TEST(Beams, OfCamerasThatSeeNothing) {
+    const auto mesh = cornell_box<float>(0);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const Camera& camera :
+         {Camera{{278, 273, -800}, {278, 273, -800}}, Camera{{278, 273, -800}, {278, 273, 0}, {0, 0, 1}},
+          Camera{{1e30f, 0, 0}, {0, 0, 0}, {0, 1, 0}}, Camera{{nan, 0, 0}, {0, 0, 0}, {0, 1, 0}},
+          Camera{{278, 273, -800}, {278, 273, 0}, {0, 1, 0}, 0}})
+        expect_hits_of_rays(mesh, PictureSamples<float>(camera, 70, 66));
+    // An empty mesh, an empty picture, a picture of one sample.
+    expect_hits_of_rays({}, PictureSamples<float>(Camera{{1, 1, 1}, {0, 0, 0}, {0, 1, 0}}, 9, 65));
+    const Camera box = *camera_for("cornell-box");
+    for (const auto& [width, height] : {std::pair{0, 0}, {1, 1}, {1, 200}, {200, 7}})
+        expect_hits_of_rays(mesh, PictureSamples<float>(box, width, height));
+    // Wrong widths, and too little room.
+    std::vector<Hit<float>> hits(99);
+    const auto index = build<WideBvh>(mesh);
+    EXPECT_THROW(beam_hits(index, PictureSamples<float>(box, 10, 10), hits, serial_executor()), InputError);
+    EXPECT_THROW(beam_hits(index, PictureSamples<float>(box, 9, 9), hits, serial_executor(), {.widest = 24}),
+                 UsageError);
+}
+
+TEST(Beams, OfAnyIndexAndByAnyExecutor) {
+    const auto mesh = teapot_in_stadium<float>(1500);
+    const PictureSamples<float> samples(*camera_for("teapot-in-stadium"), 200, 150);
+    std::vector<Hit<float>> want(samples.size()), hits(samples.size());
+    closest_hits(build<BruteForce>(mesh), samples.rays(), std::span(want));
+    const auto expect = [&](const auto& index, Executor& executor) {
+        std::fill(hits.begin(), hits.end(), Hit<float>{1, 2, 3, 4, 5, 6, 7});
+        beam_hits(index, samples, hits, executor);
+        expect_same(want, hits);
+    };
+    expect(build<KdTree>(mesh), default_executor());
+    expect(build<Bvh>(mesh), serial_executor());
+    expect(build<WideBvh>(mesh), serial_executor());
+    expect(build<WideBvh>(mesh), default_executor());
+    // Ids that are not the positions.
+    auto named = mesh;
+    for (std::uint32_t i = 0; i < named.triangles.size(); ++i) named.faces.push_back(i / 2 + 7);
+    for (auto& hit : want)
+        if (hit) hit.primitive = hit.element / 2 + 7;
+    expect(build<WideBvh>(named), serial_executor());
+}
+
+TEST(Beams, OfScans) {
+    const std::string name = HEDGEROW_DATA "/bunny.ply";
+    if (!std::filesystem::exists(name)) GTEST_SKIP() << name << " is missing";
+    const auto scan = load_mesh(name);
+    const auto index = build<WideBvh>(scan);
+    for (std::uint64_t i = 0; i < matrix::in_long_runs(100, 4); ++i) {
+        SCOPED_TRACE(i);
+        const PictureSamples<float> samples(seen_from(scan, i, i % 2 == 1), 300, 200);
+        std::vector<Hit<float>> want(samples.size()), hits(samples.size());
+        closest_hits(index, samples.rays(), std::span(want));
+        beam_hits(index, samples, hits, default_executor());
+        expect_same(want, hits);
+    }
+}
+
+}  // namespace
