@@ -1,4 +1,4 @@
-/// Beams and cones miss nothing that one of their rays hits: every structure, set and scalar.
+/// Beams and cones miss nothing that one of their rays hits: every structure, set and scalar. What cones see.
 #include <hedgerow/ask/families.h>
 #include <hedgerow/render/camera.h>
 #include <hedgerow/scenes/generate.h>
@@ -318,6 +318,132 @@ TEST(Families, PointsInACone) {
         EXPECT_GT(inside, 10u);
         EXPECT_LT(found.size(), 3 * inside) << name;
     });
+}
+
+// ---- What a cone sees
+
+TEST(ConeSamples, AreANetOfTheSquareAndEvenInTheDisc) {
+    for (int a = 0; a <= 6; ++a) {
+        std::vector<int> boxes(64);
+        for (int i = 0; i < 64; ++i) {
+            const Vec2d p = ConeSamples::in_square(i);
+            const int column = int(p[0] * (1 << a)), row = int(p[1] * (1 << (6 - a)));
+            ++boxes[std::size_t(row << a | column)];
+        }
+        EXPECT_EQ(std::count(boxes.begin(), boxes.end(), 1), 64) << a;
+    }
+    const auto& samples = ConeSamples::all();
+    double x = 0, y = 0, square = 0;
+    for (std::size_t i = 0; i < 64; ++i) {
+        const double r2 = samples.x[i] * samples.x[i] + samples.y[i] * samples.y[i];
+        EXPECT_LE(r2, 1);
+        x += samples.x[i] / 64, y += samples.y[i] / 64, square += r2 / 64;
+    }
+    EXPECT_NEAR(x, 0, 0.01);
+    EXPECT_NEAR(y, 0, 0.01);
+    EXPECT_NEAR(square, 0.5, 0.02);  // of a disc
+}
+
+/// The ray of a sample of a cone.
+Ray3d ray_of_sample(const ConeRays<double, 3>& cone, std::size_t i) {
+    Vec3d beside;
+    beside[std::abs(cone.axis()[0]) < 0.5 ? 0 : 1] = 1;
+    const Vec3d first = normalized(cross(cone.axis(), beside)), second = cross(cone.axis(), first);
+    const auto& samples = ConeSamples::all();
+    const Vec3d w = first * samples.x[i] + second * samples.y[i];
+    return {cone.origin() + w * cone.radius(), cone.axis() + w * cone.slope()};
+}
+
+TEST(ConeFragments, AreWhatTheRaysOfTheSamplesHitByEveryStructure) {
+    for (const char* name : {"gen:soup:300", "gen:teapot:500", "gen:cornell-box", "gen:hairball:600"}) {
+        SCOPED_TRACE(name);
+        const auto mesh = std::get<TriangleMesh<double>>(generate<double>(parse_scene_spec(name)));
+        const auto oracle = build<BruteForce>(mesh);
+        std::vector<std::vector<ConeFragment<double>>> want;
+        std::vector<ConeRays<double, 3>> cones;
+        std::size_t differ = 0, hit = 0, several = 0;
+        for (std::uint64_t i = 0; i < 60; ++i) {
+            Random random(12, i);
+            const auto box = oracle.bounds();
+            const Vec3d size = box.extent(), from = box.center() + random.direction<3>() * length(size);
+            Vec3d to = box.center();
+            for (int k = 0; k < 3; ++k) to[k] += size[k] * (random.uniform() - 0.5) * 0.8;
+            const double radius = i % 3 == 0 ? 0.01 * length(size) : 0;
+            cones.emplace_back(Ray3d{from, to - from}, radius, i % 2 == 0 ? 0.02 : 0.2);
+            want.emplace_back();
+            fragments(oracle, cones.back(), want.back());
+            several += want.back().size() > 1;
+            std::uint64_t all = 0;
+            for (const auto& f : want.back()) {
+                EXPECT_EQ(all & f.samples, 0u);  // a sample belongs to one
+                all |= f.samples;
+            }
+            for (std::size_t s = 0; s < ConeSamples::count; ++s) {
+                const auto closest = closest_hit(oracle, ray_of_sample(cones.back(), s));
+                const auto here = std::find_if(want.back().begin(), want.back().end(),
+                                               [&](const auto& f) { return (f.samples >> s & 1) != 0; });
+                const bool seen = here != want.back().end();
+                hit += bool(closest);
+                differ += seen != bool(closest) || (seen && here->element != closest.element);
+                if (seen && closest) {
+                    EXPECT_LE(here->depth, closest.t * (1 + 1e-9));
+                }
+            }
+        }
+        EXPECT_GT(hit, 500u);
+        EXPECT_GT(several, 10u);
+        EXPECT_LE(differ, hit / 1000);
+        for_each_index(mesh, [&](const char* structure, const auto& index) {
+            for (std::size_t i = 0; i < cones.size(); ++i) {
+                std::vector<ConeFragment<double>> found;
+                fragments(index, cones[i], found);
+                ASSERT_EQ(found, want[i]) << structure << ", cone " << i;
+            }
+        });
+    }
+}
+
+/// Half of a cone is covered by what lies beyond an edge through its axis, wherever the edge turns; and an
+/// edge beside the axis covers the part of the disc beyond it.
+TEST(ConeFragments, CoverAsMuchAsAnEdgeLeaves) {
+    double error = 0, most = 0;
+    constexpr int edges = 500;
+    for (int i = 0; i < edges; ++i) {
+        Random random(13, std::uint64_t(i));
+        const double angle = random.uniform(0, 2 * 3.14159265358979323846), at = random.uniform(-1, 1);
+        const Vec3d along(std::cos(angle), std::sin(angle), 0), away(-along[1], along[0], 0);
+        const Vec3d p = away * (at * 0.1) + Vec3d(0, 0, 1);  // the cone's radius is 0.1 there
+        const TriangleMesh<double> mesh{
+            {p - along * 10.0, p + along * 10.0, p + away * 50.0}, {{0, 1, 2}}, {}};
+        std::vector<ConeFragment<double>> found;
+        fragments(build<WideBvh>(mesh), ConeRays<double, 3>(Ray3d{{}, {0, 0, 2}}, 0, 0.1), found);
+        const double share = (std::acos(at) - at * std::sqrt(1 - at * at)) / 3.14159265358979323846;
+        const double got = found.empty() ? 0 : found[0].coverage();
+        error += std::abs(got - share) / edges, most = std::max(most, std::abs(got - share));
+    }
+    EXPECT_LT(error, 0.02);
+    EXPECT_LT(most, 0.08);
+}
+
+TEST(ConeFragments, EndWhereAllSamplesAreTaken) {
+    // A wall in front of a thousand triangles.
+    TriangleMesh<float> mesh{{{-9, -9, 1}, {9, -9, 1}, {0, 30, 1}}, {{0, 1, 2}}, {}};
+    for (std::uint32_t i = 1; i < 1000; ++i) {
+        const float z = 2 + 0.01f * float(i);
+        for (const Vec3f& v : {Vec3f(-9, -9, z), Vec3f(9, -9, z), Vec3f(0, 30, z)})
+            mesh.vertices.push_back(v);
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const ConeRays<float, 3> cone(Ray3f{{0, 0, 0}, {0, 0, 1}}, 0, 0.1f);
+    const auto index = build<Bvh>(mesh);
+    std::vector<FamilyCandidate<float>> all;
+    std::vector<ConeFragment<float>> found;
+    Visits visits;
+    EXPECT_EQ(candidates(index, cone, all), 1000u);
+    EXPECT_EQ(fragments(index, cone, found, visits), 1u);
+    EXPECT_EQ(found[0].samples, ~std::uint64_t(0));
+    EXPECT_EQ(found[0].element, 0u);
+    EXPECT_LT(visits.primitives, 20u);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-/// The question of a family of rays: what the rays of a beam or a cone may hit.
+/// The questions of a family of rays: what the rays of a beam or a cone may hit, and what a cone sees.
 #pragma once
 
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
 #include <hedgerow/queries/candidates.h>
+#include <hedgerow/queries/cone_fragments.h>
 
 namespace hedgerow {
 
@@ -17,6 +18,14 @@ std::size_t candidates(const Index<S, P>& index, const Rays& rays,
                        typename P::Scalar limit = std::numeric_limits<typename P::Scalar>::max(),
                        Count& count = no_visits) {
     return index.template answer<Candidates<P, Rays>>(count, rays, found, limit);
+}
+
+/// Writes what a cone sees of the triangles of an index to `found`, from front to back: each triangle that is
+/// the nearest at some of 64 samples of the cross section, with these samples. Returns how many there are.
+template <class S, class P, class Count = const NoVisits>
+std::size_t fragments(const Index<S, P>& index, const ConeRays<typename P::Scalar, 3>& cone,
+                      std::vector<ConeFragment<typename P::Scalar>>& found, Count& count = no_visits) {
+    return index.template answer<ConeFragments<P>>(count, cone, found);
 }
 
 }  // namespace hedgerow

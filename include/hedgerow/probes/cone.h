@@ -39,7 +39,10 @@ public:
         axis_ = normalized(d / max_component(abs(d)));
     }
 
+    Point origin() const { return Point(ray_.origin); }
     const Point& axis() const { return axis_; }
+    double radius() const { return radius_; }
+    double slope() const { return slope_; }
     Interval<double> depths() const {
         const auto depth = [&](T t) { return t > 0 ? depth_of(ray_, t) : 0; };
         return {depth(ray_.t_min), depth(ray_.t_max)};
