@@ -168,6 +168,9 @@ TEST_F(Cli, RasterisingMakesThePictureOfRays) {
         ASSERT_EQ(cast.code, 0) << cast.output;
         ASSERT_EQ(drawn.code, 0) << drawn.output;
         EXPECT_EQ(bytes_of(file("cast.png")), bytes_of(file("drawn.png")));
+        const auto beamed = run(scene + file("beamed.png") + " --visibility beams");
+        ASSERT_EQ(beamed.code, 0) << beamed.output;
+        EXPECT_EQ(bytes_of(file("cast.png")), bytes_of(file("beamed.png")));
         EXPECT_NE(drawn.output.find("\"triangles_drawn\""), std::string::npos) << drawn.output;
         // Without light there is no need for an index.
         EXPECT_EQ(drawn.output.find("\"rays\": 0") != std::string::npos, !options.empty()) << drawn.output;
@@ -187,6 +190,8 @@ TEST_F(Cli, RasterisingMakesThePictureOfRays) {
     expect_usage("render gen:cube --visibility raster --shading steps -o " + file("x.png"),
                  "--visibility cast");
     expect_bad("render gen:points --visibility raster -o " + file("x.png"), "only triangles");
+    expect_bad("render gen:points --visibility beams -o " + file("x.png"), "triangles alone");
+    expect_usage("render gen:cube --visibility beams --structure bvh -o " + file("x.png"), "'wide' alone");
     expect_bad("render gen:cube --visibility raster --projection panorama -o " + file("x.png"), "panorama");
 }
 

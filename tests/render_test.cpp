@@ -5,6 +5,7 @@
 #include <hedgerow/instances/instance_set.h>
 #include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/render.h>
+#include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/render/visibility/rasterise_stream.h>
 #include <hedgerow/scenes/meshes.h>
@@ -58,6 +59,11 @@ TYPED_TEST(Rendered, RaysAndTrianglesMakeTheSamePicture) {
                     PictureParts<T>{rasterising, surfaces, shading == Shading::diffuse ? &tracer : nullptr},
                     options, default_executor());
                 expect_same(cast, drawn);
+                BeamTracing beams(index);
+                const Picture beamed =
+                    render(PictureParts<T>{beams, surfaces, &tracer}, options, default_executor());
+                expect_same(cast, beamed);
+                EXPECT_EQ(beamed.costs.rays, cast.costs.rays);
                 EXPECT_EQ(drawn.costs.drawn.triangles, mesh.size() * static_cast<std::size_t>(samples));
                 EXPECT_EQ(cast.costs.drawn.triangles, 0u);
                 EXPECT_LT(drawn.costs.rays, cast.costs.rays);
@@ -143,6 +149,14 @@ TYPED_TEST(Rendered, EveryCameraSeesByRays) {
                   c.projection = Projection::panorama, c.eye = {278, 273, 280}, c.target = {278, 273, 400};
               }));
     EXPECT_NE(pinhole, seen([](Camera& c) { c.lens_radius = 60; }));
+    // Beams leave what they are not made for to rays.
+    for (const auto projection : {Projection::orthographic, Projection::panorama}) {
+        options.camera.projection = projection;
+        BeamTracing beams(index);
+        const SurfacesOf surfaces(mesh);
+        expect_same(render(index, mesh, options, default_executor()),
+                    render(PictureParts<T>{beams, surfaces}, options, default_executor()));
+    }
 }
 
 TYPED_TEST(Rendered, PartsThatDoNotFitAreRefused) {

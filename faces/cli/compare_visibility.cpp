@@ -20,8 +20,9 @@ using nlohmann::ordered_json;
 
 namespace {
 
+/// Whether a way asks an index: rays and beams do.
 bool casts(const VisibilityCost& way) {
-    return way.way.starts_with("cast:");
+    return !way.way.starts_with("raster:");
 }
 /// The fastest way that casts, or that rasterises; null without one.
 const VisibilityCost* fastest(const VisibilityCase& c, bool casting) {
@@ -93,8 +94,9 @@ std::vector<Table> tables_of(const VisibilityReport& r) {
                               casts(w) ? seconds_text(w.build_seconds) : "",
                               seconds_text(w.build_seconds + w.seconds),
                               fmt::format("{:.2f}", (w.build_seconds + w.seconds) / best_built),
-                              fmt::format("{:.2f}", w.tests), casts(w) ? fmt::format("{:.2f}", w.nodes) : "",
-                              bytes_text(double(w.bytes)), pays_from(c, w)});
+                              w.tests > 0 ? fmt::format("{:.2f}", w.tests) : "",
+                              casts(w) ? fmt::format("{:.2f}", w.nodes) : "", bytes_text(double(w.bytes)),
+                              pays_from(c, w)});
         tables.push_back(std::move(t));
     }
     return tables;

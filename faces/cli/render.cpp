@@ -6,6 +6,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
 #include <hedgerow/render/render.h>
+#include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/render/visibility/rasterise_stream.h>
 
@@ -26,6 +27,7 @@ struct RenderArguments : Common {
     bool counts = false, layers = false;  // layers: whether the output is .exr
 
     bool rasterises() const { return visibility == "raster"; }
+    bool uses_beams() const { return visibility == "beams"; }
     /// Whether the picture needs an index: for its rays from the eye, or those to the light.
     bool needs_index() const { return !rasterises() || shading == "diffuse"; }
 };
@@ -74,6 +76,11 @@ void report(const RenderArguments& a, const Outcome& o) {
             j["leaves_per_ray"] = a_ray(costs.visits.leaves);
             j["primitives_per_ray"] = a_ray(costs.visits.primitives);
         }
+        if (a.uses_beams()) {
+            j["beams"] = costs.beams.beams;
+            j["visits_of_beams"] = costs.beams.visits;
+            j["samples_filled"] = costs.beams.filled;
+        }
         if (a.rasterises()) {
             j["triangles_drawn"] = costs.drawn.triangles;
             j["triangles_outside"] = costs.drawn.outside;
@@ -87,6 +94,10 @@ void report(const RenderArguments& a, const Outcome& o) {
                        o.loaded ? "loaded" : "built", o.build_seconds * 1e3,
                        double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
         fmt::print("\n");
+        if (costs.beams.beams > 0)
+            fmt::print("{} beams, {:.0f}% of the samples without a packet; ", costs.beams.beams,
+                       100 * double(costs.beams.filled) /
+                           (double(p.image.width) * double(p.image.height) * double(a.spp)));
         if (a.rasterises())
             fmt::print("{} triangles drawn, {} of them outside of the picture; ", costs.drawn.triangles,
                        costs.drawn.outside);
@@ -149,6 +160,31 @@ int render(const RenderArguments& a, const AnyIndex<T, 3>* index, const P& primi
     ProgressLine line("rendering", a.quiet, "rows");
     return finish(a, PictureParts<T>{*visibility, surfaces, asked}, options, std::move(o), line.progress());
 }
+/// Renders triangles by beams through the engine's index. Returns the exit code.
+template <class T, class P>
+int render_by_beams(const RenderArguments& a, const P& primitives) {
+    if constexpr (!std::same_as<ViewOf<P>, TriangleMeshView<T>>) {
+        throw InputError(a.scene + ": beams go through triangles alone; use --visibility cast");
+    } else {
+        Outcome o;
+        const double start = now();
+        const MeshIndex<T> index = [&] {
+            ProgressLine line("building " + a.structure, a.quiet);
+            WatchedExecutor watched(default_executor(), line.progress());
+            return build<WideBvh>(primitives, {}, watched);
+        }();
+        o.build_seconds = now() - start;
+        o.indexed = true, o.bytes = index.bytes(), o.primitives = primitives.size();
+        o.upright = upright_of(a.view, a, primitives);
+        const IndexTracer<MeshIndex<T>> tracer(index);
+        const SurfacesOf<P> surfaces(primitives);
+        BeamTracing<MeshIndex<T>> beams(index);
+        const auto& box = index.bounds();
+        const RenderOptions options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, o.upright);
+        ProgressLine line("rendering", a.quiet, "rows");
+        return finish(a, PictureParts<T>{beams, surfaces, &tracer}, options, std::move(o), line.progress());
+    }
+}
 /// Renders the triangles of a file without loading them all.
 template <class T>
 int render_stream(const RenderArguments& a) {
@@ -171,6 +207,7 @@ template <class P>
 int render(const RenderArguments& a, const P& primitives) {
     using T = typename P::Scalar;
     const ThreadLimit limit(a.threads);
+    if (a.uses_beams()) return render_by_beams<T>(a, primitives);
     Outcome o;
     if (!a.needs_index()) return render<T>(a, nullptr, primitives, std::move(o));
     const double start = now();
@@ -220,10 +257,11 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--shading", a->shading, "normals, depth, diffuse or steps")
         ->capture_default_str()
         ->check(CLI::IsMember({"normals", "depth", "diffuse", "steps"}));
-    verb.add_option("--visibility", a->visibility,
-                    "how hits are found: cast rays, or raster triangles; the picture is the same")
+    verb.add_option(
+            "--visibility", a->visibility,
+            "how hits are found: cast rays, raster triangles, or beams of rays; the picture is the same")
         ->capture_default_str()
-        ->check(CLI::IsMember({"cast", "raster"}));
+        ->check(CLI::IsMember({"cast", "raster", "beams"}));
     verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
     verb.add_flag("--counts", a->counts,
                   "count what rays visit, without the engine's kernels; layers and steps are counts already");
@@ -236,12 +274,15 @@ Run add_render(CLI::App& verb) {
     return [a] {
         const bool saved = names_index_file(a->scene);
         a->layers = asks_for_layers(a->output);
-        if (a->rasterises() && counted(parse_shading(a->shading)))
+        if (a->visibility != "cast" && counted(parse_shading(a->shading)))
             throw UsageError("--shading " + a->shading + " shows what rays cost: it needs --visibility cast");
+        if (a->uses_beams() && a->structure != "wide")
+            throw UsageError("--structure " + a->structure + ": beams go through 'wide' alone");
         check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
         return in_precision(*a, [&]<class T>(T) {
-            if (saved && a->structure == "wide" && !index_file_info(a->scene).holds_points)
+            if (saved && a->structure == "wide" && !a->uses_beams() &&
+                !index_file_info(a->scene).holds_points)
                 return render_saved<T>(*a);
             if (!a->needs_index() && !a->drop_bad && !a->scene.starts_with("gen:") && can_stream(a->scene))
                 return render_stream<T>(*a);

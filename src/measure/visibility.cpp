@@ -7,6 +7,7 @@
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/costs.h>
 #include <hedgerow/render/camera/ray_maker.h>
+#include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 
 namespace hedgerow::measure {
@@ -26,12 +27,14 @@ public:
 
     VisibilityCase run() {
         VisibilityCase result{mesh_.size(), o_.width, o_.height, 0, {}, {}};
-        steps_ = static_cast<std::uint64_t>(o_.rounds + 1) * (o_.structures.size() + 3);
+        steps_ = static_cast<std::uint64_t>(o_.rounds + 1) * (o_.structures.size() + 4);
         // Set up each way, and count what it does. The first way's hits are the reference.
         for (const std::string& structure : o_.structures) {
             add_casting(structure);
             step();
         }
+        if constexpr (std::same_as<T, float>) add_beams();
+        step();
         const bool few = mesh_.size() * samples_.size() <= o_.most_tests;
         if (!few) result.left_out.push_back("raster:all");
         if (few) add_rasterising("raster:all", Coverage::all), step();
@@ -82,6 +85,22 @@ private:
             index->closest_hits(rays_, hits_);
             return hits_.size();
         });
+        costs_.push_back(cost);
+    }
+    void add_beams() {
+        VisibilityCost cost;
+        cost.way = "beams:wide";
+        std::vector<double> builds;
+        std::shared_ptr<const MeshIndex<T>> index;
+        for (int k = 0; k < std::clamp(o_.rounds, 1, 3); ++k)
+            builds.push_back(seconds_of([&] {
+                index = std::make_shared<const MeshIndex<T>>(build<WideBvh>(mesh_, serial_executor()));
+            }));
+        cost.build_seconds = median(builds), cost.bytes = index->bytes();
+        const auto trace = [this, index] { return beam_hits(*index, samples_, hits_, serial_executor()); };
+        cost.nodes = a_sample(trace().visits);
+        check(cost.way);
+        contest_.add(cost.way, [trace] { return trace().visits; });
         costs_.push_back(cost);
     }
     void add_rasterising(const std::string& way, Coverage coverage) {

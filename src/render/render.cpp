@@ -22,7 +22,7 @@ void check(const PictureParts<T>& parts, const RenderOptions& o) {
     if (o.width < 1 || o.height < 1) throw InputError("a picture needs at least one pixel");
     if (o.samples < 1) throw InputError("a picture needs at least one sample a pixel");
     if (parts.visibility.finds_whole_pictures() && counted(o.shading))
-        throw InputError("this shading shows what rays cost, and a rasteriser casts none");
+        throw InputError("this shading shows what rays cost, and the picture is not found ray by ray");
     if (parts.tracer == nullptr && (o.shading == Shading::diffuse || o.shading == Shading::time))
         throw InputError("this shading casts rays: give a tracer, or shade by normals or depth");
 }

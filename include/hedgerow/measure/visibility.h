@@ -14,12 +14,14 @@ namespace hedgerow::measure {
 
 /// The cost of one picture by one way, on one thread.
 struct VisibilityCost {
-    std::string way;           ///< "raster:all", "raster:box", "raster:tiles", or "cast:" and a structure
+    /// "raster:all", "raster:box", "raster:tiles", "cast:" and a structure, or "beams:wide"
+    /// (float alone).
+    std::string way;
     double build_seconds = 0;  ///< of the index; 0 for rasterising
     double seconds = 0;        ///< for the closest hit of every sample
     double spread = 0;         ///< slowest minus fastest round, as a share of the median
-    double tests = 0;          ///< of a triangle at a sample, a sample
-    double nodes = 0;          ///< visited, a sample
+    double tests = 0;          ///< of a triangle at a sample, a sample; 0 for beams, which do not count them
+    double nodes = 0;          ///< nodes and leaves visited by rays, beams and packets, a sample
     std::size_t bytes = 0;     ///< of memory, beside the triangles and the hits
 };
 /// The costs of one picture by all ways.

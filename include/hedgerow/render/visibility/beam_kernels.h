@@ -6,24 +6,9 @@
 
 #include <hedgerow/engine/kernels.h>
 #include <hedgerow/render/visibility/pixel_bounds.h>
+#include <hedgerow/render/visibility/visibility.h>
 
 namespace hedgerow {
-
-/// What beams did. A visit is a node whose children's boxes are tested, or a leaf whose triangles are, for a
-/// whole tile or for a packet of 64 rays.
-struct BeamCounts {
-    std::uint64_t beams = 0;    ///< tiles of all sizes that were looked at
-    std::uint64_t visits = 0;   ///< by beams and by packets
-    std::uint64_t filled = 0;   ///< samples of tiles that lie within one triangle, or see nothing
-    std::uint64_t packets = 0;  ///< tiles of 8 × 8 that a packet answers, from where their beam ends
-    std::uint64_t again = 0;    ///< tiles of 8 × 8 that were answered without their beam
-
-    BeamCounts& operator+=(const BeamCounts& more) {
-        beams += more.beams, visits += more.visits, filled += more.filled, packets += more.packets;
-        again += more.again;
-        return *this;
-    }
-};
 
 /// A tile of a picture. `rays` are those of its samples, by rows of `beam_side`, from the eye of the plane;
 /// null for those through the middles of the pixels, as RayMaker makes them. `hits` is the place of the

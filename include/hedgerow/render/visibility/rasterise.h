@@ -490,15 +490,6 @@ private:
     BareVector<std::uint32_t> places_, begins_, listed_;
 };
 
-/// Copies the hits of a box of pixels, by rows, from those of a picture with this width.
-template <class T>
-void copy_hits(const Hit<T>* from, std::size_t width, const PixelBox& box, std::span<Hit<T>> to) {
-    const auto columns = static_cast<std::size_t>(box.width());
-    for (int y = box.top; y <= box.bottom; ++y)
-        std::copy_n(from + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(box.left), columns,
-                    &to[static_cast<std::size_t>(y - box.top) * columns]);
-}
-
 /// Finds what is visible by drawing triangles, or instances. Borrows the view's arrays. Takes 28 bytes a
 /// sample of float, 48 of double, beside what the rasteriser takes.
 template <std::floating_point T, class Triangles = TriangleMeshView<T>>

@@ -28,15 +28,33 @@ struct RasterCounts {
     }
 };
 
+/// What beams did. A visit is a node whose children's boxes are tested, or a leaf whose triangles are, for a
+/// whole tile or for a packet of 64 rays.
+struct BeamCounts {
+    std::uint64_t beams = 0;    ///< tiles of all sizes that were looked at
+    std::uint64_t visits = 0;   ///< by beams and by packets
+    std::uint64_t filled = 0;   ///< samples of tiles that lie within one triangle, or see nothing
+    std::uint64_t packets = 0;  ///< tiles of 8 × 8 that a packet answers, from where their beam ends
+    std::uint64_t again = 0;    ///< tiles of 8 × 8 that were answered without their beam
+
+    BeamCounts& operator+=(const BeamCounts& more) {
+        beams += more.beams, visits += more.visits, filled += more.filled, packets += more.packets;
+        again += more.again;
+        return *this;
+    }
+};
+
 /// What making a picture took.
 struct PictureCosts {
     std::uint64_t rays = 0;  ///< cast, those to the light included
     Visits visits;           ///< 0 unless counted
     KernelUse use;           ///< which algorithms answered; no kernel if visits are counted
     RasterCounts drawn;      ///< what rasterising took
+    BeamCounts beams;        ///< what beams took
 
     PictureCosts& operator+=(const PictureCosts& more) {
         rays += more.rays, visits += more.visits, use += more.use, drawn += more.drawn;
+        beams += more.beams;
         return *this;
     }
 };
@@ -59,5 +77,14 @@ public:
     virtual void look(const PixelBox& box, std::span<const Ray<T, 3>> rays, std::span<Hit<T>> hits,
                       std::span<Visits> visits, PictureCosts& costs) const = 0;
 };
+
+/// Copies the hits of a box of pixels, by rows, from those of a picture with this width.
+template <class T>
+void copy_hits(const Hit<T>* from, std::size_t width, const PixelBox& box, std::span<Hit<T>> to) {
+    const auto columns = static_cast<std::size_t>(box.width());
+    for (int y = box.top; y <= box.bottom; ++y)
+        std::copy_n(from + static_cast<std::size_t>(y) * width + static_cast<std::size_t>(box.left), columns,
+                    &to[static_cast<std::size_t>(y - box.top) * columns]);
+}
 
 }  // namespace hedgerow
