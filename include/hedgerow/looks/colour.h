@@ -1,0 +1,46 @@
+/// Linear colours with opacity, and the transfer function of sRGB.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <hedgerow/geometry/vec.h>
+
+namespace hedgerow {
+
+/// Linear red, green and blue with the primaries of sRGB (ITU-R BT.709), and an opacity from 0 to 1. The
+/// colour is not multiplied by the opacity.
+struct Rgba {
+    Vec3f colour;
+    float alpha = 1;
+
+    friend constexpr bool operator==(const Rgba&, const Rgba&) = default;
+    friend constexpr Rgba operator+(const Rgba& a, const Rgba& b) {
+        return {a.colour + b.colour, a.alpha + b.alpha};
+    }
+    friend constexpr Rgba operator*(const Rgba& a, float s) { return {a.colour * s, product(a.alpha, s)}; }
+};
+
+/// The linear value of an encoded value from 0 to 1 (IEC 61966-2-1:1999).
+inline double srgb_to_linear(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+/// The encoded value of a linear value from 0 to 1, the inverse of `srgb_to_linear`.
+inline double linear_to_srgb(double linear) {
+    return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+/// The linear value of an encoded value of 8 bits: `srgb_to_linear(value / 255)`, from a table.
+inline float linear_of_srgb8(std::uint8_t value) {
+    static const auto table = [] {
+        std::array<float, 256> linear{};
+        for (std::size_t i = 0; i < linear.size(); ++i)
+            linear[i] = static_cast<float>(srgb_to_linear(static_cast<double>(i) / 255));
+        return linear;
+    }();
+    return table[value];
+}
+
+}  // namespace hedgerow

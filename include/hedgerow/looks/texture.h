@@ -1,0 +1,123 @@
+/// Images that vary a colour or a number over a surface.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include <hedgerow/geometry/vec.h>
+#include <hedgerow/looks/colour.h>
+
+namespace hedgerow {
+
+/// The samples of an image as its file has them: rows from the top, each from left to right, and `channels`
+/// samples a pixel. One channel is grey, two are grey and opacity, three are red, green and blue, and four
+/// are these and opacity. Whole numbers stand for 0 to 1; floats stand for themselves.
+struct Pixels {
+    int width = 0, height = 0, channels = 0;
+    std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> samples;
+
+    bool is_float() const { return samples.index() == 2; }
+};
+
+/// How whole numbers encode a colour. Opacities and floats are linear in any case.
+enum class ColourSpace : std::uint8_t { linear, srgb };
+/// Which texel lies at a coordinate beyond 0 to 1.
+enum class Wrap : std::uint8_t { repeat, mirror, clamp };
+enum class TextureFilter : std::uint8_t { nearest, bilinear };
+
+/// An image with the way to look it up. The texture coordinate (0, 0) is the top left corner of the image,
+/// and (1, 1) is the bottom right corner, as in glTF. Textures may share pixels.
+struct Texture {
+    std::string name;  ///< what the file calls the image, for messages
+    /// Null or without pixels: every lookup is white.
+    std::shared_ptr<const Pixels> pixels;
+    ColourSpace space = ColourSpace::linear;
+    Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
+    TextureFilter filter = TextureFilter::bilinear;
+
+    /// The linear value of a texel, which exists. O(1).
+    Rgba texel(int x, int y) const;
+    /// The linear value at a texture coordinate. The filter `bilinear` interpolates linear values between
+    /// the centres of four texels. A coordinate that is not finite counts as 0. O(1).
+    Rgba at(const Vec2f& coordinate) const;
+};
+
+namespace detail {
+
+/// A sample as a linear number. `encoded`: it is a part of an sRGB colour.
+inline float linear_sample(std::uint8_t x, bool encoded) {
+    return encoded ? linear_of_srgb8(x) : static_cast<float>(x) / 255;
+}
+inline float linear_sample(std::uint16_t x, bool encoded) {
+    const double value = static_cast<double>(x) / 65535;
+    return static_cast<float>(encoded ? srgb_to_linear(value) : value);
+}
+inline float linear_sample(float x, bool) {
+    return x;
+}
+
+/// The column (or row) of `size` that stands for any column.
+inline int wrapped(std::int64_t i, int size, Wrap wrap) {
+    if (wrap == Wrap::clamp) return static_cast<int>(i < 0 ? 0 : i >= size ? size - 1 : i);
+    const std::int64_t period = wrap == Wrap::mirror ? 2 * static_cast<std::int64_t>(size) : size;
+    const std::int64_t rest = (i % period + period) % period;
+    return static_cast<int>(rest < size ? rest : period - 1 - rest);
+}
+
+/// A coordinate in texels, within 2^53 so that it has a whole part.
+inline double in_texels(float coordinate, int size) {
+    const double x = std::isfinite(coordinate) ? static_cast<double>(coordinate) * size : 0.0;
+    return x > 0x1p53 ? 0x1p53 : x < -0x1p53 ? -0x1p53 : x;
+}
+
+}  // namespace detail
+
+inline Rgba Texture::texel(int x, int y) const {
+    return std::visit(
+        [&](const auto& samples) {
+            const int channels = pixels->channels;
+            const auto first = (static_cast<std::size_t>(y) * static_cast<std::size_t>(pixels->width) +
+                                static_cast<std::size_t>(x)) *
+                               static_cast<std::size_t>(channels);
+            const bool encoded = space == ColourSpace::srgb;
+            const auto colour = [&](int k) {
+                return detail::linear_sample(samples[first + static_cast<std::size_t>(k)], encoded);
+            };
+            const auto opacity = [&](int k) {
+                return detail::linear_sample(samples[first + static_cast<std::size_t>(k)], false);
+            };
+            Rgba value{channels < 3 ? Vec3f::all(colour(0)) : Vec3f(colour(0), colour(1), colour(2)), 1};
+            if (channels % 2 == 0) value.alpha = opacity(channels - 1);
+            return value;
+        },
+        pixels->samples);
+}
+
+inline Rgba Texture::at(const Vec2f& coordinate) const {
+    if (!pixels || pixels->width <= 0 || pixels->height <= 0) return {Vec3f::all(1), 1};
+    const int width = pixels->width, height = pixels->height;
+    const double x = detail::in_texels(coordinate[0], width), y = detail::in_texels(coordinate[1], height);
+    const auto column = [&](double i) {
+        return detail::wrapped(static_cast<std::int64_t>(i), width, wrap_s);
+    };
+    const auto row = [&](double i) { return detail::wrapped(static_cast<std::int64_t>(i), height, wrap_t); };
+    if (filter == TextureFilter::nearest) return texel(column(std::floor(x)), row(std::floor(y)));
+    // Texel i is sampled at its centre, i + 1/2.
+    const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
+    const auto right_share = static_cast<float>(x - 0.5 - left);
+    const auto bottom_share = static_cast<float>(y - 0.5 - top);
+    const auto between = [](const Rgba& a, const Rgba& b, float share) {
+        return a * (1 - share) + b * share;
+    };
+    const int x0 = column(left), x1 = column(left + 1), y0 = row(top), y1 = row(top + 1);
+    return between(between(texel(x0, y0), texel(x1, y0), right_share),
+                   between(texel(x0, y1), texel(x1, y1), right_share), bottom_share);
+}
+
+}  // namespace hedgerow
