@@ -5,75 +5,13 @@
 #include <hedgerow/io/rows.h>
 #include <hedgerow/io/validate.h>
 
+#include "damage.h"
 #include "gltf_text.h"
 
 namespace hedgerow {
 namespace {
 
 using namespace testing_io;
-
-/// A file with one to four damages: a flipped bit, a replaced byte, a cut, a removed piece, an inserted
-/// extreme, a repeated piece, or a byte replaced by a digit.
-std::string damaged(std::string bytes, std::mt19937_64& random) {
-    for (std::uint64_t n = 1 + random() % 4; n > 0 && !bytes.empty(); --n) {
-        const std::size_t at = random() % bytes.size(), length = 1 + random() % 16;
-        const std::string extremes[] = {"-1",
-                                        "nan",
-                                        "1e999",
-                                        "4294967295",
-                                        "99999999999999999999",
-                                        "-",
-                                        "\xFF\xFF\xFF\xFF",
-                                        std::string(4, '\0'),
-                                        "\n",
-                                        " ",
-                                        "/",
-                                        "\\\n"};
-        switch (random() % 7) {
-            case 0:
-                bytes[at] = static_cast<char>(bytes[at] ^ (1 << random() % 8));
-                break;
-            case 1:
-                bytes[at] = static_cast<char>(random());
-                break;
-            case 2:
-                bytes.resize(at);
-                break;
-            case 3:
-                bytes.erase(at, length);
-                break;
-            case 4:
-                bytes.insert(at, extremes[random() % std::size(extremes)]);
-                break;
-            case 5:
-                bytes.insert(at, bytes.substr(random() % bytes.size(), length));
-                break;
-            default:
-                bytes[at] = static_cast<char>('0' + random() % 10);
-                break;
-        }
-    }
-    return bytes;
-}
-
-/// Reads `rounds` damaged versions of a file. Returns how many could still be read; the others must throw an
-/// InputError that names the file.
-template <class F>
-int survivors(const TempFolder& folder, const std::string& name, const std::string& whole, int rounds,
-              F read) {
-    std::mt19937_64 random(std::hash<int>()(static_cast<int>(whole.size())));
-    int read_well = 0;
-    for (int i = 0; i < rounds; ++i) {
-        const auto path = folder.file(name, damaged(whole, random));
-        try {
-            read(path);
-            ++read_well;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
-        }
-    }
-    return read_well;
-}
 
 const char* const ascii_stl =
     "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"

@@ -1,10 +1,7 @@
 /// The parts of a glTF 2.0 file: checked access to its JSON and to the bytes of its buffers.
 #pragma once
 
-#include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,19 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "byte_source.h"
+#include "little.h"
 
 namespace hedgerow::detail {
-
-/// The number in `sizeof(U)` bytes. All numbers of glTF are little endian.
-template <class U>
-U little(const char* bytes) {
-    unsigned char raw[sizeof(U)];
-    std::memcpy(raw, bytes, sizeof(U));
-    if constexpr (std::endian::native != std::endian::little) std::reverse(raw, raw + sizeof(U));
-    U value;
-    std::memcpy(&value, raw, sizeof(U));
-    return value;
-}
 
 /// A file whose every access is checked: a part that is missing, of the wrong type or out of range is an
 /// InputError that names the file and the place. Buffers are read when they are first used, and only from the
