@@ -159,8 +159,8 @@ Pixels read(const ImageBytes& image) {
     const std::size_t step = sizeof(float) * names.size();
     for (std::size_t k = 0; k < names.size(); ++k) {
         // OpenEXR wants the address that the column 0 would have, wherever the window begins.
-        const auto first = reinterpret_cast<std::intptr_t>(line.data() + k);
-        auto* const column_0 = reinterpret_cast<char*>(first - data.min.x * static_cast<std::intptr_t>(step));
+        char* const column_0 =
+            reinterpret_cast<char*>(line.data() + k) - data.min.x * static_cast<std::ptrdiff_t>(step);
         buffer.insert(names[k], Imf::Slice(Imf::FLOAT, column_0, step, 0));
     }
     file.setFrameBuffer(buffer);

@@ -58,7 +58,8 @@ std::uint64_t GltfNumbers::size_of_number() const {
 GltfAccessor::GltfAccessor(GltfFile& file, std::uint64_t number, int components) {
     const auto& accessor = file.object("accessors", number);
     const auto type = accessor.find("type");
-    const char* const wanted = components == 1 ? "SCALAR" : "VEC3";
+    constexpr const char* types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    const char* const wanted = types[components - 1];
     const std::string place = "accessor " + std::to_string(number);
     if (type == accessor.end() || *type != wanted) file.fail(place + " is not of type " + wanted);
     size_ = file.needed_number(accessor, "count");

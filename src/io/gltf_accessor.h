@@ -30,7 +30,7 @@ struct GltfNumbers {
 /// elements that a sparse accessor replaces by a binary search.
 class GltfAccessor {
 public:
-    /// Elements of `components` numbers: 1 (SCALAR) or 3 (VEC3). Throws InputError for another type, for
+    /// Elements of `components` numbers: 1 (SCALAR) to 4 (VEC4). Throws InputError for another type, for
     /// elements outside of their buffer, and for a stride that is less than an element.
     GltfAccessor(GltfFile& file, std::uint64_t number, int components);
 
