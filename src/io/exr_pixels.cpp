@@ -32,7 +32,7 @@ bool is_exr(std::string_view bytes) {
 namespace {
 
 /// The inclusive corners of a window, which are far apart in a damaged file.
-struct Window {
+struct ExrWindow {
     std::int64_t left = 0, top = 0, right = -1, bottom = -1;
 
     std::uint64_t width() const { return right < left ? 0 : static_cast<std::uint64_t>(right - left + 1); }
@@ -42,9 +42,9 @@ struct Window {
 /// Checks what an image promises in its header before OpenEXR takes memory for it: the windows, and the size
 /// of its tiles. The header is a list of attributes: name, type, size and value ("OpenEXR File Layout",
 /// openexr.com/en/latest/OpenEXRFileLayout.html).
-class HeaderCheck {
+class ExrHeaderCheck {
 public:
-    explicit HeaderCheck(const ImageBytes& image) : image_(image), left_(image.bytes) {}
+    explicit ExrHeaderCheck(const ImageBytes& image) : image_(image), left_(image.bytes) {}
 
     void run() {
         const std::uint32_t version = little<std::uint32_t>(take(8).data() + 4);
@@ -67,7 +67,7 @@ private:
         const auto number = [&](std::size_t i) -> std::int64_t {
             return little<std::int32_t>(value.data() + 4 * i);
         };
-        const Window window{number(0), number(1), number(2), number(3)};
+        const ExrWindow window{number(0), number(1), number(2), number(3)};
         check_promised(image_, window.width(), window.height(), most_bytes_a_pixel);
     }
     std::string_view take(std::size_t size) {
@@ -87,9 +87,9 @@ private:
 };
 
 /// Lets OpenEXR read from memory.
-class Stream : public Imf::IStream {
+class ExrStream : public Imf::IStream {
 public:
-    explicit Stream(const ImageBytes& image) : IStream(""), bytes_(image.bytes) {}
+    explicit ExrStream(const ImageBytes& image) : IStream(""), bytes_(image.bytes) {}
     bool read(char* to, int count) override {
         const auto size = static_cast<std::size_t>(count);
         if (count < 0 || at_ > bytes_.size() || size > bytes_.size() - at_)
@@ -130,7 +130,7 @@ std::vector<std::string> wanted_channels(const ImageBytes& image, const Imf::Cha
 }
 
 /// Samples as the library has them: finite, and colours not multiplied by the opacity.
-void store(const float* pixel, int channels, float* to) {
+void store_exr(const float* pixel, int channels, float* to) {
     const float alpha = channels % 2 == 0 ? usable(pixel[channels - 1]) : 1;
     for (int k = 0; k < channels; ++k) {
         const bool is_colour = channels % 2 != 0 || k < channels - 1;
@@ -138,8 +138,8 @@ void store(const float* pixel, int channels, float* to) {
     }
 }
 
-Pixels read(const ImageBytes& image) {
-    Stream stream(image);
+Pixels read_exr(const ImageBytes& image) {
+    ExrStream stream(image);
     Imf::InputFile file(stream, 0);  // 0: no threads of its own
     const auto names = wanted_channels(image, file.header().channels());
     const auto &data = file.header().dataWindow(), &display = file.header().displayWindow();
@@ -173,7 +173,7 @@ Pixels read(const ImageBytes& image) {
         for (int x = left; x <= right; ++x) {
             const auto from = static_cast<std::size_t>(size(data.min.x, x) - 1) * names.size();
             const auto to = (row + static_cast<std::size_t>(size(display.min.x, x) - 1)) * names.size();
-            store(&line[from], channels, &samples[to]);
+            store_exr(&line[from], channels, &samples[to]);
         }
     }
     return pixels;
@@ -182,9 +182,9 @@ Pixels read(const ImageBytes& image) {
 }  // namespace
 
 Pixels decode_exr(const ImageBytes& image) {
-    HeaderCheck(image).run();
+    ExrHeaderCheck(image).run();
     try {
-        return read(image);
+        return read_exr(image);
     } catch (const Iex::BaseExc& error) {
         image.fail(std::string("is not a sound EXR image (") + error.what() + "). Fetch or write it again");
     }

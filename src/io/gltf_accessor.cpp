@@ -55,7 +55,7 @@ std::uint64_t GltfNumbers::size_of_number() const {
     return type == Type::i2 || type == Type::u2 ? 2 : 4;
 }
 
-GltfAccessor::GltfAccessor(GltfFile& file, std::uint64_t number, int components) {
+GltfAccessor::GltfAccessor(GltfFile& file, std::uint64_t number, int components) : components_(components) {
     const auto& accessor = file.object("accessors", number);
     const auto type = accessor.find("type");
     constexpr const char* types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};

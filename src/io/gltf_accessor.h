@@ -35,6 +35,7 @@ public:
     GltfAccessor(GltfFile& file, std::uint64_t number, int components);
 
     std::uint64_t size() const { return size_; }
+    int components() const { return components_; }
     bool has_ordinals() const { return base_.are_ordinals(); }
     double value(std::uint64_t i, int component) const;
     Vec3d point(std::uint64_t i) const { return {value(i, 0), value(i, 1), value(i, 2)}; }
@@ -45,6 +46,7 @@ private:
     void read_sparse(GltfFile& file, const GltfFile::Json& sparse, int components);
 
     std::uint64_t size_ = 0;
+    int components_ = 0;
     GltfNumbers base_;             // without bytes: all zero
     std::uint64_t replaced_ = 0;   // number of elements that are replaced
     GltfNumbers places_, values_;  // the replaced elements' places and new values

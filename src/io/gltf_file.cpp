@@ -171,6 +171,59 @@ std::optional<std::vector<double>> GltfFile::numbers(const Json& object, const c
     return values;
 }
 
+double GltfFile::real_or(const Json& object, const char* key, double otherwise) const {
+    const auto found = object.find(key);
+    if (found == object.end()) return otherwise;
+    if (!found->is_number() || !std::isfinite(found->get<double>()))
+        fail(std::string("'") + key + "' is no number");
+    return found->get<double>();
+}
+
+std::string GltfFile::text(const Json& object, const char* key) const {
+    const auto found = object.find(key);
+    if (found == object.end()) return {};
+    if (!found->is_string()) fail(std::string("'") + key + "' is no text");
+    return found->get<std::string>();
+}
+
+bool GltfFile::flag(const Json& object, const char* key) const {
+    const auto found = object.find(key);
+    if (found == object.end()) return false;
+    if (!found->is_boolean()) fail(std::string("'") + key + "' is neither true nor false");
+    return found->get<bool>();
+}
+
+const GltfFile::Json* GltfFile::member(const Json& object, const char* key) const {
+    const auto found = object.find(key);
+    if (found == object.end()) return nullptr;
+    if (!found->is_object()) fail(std::string("'") + key + "' is no object");
+    return &*found;
+}
+
+const GltfFile::Json* GltfFile::extension(const Json& object, const char* name) const {
+    const Json* const all = member(object, "extensions");
+    return all == nullptr ? nullptr : member(*all, name);
+}
+
+std::vector<std::string> GltfFile::texts(const char* key) const {
+    std::vector<std::string> all;
+    for (const Json& text : array(key)) {
+        if (!text.is_string()) fail(std::string("'") + key + "' holds what is no text");
+        all.push_back(text.get<std::string>());
+    }
+    return all;
+}
+
+std::string_view GltfFile::image(std::uint64_t i, std::string& own) {
+    const Json& description = object("images", i);
+    if (const auto view = number(description, "bufferView"))
+        return bytes(*view, 0, needed_number(object("bufferViews", *view), "byteLength"));
+    const std::string uri = text(description, "uri");
+    if (uri.empty()) fail("image " + std::to_string(i) + " has neither a 'uri' nor a buffer view");
+    if (is_data_uri(uri)) return own = bytes_of_data_uri(uri, name_);
+    return own = first_bytes(file_of_uri(uri, path_, name_, "image"), std::uint64_t(1) << 40);
+}
+
 std::string_view GltfFile::bytes(std::uint64_t view, std::uint64_t offset, std::uint64_t size) {
     const Json& v = object("bufferViews", view);
     const std::string_view whole = buffer(needed_number(v, "buffer"));

@@ -42,6 +42,22 @@ public:
     std::vector<std::uint64_t> ordinals(const Json& object, const char* key) const;
     /// The member `key`: `count` finite numbers. Nothing if there is no such member.
     std::optional<std::vector<double>> numbers(const Json& object, const char* key, std::size_t count) const;
+    /// The member `key`: a finite number; `otherwise` if there is none.
+    double real_or(const Json& object, const char* key, double otherwise) const;
+    /// The member `key`: a text; empty if there is none.
+    std::string text(const Json& object, const char* key) const;
+    /// The member `key`: true or false; false if there is none.
+    bool flag(const Json& object, const char* key) const;
+    /// The member `key`: an object; null if there is none.
+    const Json* member(const Json& object, const char* key) const;
+    /// An extension of an object; null if it has none of this name.
+    const Json* extension(const Json& object, const char* name) const;
+    const Json& root() const { return root_; }
+    /// The texts of the array `key` of the root, such as "extensionsUsed".
+    std::vector<std::string> texts(const char* key) const;
+    /// The bytes of an image, which is a data URI, a file in the scene's folder, or a buffer view. `own`
+    /// holds them where the file does not.
+    std::string_view image(std::uint64_t i, std::string& own);
     /// `size` bytes of a buffer view, from `offset` on. They are valid as long as this object lives.
     std::string_view bytes(std::uint64_t view, std::uint64_t offset, std::uint64_t size);
     /// Bytes from one element of a buffer view to the next; 0 if the elements are adjacent.

@@ -1,4 +1,4 @@
-/// Data URIs (RFC 2397) and relative references (RFC 3986), as far as glTF uses them.
+/// Data URIs (RFC 2397) and relative references (RFC 3986), as far as glTF uses them, and relative paths.
 #include "gltf_uri.h"
 
 #include <algorithm>
@@ -62,6 +62,12 @@ bool holds(const std::filesystem::path& folder, const std::filesystem::path& fil
     return at == whole_folder.end();
 }
 
+[[noreturn]] void fail_name(std::string_view text, const std::string& name, const std::string& what,
+                            const std::string& why) {
+    throw InputError(name + ": its " + what + " " + shown(text) + " " + why + ". A " + what +
+                     " is read from the scene's own folder: put the file there");
+}
+
 }  // namespace
 
 std::string bytes_of_data_uri(std::string_view uri, const std::string& name) {
@@ -88,18 +94,23 @@ std::string bytes_of_data_uri(std::string_view uri, const std::string& name) {
 }
 
 std::filesystem::path file_of_uri(std::string_view uri, const std::filesystem::path& scene,
-                                  const std::string& name) {
+                                  const std::string& name, const std::string& what) {
+    const auto text = percent_decoded(uri);
+    if (!text) fail_name(uri, name, what, "is no name of a file");
+    if (text->find('\\') != text->npos) fail_name(uri, name, what, "has a backslash");
+    return file_beside(*text, scene, name, what);
+}
+
+std::filesystem::path file_beside(std::string_view path, const std::filesystem::path& scene,
+                                  const std::string& name, const std::string& what) {
+    const auto fail = [&](const std::string& why) { fail_name(path, name, what, why); };
     // The path of a scene may have no folder: the scene is then in the current one.
     const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
-    const auto fail = [&](const std::string& why) {
-        throw InputError(name + ": its buffer " + shown(uri) + " " + why +
-                         ". Buffers are read from the scene's own folder: put the file there");
-    };
-    const auto text = percent_decoded(uri);
-    if (!text || text->empty()) fail("is no name of a file");
-    if (text->find(':') != text->npos) fail("has a scheme or a drive");
-    if (text->find('\\') != text->npos) fail("has a backslash");
-    const std::filesystem::path relative(*text);
+    std::string text(path);
+    std::replace(text.begin(), text.end(), '\\', '/');
+    if (text.empty() || text.find('\0') != text.npos) fail("is no name of a file");
+    if (text.find(':') != text.npos) fail("has a scheme or a drive");
+    const std::filesystem::path relative(text);
     if (relative.is_absolute()) fail("is an absolute path");
     if (std::find(relative.begin(), relative.end(), "..") != relative.end()) fail("leaves the folder");
     if (!holds(folder, folder / relative)) fail("is a link that leaves the folder");

@@ -11,7 +11,7 @@ namespace hedgerow::detail {
 
 namespace {
 
-using Rgbe = std::array<std::uint8_t, 4>;
+using HdrPixel = std::array<std::uint8_t, 4>;
 
 class HdrReader {
 public:
@@ -22,7 +22,7 @@ public:
         read_size();
         Pixels pixels = make_pixels<float>(image_, width(), height(), 3);
         auto& samples = std::get<std::vector<float>>(pixels.samples);
-        std::vector<Rgbe> line(across_.count);
+        std::vector<HdrPixel> line(across_.count);
         for (std::uint64_t i = 0; i < down_.count; ++i) {
             read_line(line, i);
             for (std::uint64_t k = 0; k < across_.count; ++k) {
@@ -95,8 +95,8 @@ private:
         left_.remove_prefix(1);
         return value;
     }
-    void read_line(std::vector<Rgbe>& line, std::uint64_t number) {
-        Rgbe first{byte(), byte(), byte(), byte()};
+    void read_line(std::vector<HdrPixel>& line, std::uint64_t number) {
+        HdrPixel first{byte(), byte(), byte(), byte()};
         const std::size_t size = line.size();
         const bool in_planes = size >= 8 && size < 32768 && first[0] == 2 && first[1] == 2 && first[2] < 128;
         if (!in_planes) return read_flat(line, first);
@@ -106,7 +106,7 @@ private:
         for (std::size_t plane = 0; plane < 4; ++plane) read_plane(line, plane);
     }
     /// One byte of all pixels, in runs (more than 128: so many of one value, less 128) and literal bytes.
-    void read_plane(std::vector<Rgbe>& line, std::size_t plane) {
+    void read_plane(std::vector<HdrPixel>& line, std::size_t plane) {
         for (std::size_t i = 0; i < line.size();) {
             const std::size_t code = byte(), count = code > 128 ? code - 128 : code;
             if (count == 0 || count > line.size() - i)
@@ -119,7 +119,7 @@ private:
     }
     /// Whole pixels. One of (1, 1, 1, n) repeats the pixel before it n times; several in a row are the digits
     /// of one number, the lowest first.
-    void read_flat(std::vector<Rgbe>& line, Rgbe pixel) {
+    void read_flat(std::vector<HdrPixel>& line, HdrPixel pixel) {
         std::size_t i = 0;
         int shift = 0;
         while (true) {
@@ -138,7 +138,7 @@ private:
             pixel = {byte(), byte(), byte(), byte()};
         }
     }
-    void store(const Rgbe& pixel, float* to) const {
+    void store(const HdrPixel& pixel, float* to) const {
         const double unit = pixel[3] == 0 ? 0 : std::ldexp(per_exposure_, pixel[3] - 136);
         for (std::size_t k = 0; k < 3; ++k) to[k] = usable(static_cast<float>(pixel[k] * unit));
     }

@@ -1,6 +1,8 @@
 /// Parts that mesh readers share: faces become triangles, and corners become vertices.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <numeric>
@@ -58,13 +60,22 @@ void append(const ByteSource& file, std::vector<U>& array, const U& value) {
 
 /// The faces of a file as triangles. Polygons are stored as fans until all vertices are known, and are then
 /// triangulated (triangulate.h). Face ordinals are stored only if a face is not a triangle.
+///
+/// Corners may have further ordinals, of normals for example. There are up to `most_lists` lists of them;
+/// `nothing` is the ordinal of a corner without one. A list whose corners have none takes no memory.
 class FaceList {
 public:
+    static constexpr std::size_t most_lists = 3;
+    static constexpr std::uint32_t nothing = 0xFFFFFFFFu;
+
     explicit FaceList(const ByteSource& file) : file_(file) {}
 
     std::uint64_t face_count() const { return next_; }
+    std::size_t triangle_count() const { return triangles_.size(); }
 
-    void add(std::span<const std::uint32_t> corners) {
+    /// Adds a face by its vertices. `others` are lists of as many further ordinals each.
+    void add(std::span<const std::uint32_t> corners,
+             std::span<const std::vector<std::uint32_t>> others = {}) {
         if (corners.size() != 3 && !numbered_) {
             expect_memory(file_.name(), "the face numbers of its triangles",
                           triangles_.size() * sizeof(faces_[0]));
@@ -72,6 +83,7 @@ public:
             std::iota(faces_.begin(), faces_.end(), 0u);
             numbered_ = true;
         }
+        for (std::size_t k = 0; k < others.size(); ++k) add_others(others_[k], others[k]);
         for (std::size_t i = 2; i < corners.size(); ++i) {
             append(file_, triangles_, TriangleIndices{corners[0], corners[i - 1], corners[i]});
             if (numbered_) append(file_, faces_, static_cast<std::uint32_t>(next_));
@@ -85,28 +97,50 @@ public:
             for (end = begin + 1; end < faces_.size() && faces_[end] == faces_[begin];) ++end;
             if (end - begin < 2) continue;
             file_.expect_not_cancelled();
-            fill_polygon<T>(file_, std::span(triangles_).subspan(begin, end - begin), mesh.vertices);
+            const auto part = [&](std::vector<TriangleIndices>& all) {
+                return std::span(all).subspan(begin, end - begin);
+            };
+            std::array<std::span<TriangleIndices>, most_lists> alike;
+            std::size_t lists = 0;
+            for (auto& other : others_)
+                if (!other.empty()) alike[lists++] = part(other);
+            fill_polygon<T>(file_, part(triangles_), mesh.vertices, std::span(alike).first(lists));
         }
         mesh.triangles = std::move(triangles_);
         mesh.faces = std::move(faces_);
     }
+    /// The further ordinals of the triangles' corners, once `move_to` is done. Empty if no corner has one.
+    std::vector<TriangleIndices> take_others(std::size_t list) { return std::move(others_[list]); }
 
 private:
+    /// Adds the fan of a face to a list of further ordinals, before its triangles are added.
+    void add_others(std::vector<TriangleIndices>& list, const std::vector<std::uint32_t>& corners) {
+        const bool has_none =
+            std::all_of(corners.begin(), corners.end(), [](std::uint32_t c) { return c == nothing; });
+        if (list.empty() && has_none) return;
+        while (list.size() < triangles_.size())
+            append(file_, list, TriangleIndices{nothing, nothing, nothing});
+        for (std::size_t i = 2; i < corners.size(); ++i)
+            append(file_, list, TriangleIndices{corners[0], corners[i - 1], corners[i]});
+    }
+
     const ByteSource& file_;
     std::vector<TriangleIndices> triangles_;
+    std::array<std::vector<TriangleIndices>, most_lists> others_;
     std::vector<std::uint32_t> faces_;
     std::uint64_t next_ = 0;
     bool numbered_ = false;
 };
 
-/// Makes one vertex of all corners with the same bits (−0 equals 0). An open-addressing hash table, at most
-/// half full.
-template <class T>
-class Welder {
+/// Makes one value of all values with the same bits (−0 equals 0). A V is made of numbers of type T alone. An
+/// open-addressing hash table, at most half full.
+template <class V, class T>
+class ValueWelder {
 public:
-    explicit Welder(const ByteSource& file) : file_(file) {}
+    explicit ValueWelder(const ByteSource& file) : file_(file) {}
 
-    std::uint32_t vertex(const Vec<T, 3>& corner) {
+    /// The ordinal of a value.
+    std::uint32_t vertex(const V& corner) {
         if (2 * (vertices_.size() + 1) > slots_.size()) grow();
         const Key key = key_of(corner);
         for (std::size_t s = hash(key) & (slots_.size() - 1);; s = (s + 1) & (slots_.size() - 1)) {
@@ -119,15 +153,17 @@ public:
         }
     }
     std::size_t size() const { return vertices_.size(); }
-    std::vector<Vec<T, 3>> take() { return std::move(vertices_); }
+    std::vector<V> take() { return std::move(vertices_); }
 
 private:
     using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
-    using Key = std::array<Bits, 3>;
+    using Key = std::array<Bits, sizeof(V) / sizeof(T)>;
 
-    static Key key_of(const Vec<T, 3>& p) {
-        const auto bits = [](T x) { return x == 0 ? Bits(0) : std::bit_cast<Bits>(x); };
-        return {bits(p[0]), bits(p[1]), bits(p[2])};
+    static Key key_of(const V& value) {
+        Key key = std::bit_cast<Key>(value);
+        for (Bits& b : key)
+            if (std::bit_cast<T>(b) == 0) b = 0;
+        return key;
     }
     static std::size_t hash(const Key& key) {
         std::uint64_t h = 0;
@@ -154,8 +190,12 @@ private:
     }
 
     const ByteSource& file_;
-    std::vector<Vec<T, 3>> vertices_;
+    std::vector<V> vertices_;
     std::vector<std::uint32_t> slots_;  // 1 + the vertex; 0: free
 };
+
+/// Makes one vertex of all corners at the same place.
+template <class T>
+using Welder = ValueWelder<Vec<T, 3>, T>;
 
 }  // namespace hedgerow::detail

@@ -40,7 +40,9 @@ public:
                 read_element();
             else if (word == "property")
                 read_property();
-            else if (word != "comment" && word != "obj_info" && !word.empty())
+            else if (word == "comment")
+                read_comment();
+            else if (word != "obj_info" && !word.empty())
                 fail("cannot be understood: " + shown(line));
         }
         fail("is missing: the header has no 'end_header'");
@@ -71,6 +73,9 @@ private:
             fail("says format " + shown(name) +
                  "; known are ascii, binary_little_endian and binary_big_endian");
         if (version != "1.0") fail("says version " + shown(version) + "; only 1.0 is known");
+    }
+    void read_comment() {
+        if (take_word(rest_) == "TextureFile") header_.textures.emplace_back(trimmed(rest_));
     }
     void read_element() {
         PlyElement element;

@@ -29,6 +29,7 @@ struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::ascii;
     std::vector<PlyElement> elements;
     std::uint64_t lines = 0;
+    std::vector<std::string> textures;  // image files, in comments "TextureFile NAME" as MeshLab writes them
 
     const PlyElement* find(std::string_view name) const;
     /// Whether the file has vertices, and nothing that connects them.

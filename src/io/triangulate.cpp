@@ -258,11 +258,19 @@ std::optional<std::vector<Point>> projected(std::vector<Vec3d>& corners) {
     return points;
 }
 
+/// The corners of a polygon, in their order, from a fan of triangles from the first.
+std::vector<std::uint32_t> corners_of_fan(std::span<const TriangleIndices> fan) {
+    std::vector<std::uint32_t> names{fan[0][0], fan[0][1]};
+    names.reserve(fan.size() + 2);
+    for (const TriangleIndices& t : fan) names.push_back(t[2]);
+    return names;
+}
+
 }  // namespace
 
 template <class T>
-void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
-                  std::span<const Vec<T, 3>> vertices) {
+void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan, std::span<const Vec<T, 3>> vertices,
+                  std::span<const std::span<TriangleIndices>> alike) {
     const std::size_t size = fan.size() + 2;
     const auto expect_room = [&](std::uint64_t bytes_a_corner) {
         constexpr std::size_t unasked = 1u << 16;  // corners; the few MB for fewer are not checked
@@ -272,9 +280,7 @@ void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
     };
     // Collect the corners of the polygon from the fan.
     expect_room(sizeof(std::uint32_t) + sizeof(Vec3d) + sizeof(Point));
-    std::vector<std::uint32_t> names{fan[0][0], fan[0][1]};
-    names.reserve(size);
-    for (const TriangleIndices& t : fan) names.push_back(t[2]);
+    const std::vector<std::uint32_t> names = corners_of_fan(fan);
     std::vector<Vec3d> corners;
     corners.reserve(size);
     for (const std::uint32_t v : names) {
@@ -285,13 +291,20 @@ void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
     const auto points = projected(corners);
     if (!points || is_convex(*points)) return;
     expect_room(EarClipper::bytes_a_corner);
-    auto next = fan.begin();
-    EarClipper(file, *points).run([&](Corner a, Corner b, Corner c) {
-        *next++ = {names[a], names[b], names[c]};
-    });
+    std::vector<TriangleIndices> ears;
+    ears.reserve(fan.size());
+    EarClipper(file, *points).run([&](Corner a, Corner b, Corner c) { ears.push_back({a, b, c}); });
+    const auto replace = [&](std::span<TriangleIndices> to, const std::vector<std::uint32_t>& by) {
+        for (std::size_t i = 0; i < ears.size(); ++i)
+            to[i] = {by[ears[i][0]], by[ears[i][1]], by[ears[i][2]]};
+    };
+    replace(fan, names);
+    for (const std::span<TriangleIndices> other : alike) replace(other, corners_of_fan(other));
 }
 
-template void fill_polygon(const ByteSource&, std::span<TriangleIndices>, std::span<const Vec3f>);
-template void fill_polygon(const ByteSource&, std::span<TriangleIndices>, std::span<const Vec3d>);
+template void fill_polygon(const ByteSource&, std::span<TriangleIndices>, std::span<const Vec3f>,
+                           std::span<const std::span<TriangleIndices>>);
+template void fill_polygon(const ByteSource&, std::span<TriangleIndices>, std::span<const Vec3d>,
+                           std::span<const std::span<TriangleIndices>>);
 
 }  // namespace hedgerow::detail

@@ -30,8 +30,11 @@ namespace hedgerow::detail {
 ///
 /// Throws InputError, naming `file`, before a large polygon takes more memory than there is, and Cancelled
 /// soon after the reading of the file was cancelled.
+///
+/// `alike` are fans of the same polygon whose corners are other ordinals, such as those of normals. They are
+/// divided as the first fan is.
 template <class T>
-void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan,
-                  std::span<const Vec<T, 3>> vertices);
+void fill_polygon(const ByteSource& file, std::span<TriangleIndices> fan, std::span<const Vec<T, 3>> vertices,
+                  std::span<const std::span<TriangleIndices>> alike = {});
 
 }  // namespace hedgerow::detail
