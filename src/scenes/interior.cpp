@@ -20,7 +20,7 @@ TriangleMesh<double> furnished(const std::vector<Thing>& things, std::uint64_t l
     for (std::size_t i = 0; i < things.size(); ++i) {
         progress.look();
         progress(mesh.size(), size);
-        Model model(level);
+        detail::Model model(level);
         things[i](model, Random(seed, i));
         if (i == 0 || mesh.size() + model.mesh.size() <= size) append(mesh, model.mesh);
     }
@@ -33,7 +33,7 @@ bool fills(const std::vector<Thing>& things, std::uint64_t level, std::uint64_t 
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < things.size() && count < size; ++i) {
         progress.look();
-        Model model(level);
+        detail::Model model(level);
         things[i](model, Random(seed, i));
         count += model.mesh.size();
     }

@@ -30,7 +30,7 @@ namespace hedgerow {
 ///
 /// STL has no shared vertices, and glTF splits them for normals and textures. Both readers join corners at
 /// equal positions (−0 equals 0), so closed surfaces are closed meshes. Normals, colours, textures and other
-/// properties are not read.
+/// properties are not read; load_model reads them.
 ///
 /// `progress` counts the bytes of the file, about every 256 KiB. T is float or double. O(size of the file)
 /// time, but a concave polygon of n corners takes O(n log n) if it is an ordinary outline, O(n²) at worst.
