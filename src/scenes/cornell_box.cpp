@@ -3,6 +3,7 @@
 
 #include <hedgerow/scenes/meshes.h>
 
+#include "parts.h"
 #include "precision.h"
 #include "sizing.h"
 #include "steps.h"
@@ -56,9 +57,14 @@ TriangleMesh<double> block(const Quad& top, const Pieces& n, detail::WeldedMesh 
     return std::move(to.mesh);
 }
 
-TriangleMesh<double> build_cornell_box(std::uint64_t size, const Progress& progress) {
+/// The pieces along the axes.
+Pieces pieces_of(std::uint64_t size) {
     // Triangles of all faces in (y, z), in (z, x) and in (x, y): two per piece.
-    const Pieces pieces = detail::nearest_box_split(size, {12, 10, 10});
+    return detail::nearest_box_split(size, {12, 10, 10});
+}
+
+TriangleMesh<double> build_cornell_box(std::uint64_t size, const Progress& progress) {
+    const Pieces pieces = pieces_of(size);
     TriangleMesh<double> mesh;
     const auto welded = [&] { return detail::WeldedMesh(progress, size, mesh.size()); };
     mesh = room(pieces, welded());
@@ -69,6 +75,12 @@ TriangleMesh<double> build_cornell_box(std::uint64_t size, const Progress& progr
 }
 
 }  // namespace
+
+std::array<std::uint64_t, 6> detail::parts_of_cornell_box(std::uint64_t size) {
+    const Pieces pieces = pieces_of(size);
+    const std::uint64_t x = pieces[0], y = pieces[1], z = pieces[2];
+    return {2 * z * x, 2 * z * x, 2 * x * y, 2 * z * y, 2 * z * y, 2 * z * x};
+}
 
 template <class T>
 TriangleMesh<T> cornell_box(std::uint64_t size, const Progress& progress) {

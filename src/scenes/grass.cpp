@@ -5,6 +5,7 @@
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 
+#include "parts.h"
 #include "precision.h"
 #include "steps.h"
 
@@ -40,7 +41,8 @@ void grow_blade(TriangleMesh<double>& mesh, const Vec3d& root, double width, Ran
 }
 
 TriangleMesh<double> build_grass(std::uint64_t size, std::uint64_t seed, const Progress& progress) {
-    TriangleMesh<double> mesh = terrain<double>(size / 8, seed, detail::part_of(progress));
+    TriangleMesh<double> mesh =
+        terrain<double>(detail::ground_size_of_grass(size), seed, detail::part_of(progress));
     const std::size_t ground = mesh.triangles.size();
     const std::uint64_t blades = size > ground ? (size - ground + 1) / triangles_a_blade : 0;
     // A blade is at most a third as wide as the mean distance between blades.

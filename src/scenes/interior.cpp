@@ -10,7 +10,10 @@
 namespace hedgerow {
 namespace {
 
-using namespace detail;
+using detail::append;
+using detail::flat;
+using detail::in_precision;
+using detail::Thing;
 
 /// Adds things in order, but skips each that would make the mesh larger than `size`. The first is always
 /// added.

@@ -4,6 +4,7 @@
 #include <hedgerow/scenes/meshes.h>
 
 #include "circle.h"
+#include "parts.h"
 #include "precision.h"
 #include "sizing.h"
 #include "steps.h"
@@ -66,9 +67,8 @@ TriangleMesh<double> bowl(std::uint64_t size, const Progress& progress) {
 }
 
 TriangleMesh<double> build_stadium(std::uint64_t size, const Progress& progress) {
-    constexpr std::uint64_t default_total = 54'056, default_teapot = 6'320;
     const TriangleMesh<double> pot =
-        teapot<double>(size * default_teapot / default_total, detail::part_of(progress));
+        teapot<double>(detail::teapot_size_of_stadium(size), detail::part_of(progress));
     TriangleMesh<double> mesh = bowl(size > pot.size() ? size - pot.size() : 0, progress);
     detail::append(mesh, pot, {0, 0, teapot_height_above_field});
     return mesh;
