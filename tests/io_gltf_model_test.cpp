@@ -173,6 +173,16 @@ TEST_F(GltfModels, TextureTransformsTurnAsProgramsTurnThem) {
     EXPECT_NEAR(up[1], -1, 1e-6f);
 }
 
+TEST_F(GltfModels, ImagesOfTheSameBytesAreDecodedOnce) {
+    Gltf file = with_material(
+        R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"emissiveTexture":{"index":1})",
+        R"(,"images":[{"bufferView":1},{"bufferView":1}],"textures":[{"source":0},{"source":1}])");
+    file.view(png_chart());
+    const auto model = load(file);
+    EXPECT_EQ(model.textures.size(), 1u);
+    EXPECT_EQ(model.textures[0].name, "buffer view 1");
+}
+
 TEST_F(GltfModels, TexturesThatAreMissingOrBad) {
     folder.file("cut.png", png_chart().substr(0, 60));
     folder.file("text.png", "no image");

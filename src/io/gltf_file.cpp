@@ -214,6 +214,13 @@ std::vector<std::string> GltfFile::texts(const char* key) const {
     return all;
 }
 
+std::string GltfFile::image_name(std::uint64_t i) const {
+    const Json& description = object("images", i);
+    if (const auto view = number(description, "bufferView")) return "buffer view " + std::to_string(*view);
+    const std::string uri = text(description, "uri");
+    return uri.empty() || is_data_uri(uri) ? "image " + std::to_string(i) : uri;
+}
+
 std::string_view GltfFile::image(std::uint64_t i, std::string& own) {
     const Json& description = object("images", i);
     if (const auto view = number(description, "bufferView"))

@@ -55,6 +55,8 @@ public:
     const Json& root() const { return root_; }
     /// The texts of the array `key` of the root, such as "extensionsUsed".
     std::vector<std::string> texts(const char* key) const;
+    /// What identifies the bytes of an image: its file, its buffer view, or, of a data URI, its ordinal.
+    std::string image_name(std::uint64_t i) const;
     /// The bytes of an image, which is a data URI, a file in the scene's folder, or a buffer view. `own`
     /// holds them where the file does not.
     std::string_view image(std::uint64_t i, std::string& own);

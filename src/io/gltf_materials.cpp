@@ -193,7 +193,7 @@ std::optional<std::uint32_t> GltfMaterials::texture(std::uint64_t number, Colour
     const Json& json = file_.object("textures", number);
     Texture like;
     like.space = space;
-    like.name = image ? "image " + std::to_string(*image) : "texture " + std::to_string(number);
+    like.name = image ? file_.image_name(*image) : "texture " + std::to_string(number);
     if (const auto sampler = file_.number(json, "sampler")) {
         const Json& values = file_.object("samplers", *sampler);
         like.wrap_s = wrap_of(file_.number_or(values, "wrapS", 0));
@@ -205,7 +205,7 @@ std::optional<std::uint32_t> GltfMaterials::texture(std::uint64_t number, Colour
         if (!image) file_.fail("texture " + std::to_string(number) + " has no 'source' that is read");
         std::string own;
         const std::string_view bytes = file_.image(*image, own);
-        return decode_pixels(bytes, file_.name() + ", image " + std::to_string(*image), limits);
+        return decode_pixels(bytes, file_.name() + ", " + like.name, limits);
     });
 }
 

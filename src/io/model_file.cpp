@@ -33,7 +33,7 @@ Model<T> read_any_model(const std::filesystem::path& path, const ModelOptions& o
     if (read == nullptr) return bare_model<T>(path, progress);
     ByteSource file(path, progress);
     NamedOnce not_shown, warnings;
-    TextureShelf textures(options, warnings);
+    TextureShelf textures(options, progress, warnings);
     Model<T> model = read({file, path, not_shown, warnings, textures});
     model.textures = textures.take();
     model.not_shown = not_shown.take();

@@ -48,7 +48,7 @@ public:
         } else if (word == "usemtl") {
             begin_material(std::string(trimmed(rest)));
         } else if (word == "mtllib") {
-            libraries_.emplace_back(trimmed(rest));
+            libraries_.add(std::string(trimmed(rest)));
         } else if (word == "l" || word == "p" || word == "curv" || word == "surf") {
             context_.not_shown.add("lines, points and curves (OBJ)");
         }
@@ -120,7 +120,7 @@ private:
 
     /// A line names one library whose name may have blanks, or several libraries.
     void read_libraries() {
-        for (const std::string& line : libraries_) {
+        for (const std::string& line : libraries_.take()) {
             if (is_there(line)) {
                 read_library(line);
                 continue;
@@ -195,7 +195,7 @@ private:
     std::array<std::vector<std::uint32_t>, lists> corners_;
     std::uint64_t triangles_ = 0;
     std::vector<Run> runs_;
-    std::vector<std::string> libraries_;
+    NamedOnce libraries_;  // lines that name some
     MaterialsByName materials_;
 };
 

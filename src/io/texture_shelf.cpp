@@ -33,6 +33,7 @@ std::shared_ptr<const Pixels> TextureShelf::pixels_of(const std::string& name,
                                                       const std::function<Pixels(const PixelLimits&)>& load) {
     const auto [found, is_new] = images_.try_emplace(name);
     if (!is_new) return found->second;
+    progress_.look();
     if (!options_.textures) return found->second = std::make_shared<const Pixels>();
     try {
         found->second = std::make_shared<const Pixels>(load(options_.limits));

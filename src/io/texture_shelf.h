@@ -20,11 +20,13 @@ namespace hedgerow::detail {
 
 class TextureShelf {
 public:
-    TextureShelf(const ModelOptions& options, NamedOnce& warnings) : options_(options), warnings_(warnings) {}
+    TextureShelf(const ModelOptions& options, const Progress& progress, NamedOnce& warnings)
+        : options_(options), progress_(progress), warnings_(warnings) {}
 
     /// The ordinal of a texture that is like `description`, which says everything but the pixels.
     /// `description.name` identifies the image, and `load` decodes it. If that throws InputError, there is a
-    /// warning, and the texture is magenta if `is_colour`; else there is none.
+    /// warning, and the texture is magenta if `is_colour`; else there is none. Throws Cancelled before an
+    /// image is decoded if the progress is cancelled.
     std::optional<std::uint32_t> texture(const Texture& description, bool is_colour,
                                          const std::function<Pixels(const PixelLimits&)>& load);
     const Texture& operator[](std::uint32_t ordinal) const { return textures_[ordinal]; }
@@ -38,6 +40,7 @@ private:
                                             const std::function<Pixels(const PixelLimits&)>& load);
 
     ModelOptions options_;
+    Progress progress_;
     NamedOnce& warnings_;
     std::map<std::string, std::shared_ptr<const Pixels>> images_;
     std::map<Kind, std::uint32_t> known_;
