@@ -4,6 +4,7 @@
 ///
 ///   first_hits_benchmark [SCENE ...]    a mesh file, gen:NAME[:SIZE], or stack:N, N layers one behind the
 ///                                       other; default: gen:hairball:200000 gen:soup:50000 stack:1000
+#include <algorithm>
 #include <array>
 
 #include <hedgerow/ask.h>
@@ -139,13 +140,23 @@ void lists(const TriangleMesh<float>& mesh, const MeshIndexOf& index) {
                                  for (const auto& ray : rays) all += in_pieces(index, ray, piece);
                                  return all;
                              }});
+    // Compare the lists of every sample.
+    std::size_t differ = 0;
+    FragmentLists<float>(samples).list(mesh.view(), [&](const FragmentBand<float>& band) {
+        for (int y = band.top(); y <= band.bottom(); ++y)
+            for (int x = 0; x < samples.width(); ++x) {
+                all_hits(index, samples.ray(x, y), hits);
+                const auto list = band.at(x, y);
+                differ += !std::equal(list.begin(), list.end(), hits.begin(), hits.end());
+            }
+    });
     const auto milliseconds = [&](double millions) { return double(rays.size()) / millions * 1e-3; };
     std::printf(
         "  512 x 512: %zu fragments in %zu bands, %.1f tests each; lists by triangles %.0f ms, by rays "
-        "%.0f ms, in pieces of 8 %.0f ms\n",
+        "%.0f ms, in pieces of 8 %.0f ms; %zu lists differ\n",
         std::size_t(counts.fragments), std::size_t(counts.bands),
         double(counts.raster.tests) / double(counts.fragments), milliseconds(rate[0]), milliseconds(rate[1]),
-        milliseconds(rate[2]));
+        milliseconds(rate[2]), differ);
 }
 
 }  // namespace

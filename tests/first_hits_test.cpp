@@ -272,6 +272,20 @@ TEST(FirstHits, InBatchesOfAnyThreads) {
     }
 }
 
+TEST(FirstHits, NeedNoExecutorForAFilter) {
+    const auto mesh = stack<float>(6);
+    const auto index = build(mesh);
+    const std::vector<Ray3f> rays(3, Ray3f{{0.25f, 0.5f, -1}, {0, 0, 1}});
+    std::vector<Hit<float>> hits(2 * rays.size());
+    std::vector<std::uint32_t> counts(rays.size());
+    // Ray i sees what lies beyond t = 2 i + 1.5.
+    first_hits(index, rays, 2, {hits, counts},
+               [](std::size_t i, const Hit<float>& hit) { return hit.t > 1.5f + 2 * float(i); });
+    EXPECT_EQ(counts, (std::vector<std::uint32_t>{2, 2, 1}));
+    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(hits[2 * i].t, 2 + 2 * float(i));
+    EXPECT_FALSE(bool(hits[5]));
+}
+
 TEST(FirstHits, RefuseArraysThatAreTooShort) {
     const auto mesh = teapot<float>(50);
     const auto index = build(mesh);

@@ -236,7 +236,7 @@ TEST(Transparency, MasksAreFilters) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
         ASSERT_EQ(bool(hits[i]), any[i]);
         ASSERT_EQ(composites[i].colour, hits[i] ? paint(rays[i], hits[i]).colour : Vec3f());
-        const AlphaMask own(opacity, std::span(&rays[i], 1), 0.7f);
+        const AlphaMask own(opacity, rays[i], 0.7f);
         ASSERT_EQ(hits[i], closest_hit(index, rays[i], own));
         ASSERT_EQ(any[i], any_hit(index, rays[i], own));
         seen += any[i];
@@ -244,6 +244,10 @@ TEST(Transparency, MasksAreFilters) {
     }
     EXPECT_GT(seen, 100u);
     EXPECT_GT(other, 100u);
+    // Rays in another layout, by a view of them.
+    std::vector<Hit<float>> again(rays.size());
+    closest_hits(index, rays, again, AlphaMask(opacity, RayArray<float, 3>(rays), 0.7f));
+    EXPECT_EQ(again, hits);
     // The cutoff itself is opaque.
     EXPECT_EQ(masked(0.5f, 0.5f), 1);
     EXPECT_EQ(masked(0.49f, 0.5f), 0);

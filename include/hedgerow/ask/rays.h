@@ -57,7 +57,8 @@ std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::
 ///   std::size_t n = first_hits(index, ray, some);
 ///   for (; n > 0; n = first_hits(index, ray, some, some[n - 1])) ...
 ///
-/// `index` may be any index; that of an AnyIndex's own structure answers where there is no filter.
+/// `index` may be an AnyIndex too, which answers as its own function of this name does where there is no
+/// filter.
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits,
                        const AfterHit<typename I::Scalar>& after = {}, const Filter& filter = {},
@@ -202,6 +203,12 @@ void first_hits(const I& index, const RayArray<typename I::Scalar, I::dimension>
                 if (!columns.counts.empty()) columns.counts[i] = static_cast<std::uint32_t>(found);
             }
         });
+}
+
+template <class I, FilterOf<typename I::Scalar> Filter>
+void first_hits(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays, std::size_t k,
+                const FirstHitsColumns<typename I::Scalar>& columns, const Filter& filter) {
+    first_hits(index, rays, k, columns, {}, Threads(), filter);
 }
 
 }  // namespace hedgerow

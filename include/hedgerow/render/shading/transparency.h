@@ -149,27 +149,33 @@ constexpr float masked(float opacity, float cutoff) {
     return opacity >= cutoff ? 1.0f : 0.0f;
 }
 /// A filter for closest and any hits (queries/hit.h) that keeps hits where a mask is opaque: leaves and
-/// fences that are drawn on a few triangles. `rays` are those of the batch, or the one ray that is asked;
-/// they must outlive the filter.
+/// fences that are drawn on a few triangles. It is made for one ray, of which it has a copy, or for the rays
+/// of a batch, of which it has a view: a RayArray, a span, or that of a vector.
 ///
 ///   closest_hits(index, rays, hits, AlphaMask(opacity, rays));
-///   any_hit(index, ray, AlphaMask(opacity, std::span(&ray, 1)));
+///   any_hit(index, ray, AlphaMask(opacity, ray));
 template <class OpacityOf, class Rays>
 class AlphaMask {
 public:
     /// 0.5 is the cutoff of glTF where a file gives none.
-    AlphaMask(OpacityOf opacity, const Rays& rays, float cutoff = 0.5f)
-        : opacity_(std::move(opacity)), rays_(&rays), cutoff_(cutoff) {}
+    AlphaMask(OpacityOf opacity, Rays rays, float cutoff = 0.5f)
+        : opacity_(std::move(opacity)), rays_(std::move(rays)), cutoff_(cutoff) {}
 
     template <class H>
-    bool operator()(std::size_t ray, const H& hit) const {
-        return opacity_((*rays_)[ray], hit) >= cutoff_;
+    bool operator()(std::size_t number, const H& hit) const {
+        if constexpr (requires { rays_[number]; })
+            return opacity_(rays_[number], hit) >= cutoff_;
+        else
+            return opacity_(rays_, hit) >= cutoff_;
     }
 
 private:
     OpacityOf opacity_;
-    const Rays* rays_;
+    Rays rays_;
     float cutoff_;
 };
+template <class OpacityOf, std::floating_point T, int D>
+AlphaMask(OpacityOf, const std::vector<Ray<T, D>>&, float = 0.5f)
+    -> AlphaMask<OpacityOf, std::span<const Ray<T, D>>>;
 
 }  // namespace hedgerow
