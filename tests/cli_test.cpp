@@ -195,6 +195,20 @@ TEST_F(Cli, RasterisingMakesThePictureOfRays) {
     expect_bad("render gen:cube --visibility raster --projection panorama -o " + file("x.png"), "panorama");
 }
 
+TEST_F(Cli, ColoursAreThoseOfTheScene) {
+    const std::string scene = "render gen:cornell-box --quiet --size 64x64 -o ";
+    ASSERT_EQ(run(scene + file("grey.png")).code, 0);
+    ASSERT_EQ(run(scene + file("colour.png") + " --shading colour").code, 0);
+    ASSERT_EQ(run(scene + file("drawn.png") + " --shading colour --visibility raster").code, 0);
+    EXPECT_EQ(bytes_of(file("colour.png")), bytes_of(file("drawn.png")));
+    const auto colour = hedgerow::load_png(file("colour.png")), grey = hedgerow::load_png(file("grey.png"));
+    EXPECT_GT(colour.at(3, 32)[0], colour.at(3, 32)[1] + 40) << "the left wall is red";
+    EXPECT_LT(std::abs(int(grey.at(3, 32)[0]) - int(grey.at(3, 32)[1])), 20);
+    expect_usage("render gen:cube --shading colour --structure bvh -o " + file("x.png"), "--structure");
+    expect_usage("render gen:cube --camera 0 -o " + file("x.png"), "--shading colour");
+    expect_usage("render gen:cube --shading colour --camera 0 -o " + file("x.png"), "has 0 cameras");
+}
+
 TEST_F(Cli, ViewsAndProjectionsMakeDifferentPictures) {
     std::vector<std::string> pictures;
     for (const char* options :

@@ -5,10 +5,13 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
+#include <hedgerow/io/model_file.h>
+#include <hedgerow/render/model_scene.h>
 #include <hedgerow/render/render.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/render/visibility/rasterise_stream.h>
+#include <hedgerow/scenes/looks.h>
 
 #include "kernel_use.h"
 #include "verbs.h"
@@ -24,12 +27,13 @@ struct RenderArguments : Common {
     int spp = 1;
     unsigned threads = 0;
     std::uint64_t steps_max = 0;
+    int camera = -1;                      // of the file
     bool counts = false, layers = false;  // layers: whether the output is .exr
 
     bool rasterises() const { return visibility == "raster"; }
     bool uses_beams() const { return visibility == "beams"; }
     /// Whether the picture needs an index: for its rays from the eye, or those to the light.
-    bool needs_index() const { return !rasterises() || shading == "diffuse"; }
+    bool needs_index() const { return !rasterises() || is_lit(parse_shading(shading)); }
 };
 
 struct Outcome {
@@ -203,6 +207,75 @@ int render_stream(const RenderArguments& a) {
     const RenderOptions options = options_of(a, box, o.upright);
     return finish(a, PictureParts<T>{rasterising, rasterising}, options, std::move(o), {{}, progress.cancel});
 }
+/// Loads or generates a scene with its looks, and tells what of it is not shown.
+template <class T>
+Model<T> load_looks(const RenderArguments& a) {
+    if (a.scene.starts_with("gen:")) {
+        ProgressLine line("generating " + a.scene, a.quiet, "triangles");
+        return generate_model<T>(parse_scene_spec(a.scene), line.progress());
+    }
+    Model<T> model = [&] {
+        ProgressLine line("loading " + a.scene, a.quiet, "bytes");
+        return load_model<T>(a.scene, {}, line.progress());
+    }();
+    if (a.quiet) return model;
+    for (const std::string& warning : model.warnings) fmt::print(stderr, "hedgerow: warning: {}\n", warning);
+    if (!model.not_shown.empty())
+        fmt::print(stderr, "hedgerow: {}: not shown: {}\n", a.scene, fmt::join(model.not_shown, ", "));
+    return model;
+}
+/// The camera of a file, turned into one of ours: it looks along its -z, with y up.
+template <class T>
+Camera camera_of(const RenderArguments& a, const Model<T>& model, const Camera& given) {
+    if (a.camera < 0) return given;
+    if (static_cast<std::size_t>(a.camera) >= model.cameras.size())
+        throw UsageError(fmt::format("--camera {}: {} has {} cameras, counted from 0", a.camera, a.scene,
+                                     model.cameras.size()));
+    const FileCamera& from = model.cameras[static_cast<std::size_t>(a.camera)];
+    Camera c = given;
+    c.eye = Vec3f(from.to_world.point({}));
+    c.target = c.eye + Vec3f(normalized(from.to_world.vector({0, 0, -1})));
+    c.up = Vec3f(normalized(from.to_world.vector({0, 1, 0})));
+    if (const auto* const view = std::get_if<PerspectiveView>(&from.view))
+        c.projection = Projection::perspective,
+        c.field_of_view = static_cast<float>(view->field_of_view * 180 / 3.14159265358979323846);
+    else
+        c.projection = Projection::orthographic,
+        c.height = static_cast<float>(std::get<OrthographicView>(from.view).height);
+    return c;
+}
+/// Renders a scene with its looks, by rays through an index of two levels, or by its triangles.
+template <class T>
+int render_looks(const RenderArguments& a) {
+    const ThreadLimit limit(a.threads);
+    Outcome o;
+    const Model<T> model = load_looks<T>(a);
+    const double start = now();
+    const ModelScene<T> scene(model, interruptible_executor());
+    o.build_seconds = now() - start;
+    o.indexed = true, o.bytes = scene.bytes(), o.primitives = model.triangles();
+    o.upright = model.objects.size() == 1 || a.scene.starts_with("gen:")
+                    ? upright_of(a.view, a, model.objects[0].mesh)
+                : a.view.up != "auto" ? Upright{a.view.up[0] - 'x', ""}
+                                      : upright_by_format(a.scene, {});
+    const auto& box = scene.bounds();
+    RenderOptions options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, o.upright);
+    options.camera = camera_of(a, model, options.camera);
+    const auto& looks = scene.appearances();
+    std::unique_ptr<Visibility<T>> visibility;
+    if (!a.rasterises())
+        visibility = std::make_unique<RayCasting<T>>(
+            scene.tracer(), looks.has_masks() ? [&](const Hit<T>& hit) { return looks.is_there(hit); }
+                                              : std::function<bool(const Hit<T>&)>());
+    else if (!looks.has_masks())
+        visibility =
+            std::make_unique<Rasterising<T, InstanceSetView<MeshIndex<T>>>>(scene.instances().view());
+    else
+        throw InputError(a.scene + ": has masks of opacity, which only rays see; use --visibility cast");
+    ProgressLine line("rendering", a.quiet, "rows");
+    return finish(a, PictureParts<T>{*visibility, scene.surfaces(), &scene.tracer(), &looks}, options,
+                  std::move(o), line.progress());
+}
 template <class P>
 int render(const RenderArguments& a, const P& primitives) {
     using T = typename P::Scalar;
@@ -254,9 +327,10 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--structure", a->structure,
                     "NAME[:OPTION=VALUE,...]; of a .hedgerow file 'wide' is the index as it was saved")
         ->capture_default_str();
-    verb.add_option("--shading", a->shading, "normals, depth, diffuse or steps")
+    verb.add_option("--shading", a->shading,
+                    "normals, depth, diffuse (grey), colour (materials and textures of the scene) or steps")
         ->capture_default_str()
-        ->check(CLI::IsMember({"normals", "depth", "diffuse", "steps"}));
+        ->check(CLI::IsMember({"normals", "depth", "diffuse", "colour", "steps"}));
     verb.add_option(
             "--visibility", a->visibility,
             "how hits are found: cast rays, raster triangles, or beams of rays; the picture is the same")
@@ -270,6 +344,8 @@ Run add_render(CLI::App& verb) {
         ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     add_projection(verb, a->view);
+    verb.add_option("--camera", a->camera, "of --shading colour: a camera of the file, counted from 0")
+        ->check(CLI::NonNegativeNumber);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
     return [a] {
         const bool saved = names_index_file(a->scene);
@@ -280,7 +356,14 @@ Run add_render(CLI::App& verb) {
             throw UsageError("--structure " + a->structure + ": beams go through 'wide' alone");
         check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
+        const bool by_looks = parse_shading(a->shading) == Shading::colour;
+        if (by_looks && (a->uses_beams() || a->structure != "wide"))
+            throw UsageError(
+                "--shading colour casts rays at 'wide' or rasters: leave out --structure and beams");
+        if (a->camera >= 0 && !by_looks)
+            throw UsageError("--camera is of files with looks: it needs --shading colour");
         return in_precision(*a, [&]<class T>(T) {
+            if (by_looks) return render_looks<T>(*a);
             if (saved && a->structure == "wide" && !a->uses_beams() &&
                 !index_file_info(a->scene).holds_points)
                 return render_saved<T>(*a);

@@ -127,7 +127,7 @@ private:
             if (from_root || list.cells.count > 0)
                 hits.prepare(way, scene_.tree.bounds);
             else
-                hits.prepare_from_eye(way);
+                hits.prepare_for_triangles(way, true);
             hits.clear_hits();
             test_triangles_of(list);
             if (from_root)

@@ -23,7 +23,9 @@ void check(const PictureParts<T>& parts, const RenderOptions& o) {
     if (o.samples < 1) throw InputError("a picture needs at least one sample a pixel");
     if (parts.visibility.finds_whole_pictures() && counted(o.shading))
         throw InputError("this shading shows what rays cost, and the picture is not found ray by ray");
-    if (parts.tracer == nullptr && (o.shading == Shading::diffuse || o.shading == Shading::time))
+    if (parts.appearances == nullptr && o.shading == Shading::colour)
+        throw InputError("this shading shows what a model looks like: give its appearances");
+    if (parts.tracer == nullptr && (is_lit(o.shading) || o.shading == Shading::time))
         throw InputError("this shading casts rays: give a tracer, or shade by normals or depth");
 }
 
@@ -35,7 +37,12 @@ public:
           o_(o),
           whole_(parts.visibility.finds_whole_pictures()),
           shading_(o.camera, diagonal(parts.surfaces, o.shading)),
-          film_(o.width, o.height, o.layers) {}
+          film_(o.width, o.height, o.layers) {
+        if (o.shading == Shading::colour && parts.appearances->has_masks())
+            keeps_ = [&looks = *parts.appearances](std::size_t, const Hit<T>& hit) {
+                return looks.is_there(hit);
+            };
+    }
 
     Picture run(Executor& executor, const Progress& progress) {
         // Samples of whole pictures are found one after the other, those of tiles all at once.
@@ -68,6 +75,7 @@ private:
         OfTile<Ray<T, 3>> rays;
         OfTile<Hit<T>> hits;
         OfTile<SurfacePoint<T>> surfaces;
+        OfTile<Appearance> appearances;  // of the shading `colour`
         OfTile<std::size_t> pixels;
         std::size_t size;
     };
@@ -143,23 +151,42 @@ private:
             const Hit<T>& hit = looks.hits[i];
             if (hit) looks.surfaces[i] = parts_.surfaces.at(looks.rays[i], hit);
             const Vec3f normal(looks.surfaces[i].normal);
+            if (hit && by_colour()) looks.appearances[i] = appearance(hit, normal);
             Vec3f& light = film_.light(looks.pixels[i]);
-            light = light + colour(looks.rays[i], hit, normal);
+            light = light + colour(looks, i, normal);
             if (!o_.layers || sample > 0 || !hit) continue;
             Seen& seen = film_.seen(looks.pixels[i]);
             seen.depth = static_cast<float>(hit.t);  // directions have length 1
             seen.normal = normal;
             seen.id = hit.primitive;
         }
-        if (o_.shading == Shading::diffuse) add_direct_light(looks, costs);
+        if (is_lit(o_.shading)) add_direct_light(looks, costs);
+    }
+    bool by_colour() const { return o_.shading == Shading::colour; }
+    /// What a hit looks like, with a normal on the side of the surface's, which it is where there is no
+    /// other.
+    Appearance appearance(const Hit<T>& hit, const Vec3f& normal) const {
+        Appearance a = parts_.appearances->at(hit);
+        if (length2(a.normal) == 0) a.normal = normal;
+        if (dot(a.normal, normal) < 0) a.normal = -a.normal;
+        return a;
+    }
+    /// What is reflected of light on a grey surface by one with a colour.
+    static Vec3f coloured(const Vec3f& light, const Appearance& a) {
+        Vec3f c;
+        for (int k = 0; k < 3; ++k) c[k] = light[k] * (a.colour[k] / PlainShading::grey);
+        return c;
     }
     /// The value of a sample without its counts and without the direct light.
-    Vec3f colour(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec3f& normal) const {
-        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(ray));
+    Vec3f colour(const Looks& looks, std::size_t i, const Vec3f& normal) const {
+        const Hit<T>& hit = looks.hits[i];
+        if (o_.shading == Shading::time) return Vec3f::all(nanoseconds(looks.rays[i]));
         if (!hit) return shading_.background();
         if (o_.shading == Shading::depth) return shading_.depth(static_cast<float>(hit.t));
         if (o_.shading == Shading::normals) return shading_.normal(normal);
-        return shading_.sky(normal);
+        if (!by_colour()) return shading_.sky(normal);
+        const Appearance& a = looks.appearances[i];
+        return a.emission + (a.unlit ? a.colour : coloured(shading_.sky(a.normal), a));
     }
     float nanoseconds(const Ray<T, 3>& ray) const {
         using Clock = std::chrono::steady_clock;
@@ -175,26 +202,29 @@ private:
     /// Adds direct light to the hits that face the light and are not in shadow.
     void add_direct_light(const Looks& looks, PictureCosts& costs) {
         OfTile<Ray<T, 3>> shadows;
-        OfTile<std::size_t> pixels;
+        OfTile<std::size_t> places;  // in the tile
         OfTile<float> facing;
         OfTile<bool> blocked;
         OfTile<Visits> visits{};
         // Make a shadow ray for each hit that faces the light.
         std::size_t n = 0;
         for (std::size_t i = 0; i < looks.size; ++i) {
-            if (!looks.hits[i]) continue;
-            facing[n] = dot(Vec3f(looks.surfaces[i].normal), shading_.to_light());
-            if (!(facing[n] > 0)) continue;
+            if (!looks.hits[i] || (by_colour() && looks.appearances[i].unlit)) continue;
+            const float above = dot(Vec3f(looks.surfaces[i].normal), shading_.to_light());
+            facing[n] = by_colour() ? dot(looks.appearances[i].normal, shading_.to_light()) : above;
+            if (!(above > 0 && facing[n] > 0)) continue;
             shadows[n] = {looks.surfaces[i].origin, Vec<T, 3>(shading_.to_light())};
-            pixels[n++] = looks.pixels[i];
+            places[n++] = i;
         }
         // Cast the shadow rays in one batch.
         costs.rays += n;
         costs.use += parts_.tracer->any_hits(std::span(shadows).first(n), std::span(blocked).first(n),
-                                             std::span(visits).first(o_.counted() ? n : 0));
+                                             std::span(visits).first(o_.counted() ? n : 0), keeps_);
         for (std::size_t i = 0; i < n; ++i) {
-            Vec3f& light = film_.light(pixels[i]);
-            if (!blocked[i]) light = light + shading_.direct(facing[i]);
+            const Vec3f direct = shading_.direct(facing[i]);
+            Vec3f& light = film_.light(looks.pixels[places[i]]);
+            if (!blocked[i])
+                light = light + (by_colour() ? coloured(direct, looks.appearances[places[i]]) : direct);
             costs.visits += visits[i];
         }
     }
@@ -203,6 +233,7 @@ private:
     const RenderOptions& o_;
     const bool whole_;  // samples of the whole picture are found at once
     const PlainShading shading_;
+    typename Tracer<T>::Filter keeps_;
     Film film_;
     std::mutex mutex_;
     PictureCosts costs_;

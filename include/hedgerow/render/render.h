@@ -6,6 +6,7 @@
 
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/render/film/film.h>
+#include <hedgerow/render/shading/appearance.h>
 #include <hedgerow/render/shading/shading.h>
 #include <hedgerow/render/shading/surface_point.h>
 #include <hedgerow/render/tracer.h>
@@ -33,15 +34,18 @@ template <std::floating_point T>
 struct PictureParts {
     Visibility<T>& visibility;
     const Surfaces<T>& surfaces;
-    /// Answers the rays to the light of diffuse shading, and those that are timed; other shadings need none.
+    /// Answers the rays to the light of lit shadings, and those that are timed; other shadings need none.
     const Tracer<T>* tracer = nullptr;
+    /// What surfaces look like, for the shading `colour`. Its masks hold for rays to the light; what finds
+    /// the visible has to be given them too.
+    const Appearances<T>* appearances = nullptr;
 };
 
-/// Makes a picture, in tiles of pixels over the executor. Diffuse shading casts a ray to the light where the
-/// surface faces it. Returns when all rows are finished or the progress is cancelled: then rows that are not
-/// finished stay black, and their layers empty. Throws InputError for a camera that sees nothing, no pixels
-/// or samples, where the shading needs a tracer and there is none, and where it shows costs of rays but what
-/// is visible is found without them.
+/// Makes a picture, in tiles of pixels over the executor. Diffuse shading and that by colour cast a ray to
+/// the light where the surface faces it. Returns when all rows are finished or the progress is cancelled:
+/// then rows that are not finished stay black, and their layers empty. Throws InputError for a camera that
+/// sees nothing, no pixels or samples, where the shading needs a tracer or appearances and there are none,
+/// and where it shows costs of rays but what is visible is found without them.
 template <std::floating_point T>
 Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
                const Progress& progress = {});

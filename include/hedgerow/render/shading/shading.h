@@ -13,13 +13,18 @@ namespace hedgerow {
 /// How a picture is coloured. The last three show measurements in a heat map: nodes, leaves and primitives
 /// visited (steps), primitives tested (tests), nanoseconds (time). For times each ray is timed three times,
 /// and the least counts.
-enum class Shading { normals, depth, diffuse, steps, tests, time };
-inline constexpr std::array<std::string_view, 6> shading_names = {"normals", "depth", "diffuse",
+/// `diffuse` shows all surfaces alike, grey and matte; `colour` shows the looks of a model.
+enum class Shading { normals, depth, diffuse, colour, steps, tests, time };
+inline constexpr std::array<std::string_view, 7> shading_names = {"normals", "depth", "diffuse", "colour",
                                                                   "steps",   "tests", "time"};
 
 /// Whether the shading shows a measurement.
 constexpr bool counted(Shading s) {
     return s >= Shading::steps;
+}
+/// Whether the shading casts rays to the light.
+constexpr bool is_lit(Shading s) {
+    return s == Shading::diffuse || s == Shading::colour;
 }
 /// Whether the shading counts the visits of rays.
 constexpr bool counts_visits(Shading s) {
@@ -32,9 +37,12 @@ constexpr Shading parse_shading(std::string_view name) {
     return Shading::diffuse;
 }
 
-/// Colours, as linear light, of surfaces without looks of their own.
+/// Colours, as linear light, of grey surfaces; lit by a sky and a distant light.
 class PlainShading {
 public:
+    /// The share of light that the grey surface reflects.
+    static constexpr float grey = 0.62f;
+
     /// `diagonal` is that of the scene's box: depths are shown in proportion to it.
     PlainShading(const Camera& camera, float diagonal)
         : up_(camera.up), light_(light_of(camera)), diagonal_(diagonal) {}
@@ -45,12 +53,12 @@ public:
     Vec3f normal(const Vec3f& n) const { return (n + Vec3f(1, 1, 1)) * 0.5f; }
     /// The light of the sky on a surface with this normal.
     Vec3f sky(const Vec3f& n) const {
-        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(n, up_)) * 0.62f;
+        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(n, up_)) * grey;
     }
     /// The direction towards the distant light, and its light on a surface that faces it by this cosine and
     /// is not in shadow.
     const Vec3f& to_light() const { return light_; }
-    Vec3f direct(float facing) const { return Vec3f(0.85f, 0.80f, 0.70f) * facing * 0.62f; }
+    Vec3f direct(float facing) const { return Vec3f(0.85f, 0.80f, 0.70f) * facing * grey; }
 
 private:
     static Vec3f light_of(const Camera& c) {

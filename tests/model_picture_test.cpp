@@ -1,0 +1,177 @@
+/// Pictures of models with their looks: colours, textures, masks and normals are those of the model.
+#include <gtest/gtest.h>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/model_scene.h>
+#include <hedgerow/render/render.h>
+#include <hedgerow/render/visibility/rasterise.h>
+#include <hedgerow/scenes/looks.h>
+
+using namespace hedgerow;
+
+namespace {
+
+template <class T>
+class ModelPictures : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(ModelPictures, Scalars);
+
+/// A square from (-1, -1, 0) to (1, 1, 0), with texture coordinates from its upper left corner.
+template <class T>
+Object<T> square() {
+    Object<T> object;
+    object.mesh.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    object.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    object.attributes.texture_coordinates.push_back({{{0, 1}, {1, 1}, {1, 0}, {0, 0}}, {}});
+    return object;
+}
+/// Four texels: red, green, blue, and white that is see-through.
+Texture four_texels() {
+    Texture texture;
+    auto pixels = std::make_shared<Pixels>();
+    pixels->width = pixels->height = 2, pixels->channels = 4;
+    pixels->samples =
+        std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 0};
+    texture.pixels = pixels;
+    texture.filter = TextureFilter::nearest;
+    return texture;
+}
+template <class T>
+Model<T> textured_square() {
+    Model<T> model;
+    model.objects.push_back(square<T>());
+    model.instances.push_back({"square", 0, {}});
+    model.textures.push_back(four_texels());
+    Material m;
+    m.base_colour = Vec3f::all(1), m.unlit = true;
+    m.base_colour_texture.texture = 0;
+    model.materials.push_back(m);
+    return model;
+}
+/// A square picture, from above, of what lies between -1 and 1.
+RenderOptions from_above() {
+    RenderOptions options;
+    options.width = options.height = 16;
+    options.shading = Shading::colour, options.layers = true;
+    options.camera.eye = {0, 0, 5}, options.camera.target = {0, 0, 0}, options.camera.up = {0, 1, 0};
+    options.camera.projection = Projection::orthographic, options.camera.height = 2;
+    return options;
+}
+template <class T>
+Picture cast(const ModelScene<T>& scene, const RenderOptions& options) {
+    const auto& looks = scene.appearances();
+    RayCasting<T> casting(scene.tracer(), looks.has_masks()
+                                              ? [&](const Hit<T>& hit) { return looks.is_there(hit); }
+                                              : std::function<bool(const Hit<T>&)>());
+    return render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer(), &looks}, options,
+                  serial_executor());
+}
+Vec3f light_at(const Picture& picture, int x, int y) {
+    return picture.light[static_cast<std::size_t>(y * picture.image.width + x)];
+}
+
+TYPED_TEST(ModelPictures, TexturesLieWhereTheirCoordinatesAre) {
+    using T = TypeParam;
+    const auto model = textured_square<T>();
+    const ModelScene<T> scene(model, serial_executor());
+    const Picture picture = cast(scene, from_above());
+    EXPECT_EQ(light_at(picture, 2, 2), Vec3f(1, 0, 0));
+    EXPECT_EQ(light_at(picture, 13, 2), Vec3f(0, 1, 0));
+    EXPECT_EQ(light_at(picture, 2, 13), Vec3f(0, 0, 1));
+    EXPECT_EQ(light_at(picture, 13, 13), Vec3f(1, 1, 1)) << "opaque, whatever the texture's opacity";
+}
+
+TYPED_TEST(ModelPictures, RaysGoThroughMasks) {
+    using T = TypeParam;
+    auto model = textured_square<T>();
+    model.materials[0].alpha_mode = AlphaMode::mask;
+    model.materials[0].alpha_texture = {0, 0, 3, {}};
+    // Below it, another square in one colour, which the light reaches through the hole alone.
+    model.objects.push_back(square<T>());
+    model.objects[1].material = 1;
+    model.instances.push_back({"below", 1, Transform<3>::translation({0, 0, -1})});
+    Material below;
+    below.base_colour = {0.5f, 0.25f, 0.125f}, below.unlit = true;
+    model.materials.push_back(below);
+    RenderOptions options = from_above();
+    {
+        const ModelScene<T> scene(model, serial_executor());
+        const Picture picture = cast(scene, options);
+        EXPECT_EQ(light_at(picture, 2, 2), Vec3f(1, 0, 0));
+        EXPECT_EQ(light_at(picture, 13, 13), below.base_colour);
+    }
+    model.materials[1].unlit = false;
+    options.camera.light = {0, 0, 1};
+    const ModelScene<T> scene(model, serial_executor());
+    const Vec3f lit = light_at(cast(scene, options), 13, 13);
+    model.materials[0].alpha_cutoff = 0;  // all of it is there now, so the light is blocked
+    const ModelScene<T> covered(model, serial_executor());
+    EXPECT_EQ(light_at(cast(covered, options), 13, 13), Vec3f(1, 1, 1));
+    const PlainShading shading(options.camera, 0);
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(
+            lit[k],
+            below.base_colour[k] / PlainShading::grey * (shading.sky({0, 0, 1}) + shading.direct(1))[k],
+            1e-6f);
+}
+
+TYPED_TEST(ModelPictures, NormalsOfCornersTurnTheLight) {
+    using T = TypeParam;
+    auto model = textured_square<T>();
+    model.materials[0] = Material();
+    model.objects[0].attributes.normals.values = {{1, 0, 1}, {1, 0, 1}, {1, 0, 1}, {1, 0, 1}};
+    // The instance is turned about z, and its normals with it.
+    model.instances[0].to_world = Transform<3>::rotation({0, 0, 1}, 3.14159265358979 / 2);
+    RenderOptions options = from_above();
+    options.camera.light = {0, 1, 1};
+    const ModelScene<T> scene(model, serial_executor());
+    const Vec3f lit = light_at(cast(scene, options), 8, 8);
+    const PlainShading shading(options.camera, 0);
+    const Vec3f normal = normalized(Vec3f(0, 1, 1));
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(lit[k], 0.8f / PlainShading::grey * (shading.sky(normal) + shading.direct(1))[k], 1e-5f);
+}
+
+TYPED_TEST(ModelPictures, ByTrianglesAreThoseByRays) {
+    using T = TypeParam;
+    for (const char* name : {"cornell-box", "teapot-in-stadium"}) {
+        SCOPED_TRACE(name);
+        const auto model = generate_model<T>(parse_scene_spec(std::string("gen:") + name));
+        const ModelScene<T> scene(model, default_executor());
+        RenderOptions options;
+        options.width = 90, options.height = 70, options.shading = Shading::colour, options.layers = true;
+        options.camera = *camera_for(name);
+        const Picture by_rays = cast(scene, options);
+        Rasterising<T, InstanceSetView<MeshIndex<T>>> rasterising(scene.instances().view());
+        const Picture by_triangles =
+            render(PictureParts<T>{rasterising, scene.surfaces(), &scene.tracer(), &scene.appearances()},
+                   options, default_executor());
+        EXPECT_EQ(by_rays.image, by_triangles.image);
+        EXPECT_EQ(by_rays.light, by_triangles.light);
+    }
+    // The walls of the box: red on the left, green on the right.
+    const auto model = generate_model<T>(parse_scene_spec("gen:cornell-box"));
+    const ModelScene<T> scene(model, default_executor());
+    RenderOptions options;
+    options.width = options.height = 64, options.shading = Shading::colour, options.layers = true;
+    options.camera = *camera_for("cornell-box");
+    const Picture picture = cast(scene, options);
+    const Vec3f left = light_at(picture, 4, 32), right = light_at(picture, 59, 32);
+    EXPECT_GT(left[0], 3 * left[1]);
+    EXPECT_GT(right[1], 2 * right[0]);
+}
+
+TYPED_TEST(ModelPictures, NeedLooksAndTriangles) {
+    using T = TypeParam;
+    auto model = textured_square<T>();
+    const ModelScene<T> scene(model, serial_executor());
+    RayCasting<T> casting(scene.tracer());
+    EXPECT_THROW(
+        render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer()}, from_above(), serial_executor()),
+        InputError);
+    model.objects[0].mesh.triangles.clear();
+    EXPECT_THROW(ModelScene<T>(model, serial_executor()), InputError);
+}
+
+}  // namespace
