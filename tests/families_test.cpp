@@ -371,7 +371,7 @@ TEST(ConeFragments, AreWhatTheRaysOfTheSamplesHitByEveryStructure) {
             const double radius = i % 3 == 0 ? 0.01 * length(size) : 0;
             cones.emplace_back(Ray3d{from, to - from}, radius, i % 2 == 0 ? 0.02 : 0.2);
             want.emplace_back();
-            fragments(oracle, cones.back(), want.back());
+            cone_fragments(oracle, cones.back(), want.back());
             several += want.back().size() > 1;
             std::uint64_t all = 0;
             for (const auto& f : want.back()) {
@@ -396,7 +396,7 @@ TEST(ConeFragments, AreWhatTheRaysOfTheSamplesHitByEveryStructure) {
         for_each_index(mesh, [&](const char* structure, const auto& index) {
             for (std::size_t i = 0; i < cones.size(); ++i) {
                 std::vector<ConeFragment<double>> found;
-                fragments(index, cones[i], found);
+                cone_fragments(index, cones[i], found);
                 ASSERT_EQ(found, want[i]) << structure << ", cone " << i;
             }
         });
@@ -416,7 +416,7 @@ TEST(ConeFragments, CoverAsMuchAsAnEdgeLeaves) {
         const TriangleMesh<double> mesh{
             {p - along * 10.0, p + along * 10.0, p + away * 50.0}, {{0, 1, 2}}, {}};
         std::vector<ConeFragment<double>> found;
-        fragments(build<WideBvh>(mesh), ConeRays<double, 3>(Ray3d{{}, {0, 0, 2}}, 0, 0.1), found);
+        cone_fragments(build<WideBvh>(mesh), ConeRays<double, 3>(Ray3d{{}, {0, 0, 2}}, 0, 0.1), found);
         const double share = (std::acos(at) - at * std::sqrt(1 - at * at)) / 3.14159265358979323846;
         const double got = found.empty() ? 0 : found[0].coverage();
         error += std::abs(got - share) / edges, most = std::max(most, std::abs(got - share));
@@ -440,7 +440,7 @@ TEST(ConeFragments, EndWhereAllSamplesAreTaken) {
     std::vector<ConeFragment<float>> found;
     Visits visits;
     EXPECT_EQ(candidates(index, cone, all), 1000u);
-    EXPECT_EQ(fragments(index, cone, found, visits), 1u);
+    EXPECT_EQ(cone_fragments(index, cone, found, visits), 1u);
     EXPECT_EQ(found[0].samples, ~std::uint64_t(0));
     EXPECT_EQ(found[0].element, 0u);
     EXPECT_LT(visits.primitives, 20u);

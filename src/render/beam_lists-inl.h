@@ -58,7 +58,7 @@ struct BeamRows {
 
 // Cells: the planes of the box as in a node, the least depth, and the box's longest side. Words: where the
 // child leads, and its place (node · W + child).
-struct BeamCells : BeamRows<8, 2, 128> {
+struct BeamCells : BeamRows<8, 2, 64> {
     static constexpr int depth = 6, side = 7;
     static constexpr int child = 0, place = 1;
 };

@@ -67,7 +67,8 @@ public:
         if (wide % lanes == 0) {
             for (int y = pixels.top; y <= pixels.bottom; ++y)
                 for (int x = pixels.left; x <= pixels.right; x += lanes) {
-                    prefetch({x, y + rows_ahead, x + lanes - 1, y + rows_ahead});
+                    if (const int next = y + rows_ahead; next <= pixels.bottom)
+                        prefetch({x, next, x + lanes - 1, next});
                     if (!meet(rays_.in_row(x, y), farthest, m)) return false;
                     write(m, place_of(x, y));
                 }
@@ -90,7 +91,8 @@ public:
         for (int y = pixels.top; y <= pixels.bottom; ++y) {
             const char* const from = reinterpret_cast<const char*>(place_of(pixels.left, y));
             const auto bytes = static_cast<std::size_t>(pixels.right - pixels.left + 1) * sizeof(Hit<float>);
-            for (std::size_t at = 0; at < bytes + 64; at += 64) __builtin_prefetch(from + at, 1);
+            for (std::size_t at = 0; at < bytes; at += 64) __builtin_prefetch(from + at, 1);
+            __builtin_prefetch(from + bytes - 1, 1);
         }
     }
     HWY_INLINE Hit<float>* place_of(int x, int y) const {

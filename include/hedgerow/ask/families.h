@@ -23,8 +23,8 @@ std::size_t candidates(const Index<S, P>& index, const Rays& rays,
 /// Writes what a cone sees of the triangles of an index to `found`, from front to back: each triangle that is
 /// the nearest at some of 64 samples of the cross section, with these samples. Returns how many there are.
 template <class S, class P, class Count = const NoVisits>
-std::size_t fragments(const Index<S, P>& index, const ConeRays<typename P::Scalar, 3>& cone,
-                      std::vector<ConeFragment<typename P::Scalar>>& found, Count& count = no_visits) {
+std::size_t cone_fragments(const Index<S, P>& index, const ConeRays<typename P::Scalar, 3>& cone,
+                           std::vector<ConeFragment<typename P::Scalar>>& found, Count& count = no_visits) {
     return index.template answer<ConeFragments<P>>(count, cone, found);
 }
 

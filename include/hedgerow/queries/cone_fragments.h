@@ -117,6 +117,11 @@ private:
     struct Linear {
         double constant, x, y;
         double at(double wx, double wy) const { return constant + product(x, wx) + product(y, wy); }
+        /// Whether it is above 0 by more than roundings in all of the disc.
+        bool surely_above() const {
+            return constant > (1 + 0x1p-40) * std::sqrt(product(x, x) + product(y, y));
+        }
+        Linear operator-() const { return {-constant, -x, -y}; }
     };
     /// The function of the edge from b to c.
     Linear edge(const Vec3d& b, const Vec3d& c) const {
@@ -131,6 +136,10 @@ private:
     void take(const Vec3d& a, const Vec3d& b, const Vec3d& c, PrimitiveId element) {
         const auto& samples = ConeSamples::all();
         const Linear u = edge(b, c), v = edge(c, a), w = edge(a, b);
+        // Functions of opposite signs in all of the disc: no sample is covered.
+        const bool above = u.surely_above() || v.surely_above() || w.surely_above(),
+                   below = (-u).surely_above() || (-v).surely_above() || (-w).surely_above();
+        if (above && below) return;
         const Vec3d normal = cross(b - a, c - a);
         const double radius = probe_.rays().radius();
         const Linear height{dot(normal, a), -product(radius, dot(normal, across_[0])),
