@@ -30,8 +30,8 @@ TriangleMesh<float> stack(int layers) {
     TriangleMesh<float> mesh;
     for (int i = 0; i < layers; ++i) {
         const auto at = static_cast<std::uint32_t>(mesh.vertices.size());
-        for (const int corner : {0, 1, 2, 3})
-            mesh.vertices.emplace_back(float(corner % 2), float(corner / 2), float(i) / float(layers));
+        const float z = float(i) / float(layers);
+        mesh.vertices.insert(mesh.vertices.end(), {{0, 0, z}, {1, 0, z}, {0, 1, z}, {1, 1, z}});
         mesh.triangles.insert(mesh.triangles.end(), {{at, at + 1, at + 2}, {at + 3, at + 2, at + 1}});
     }
     return mesh;

@@ -7,6 +7,7 @@
 #include "backwards.h"
 #include "crowded.h"
 #include "engine.h"
+#include "layers.h"
 #include "placements.h"
 
 using namespace hedgerow;
@@ -34,19 +35,6 @@ void expect_joined(const I& index, const RayOf<I>& ray, const std::vector<Hit<T>
         if (keeps(filter, 0, hit)) kept.push_back(hit);
     for (std::size_t k = 1; k <= kept.size() + 1; k += 1 + k / 8)
         ASSERT_EQ(joined(index, ray, k, filter), kept) << "in pieces of " << k;
-}
-
-/// Squares across z, `copies` of each in one place.
-template <class T>
-TriangleMesh<T> stack(std::uint32_t layers, std::uint32_t copies = 1) {
-    TriangleMesh<T> mesh;
-    for (std::uint32_t i = 0; i < layers * copies; ++i) {
-        const auto at = static_cast<std::uint32_t>(mesh.vertices.size());
-        for (const int corner : {0, 1, 2, 3})
-            mesh.vertices.emplace_back(T(corner % 2), T(corner / 2), T(i % layers));
-        mesh.triangles.insert(mesh.triangles.end(), {{at, at + 1, at + 2}, {at + 3, at + 2, at + 1}});
-    }
-    return mesh;
 }
 
 template <class P>

@@ -10,23 +10,12 @@
 #include <hedgerow/scenes/sets.h>
 
 #include "backwards.h"
+#include "layers.h"
 
 using namespace hedgerow;
 
 namespace {
 
-/// Squares across z, `copies` of each in one place.
-template <class T = float>
-TriangleMesh<T> stack(std::uint32_t layers, std::uint32_t copies = 1) {
-    TriangleMesh<T> mesh;
-    for (std::uint32_t i = 0; i < layers * copies; ++i) {
-        const auto at = static_cast<std::uint32_t>(mesh.vertices.size());
-        for (const int corner : {0, 1, 2, 3})
-            mesh.vertices.emplace_back(T(corner % 2), T(corner / 2), T(i % layers));
-        mesh.triangles.insert(mesh.triangles.end(), {{at, at + 1, at + 2}, {at + 3, at + 2, at + 1}});
-    }
-    return mesh;
-}
 /// Rays from an eye before a box through a square of points in it.
 template <class T>
 std::vector<Ray<T, 3>> picture(const Box<T, 3>& box, int side) {
@@ -88,9 +77,11 @@ TYPED_TEST(TransparencyOf, AThousandLayersInBothOrders) {
     const auto mesh = stack<T>(1000);
     const auto index = build(mesh);
     // Along z, so that all rays pass all layers.
-    std::vector<Ray<T, 3>> rays;
-    for (int i = 0; i < 64; ++i)
-        rays.push_back({{T(i % 8) / 8 + T(0.06), T(i / 8) / 8 + T(0.03), T(-1)}, {T(0), T(0), T(1)}});
+    std::vector<Ray<T, 3>> rays(64);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::size_t column = i % 8, row = i / 8;
+        rays[i] = {{T(column) / 8 + T(0.06), T(row) / 8 + T(0.03), T(-1)}, {T(0), T(0), T(1)}};
+    }
     // So thin that every layer counts, and so opaque that few do.
     for (const Coloured layer : {Coloured{0, 0.001f}, Coloured{0.001f, 0.01f}, Coloured{0.2f, 0.9f}}) {
         SCOPED_TRACE(layer.most);
@@ -270,7 +261,8 @@ TEST(Transparency, ShadowsAreProducts) {
     const auto counts = transmittances(index, segments, opacity, whole, {.ends_below = 0});
     EXPECT_EQ(counts.layers, 40u * 41 / 2);
     for (std::size_t i = 0; i < segments.size(); ++i) {
-        const auto want = static_cast<float>(std::pow(0.75, double((i + 1) / 2)));
+        const std::size_t passed = (i + 1) / 2;
+        const auto want = static_cast<float>(std::pow(0.75, double(passed)));
         EXPECT_NEAR(whole[i], want, 1e-6f) << i;
         EXPECT_NEAR(through[i], want, 1.0f / 1024) << i;
     }
