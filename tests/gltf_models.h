@@ -9,7 +9,7 @@ namespace hedgerow::testing_gltf {
 class GltfModelTest : public testing::Test {
 protected:
     Model<float> load(const Gltf& file) {
-        const auto model = load_model(folder.file("a.gltf", file.text()));
+        auto model = load_model(folder.file("a.gltf", file.text()));
         testing_io::expect_sound(model);
         return model;
     }

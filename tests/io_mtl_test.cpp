@@ -13,7 +13,7 @@ using namespace testing_io;
 /// Loads a triangle with a material of these lines.
 Model<float> model_with(const TempFolder& folder, const std::string& lines) {
     folder.file("a.mtl", "# a comment\nnewmtl one\n" + lines + "\n");
-    const auto model =
+    auto model =
         load_model(folder.file("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl one\nf 1 2 3\n"));
     expect_sound(model);
     return model;

@@ -30,8 +30,9 @@ Texture texture_of(Pixels pixels, ColourSpace space) {
 /// Whether every patch has its exact linear value in the middle of its place.
 void expect_chart(const Texture& texture, float error = 0) {
     for (int i = 0; i < columns * rows; ++i) {
-        const Vec2f middle((static_cast<float>(i % columns) + 0.5f) / columns,
-                           (static_cast<float>(i / columns) + 0.5f) / rows);
+        const int column = i % columns, row = i / columns;
+        const Vec2f middle((static_cast<float>(column) + 0.5f) / columns,
+                           (static_cast<float>(row) + 0.5f) / rows);
         const Rgba seen = texture.at(middle);
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(seen.colour[k],

@@ -73,22 +73,19 @@ public:
     std::uint64_t face_count() const { return next_; }
     std::size_t triangle_count() const { return triangles_.size(); }
 
-    /// Adds a face by its vertices. `others` are lists of as many further ordinals each.
-    void add(std::span<const std::uint32_t> corners,
-             std::span<const std::vector<std::uint32_t>> others = {}) {
-        if (corners.size() != 3 && !numbered_) {
-            expect_memory(file_.name(), "the face numbers of its triangles",
-                          triangles_.size() * sizeof(faces_[0]));
-            faces_.resize(triangles_.size());
-            std::iota(faces_.begin(), faces_.end(), 0u);
-            numbered_ = true;
-        }
-        for (std::size_t k = 0; k < others.size(); ++k) add_others(others_[k], others[k]);
+    /// Adds a face by its vertices.
+    void add(std::span<const std::uint32_t> corners) {
+        if (corners.size() != 3 && !numbered_) number_faces();
         for (std::size_t i = 2; i < corners.size(); ++i) {
             append(file_, triangles_, TriangleIndices{corners[0], corners[i - 1], corners[i]});
             if (numbered_) append(file_, faces_, static_cast<std::uint32_t>(next_));
         }
         ++next_;
+    }
+    /// Adds a face by its vertices and lists of as many further ordinals each.
+    void add(std::span<const std::uint32_t> corners, std::span<const std::vector<std::uint32_t>> others) {
+        for (std::size_t k = 0; k < others.size(); ++k) add_others(others_[k], others[k]);
+        add(corners);
     }
     /// Triangulates the polygons and moves all triangles into a mesh, which has its vertices already.
     template <class T>
@@ -113,6 +110,14 @@ public:
     std::vector<TriangleIndices> take_others(std::size_t list) { return std::move(others_[list]); }
 
 private:
+    /// Numbers the triangles before the first face that is none.
+    void number_faces() {
+        expect_memory(file_.name(), "the face numbers of its triangles",
+                      triangles_.size() * sizeof(faces_[0]));
+        faces_.resize(triangles_.size());
+        std::iota(faces_.begin(), faces_.end(), 0u);
+        numbered_ = true;
+    }
     /// Adds the fan of a face to a list of further ordinals, before its triangles are added.
     void add_others(std::vector<TriangleIndices>& list, const std::vector<std::uint32_t>& corners) {
         const bool has_none =

@@ -36,11 +36,8 @@ public:
     }
 
     T real(PlyType type) {
-        if (encoding_ == PlyEncoding::ascii) {
-            const std::string_view w = word();
-            if (const auto x = parse_real<T>(w)) return *x;
-            fail(shown(w) + " is not a number");
-        }
+        if (encoding_ == PlyEncoding::ascii) return real_word();
+        if (type == PlyType::f4) return rounded<T>(static_cast<double>(raw<float>()));  // the usual type
         return decode<T>(type, [](auto x) {
             if constexpr (std::is_same_v<decltype(x), double>)
                 return rounded<T>(x);
@@ -49,11 +46,9 @@ public:
         });
     }
     std::int64_t integer(PlyType type) {
-        if (encoding_ == PlyEncoding::ascii) {
-            const std::string_view w = word();
-            if (const auto i = parse_integer<std::int64_t>(w)) return *i;
-            fail(shown(w) + " is not a whole number");
-        }
+        if (encoding_ == PlyEncoding::ascii) return integer_word();
+        if (type == PlyType::i4) return raw<std::int32_t>();  // the usual types
+        if (type == PlyType::u1) return raw<std::uint8_t>();
         // The header's checks refuse floating-point types. A 64-bit number beyond int64 becomes negative, and
         // callers refuse that.
         return decode<std::int64_t>(type, [](auto x) {
@@ -89,6 +84,16 @@ private:
         const std::string_view w = words_.next();
         if (w.empty()) fail_truncated();
         return w;
+    }
+    T real_word() {
+        const std::string_view w = word();
+        if (const auto x = parse_real<T>(w)) return *x;
+        fail(shown(w) + " is not a number");
+    }
+    std::int64_t integer_word() {
+        const std::string_view w = word();
+        if (const auto i = parse_integer<std::int64_t>(w)) return *i;
+        fail(shown(w) + " is not a whole number");
     }
     template <class R, class F>
     R decode(PlyType type, F f) {
