@@ -95,6 +95,15 @@ TEST(ModelFuzz, Ply) {
     replace_every_byte(folder, "a.ply", ply);
 }
 
+TEST(ModelFuzz, Off) {
+    TempFolder folder;
+    const std::string off =
+        "STCNOFF\n4 3 0\n0 0 0 0 0 1 255 0 0 255 0 0\n1 0 0 0 0 1 0.5 0 0 1 0 1\n1 1 0 0 1 0 1 2 3 1 1\n"
+        "0 1 0 1 0 0 9 9 9 0 1\n4 0 1 2 3 255 0 0\n3 0 1 2 0.5 0.5 0.5 1\n3 0 2 3 7\n";
+    EXPECT_GT(survivors(folder, "a.off", off, rounds, read), 100);
+    replace_every_byte(folder, "a.off", off);
+}
+
 TEST(ModelFuzz, Gltf) {
     TempFolder folder;
     const Gltf file = scene();

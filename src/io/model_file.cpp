@@ -29,6 +29,7 @@ Model<T> read_any_model(const std::filesystem::path& path, const ModelOptions& o
     Model<T> (*read)(const ModelContext&) = nullptr;
     if (format == ".ply") read = read_ply_model<T>;
     if (format == ".obj") read = read_obj_model<T>;
+    if (format == ".off") read = read_off_model<T>;
     if (format == ".gltf" || format == ".glb") read = read_gltf_model<T>;
     if (read == nullptr) return bare_model<T>(path, progress);
     ByteSource file(path, progress);

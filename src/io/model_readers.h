@@ -23,6 +23,8 @@ struct ModelContext {
 template <class T>
 Model<T> read_obj_model(const ModelContext& context);
 template <class T>
+Model<T> read_off_model(const ModelContext& context);
+template <class T>
 Model<T> read_ply_model(const ModelContext& context);
 template <class T>
 Model<T> read_gltf_model(const ModelContext& context);

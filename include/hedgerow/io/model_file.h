@@ -25,9 +25,11 @@ struct ModelOptions {
 ///   and specular, KHR_texture_transform and KHR_lights_punctual.
 /// - `.obj`: one object, with the materials of its `.mtl` files.
 /// - `.ply`: one object, with normals, colours and texture coordinates.
-/// - `.stl`, `.off`: one object without looks.
+/// - `.off`: one object, with normals, colours and texture coordinates.
+/// - `.stl`: one object without looks.
 ///
-/// Triangles are those of load_mesh in the same order, if the instances are written out in their order. A
+/// Triangles are those of load_mesh in the same order, if the instances are written out in their order. (With
+/// T = float, positions of glTF that no float holds are rounded in the object's space and in the scene's.) A
 /// mesh without looks takes no more memory than load_mesh gives it.
 ///
 /// A texture that cannot be read, or whose file is outside of the folder of the scene, gives a warning in
