@@ -5,6 +5,7 @@
 
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/io/mesh_file.h>
+#include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>

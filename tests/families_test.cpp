@@ -1,6 +1,7 @@
 /// Beams and cones miss nothing that one of their rays hits: every structure, set and scalar. What cones see.
 #include <hedgerow/ask/families.h>
-#include <hedgerow/render/camera.h>
+#include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/scenes/generate.h>
 
 #include "every_structure.h"
