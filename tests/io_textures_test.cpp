@@ -138,6 +138,8 @@ TEST(Hdr, ValuesAreMantissaAndExponent) {
     EXPECT_EQ(values, (std::vector<float>{1, 0.5f, 0, 48, 4080, 16}));
     const auto exposed = decode_pixels(hdr("-Y 1 +X 2", two, "EXPOSURE=2\nEXPOSURE= 0.25\n"), "a.hdr");
     EXPECT_EQ(samples<float>(exposed), (std::vector<float>{2, 1, 0, 96, 8160, 32}));
+    const auto dim = decode_pixels(hdr("-Y 1 +X 2", two, "EXPOSURE=1e-300\n"), "a.hdr");
+    EXPECT_EQ(samples<float>(dim)[0], 65504) << "what no float holds";
     const auto extremes = decode_pixels(hdr("-Y 1 +X 2", text_of({255, 1, 0, 255, 9, 9, 9, 0})), "a.hdr");
     EXPECT_EQ(samples<float>(extremes)[0], 255 * 0x1p119f);
     EXPECT_EQ(samples<float>(extremes)[3], 0) << "an exponent of 0 is black";

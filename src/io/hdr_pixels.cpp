@@ -140,7 +140,7 @@ private:
     }
     void store(const HdrPixel& pixel, float* to) const {
         const double unit = pixel[3] == 0 ? 0 : std::ldexp(per_exposure_, pixel[3] - 136);
-        for (std::size_t k = 0; k < 3; ++k) to[k] = usable(static_cast<float>(pixel[k] * unit));
+        for (std::size_t k = 0; k < 3; ++k) to[k] = usable(rounded<float>(pixel[k] * unit));
     }
 
     const ImageBytes& image_;
