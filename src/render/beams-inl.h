@@ -175,7 +175,8 @@ private:
             auto entry = hn::Set(f, rays.s_first), exit = hn::Set(f, rays.s_last);
             for (int k = 0; k < 3; ++k) {
                 const int near = 2 * k + rays.down[k];
-                entry = hn::Max(entry, rays.earliest(f, k, hn::Load(f, cells.of[near] + at)));
+                // In this order: of zeros of either sign, Max keeps the second, and the stack orders bits.
+                entry = hn::Max(rays.earliest(f, k, hn::Load(f, cells.of[near] + at)), entry);
                 exit = hn::Min(exit, rays.latest(f, k, hn::Load(f, cells.of[near ^ 1] + at)));
             }
             const auto entered =
