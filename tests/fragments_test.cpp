@@ -118,7 +118,7 @@ TYPED_TEST(FragmentsOf, TiesAndCornersOnRays) {
 TYPED_TEST(FragmentsOf, BandsOfEveryBudget) {
     using T = TypeParam;
     const auto mesh = hairball<T>(3000);
-    const PictureSamples<T> samples(seen_from(mesh, 1, false), 70, 60);
+    const PictureSamples<T> samples(seen_from(mesh, 2, false), 70, 60);
     FragmentCounts whole;
     const auto want = of_triangles(mesh, samples, {}, serial_executor(), &whole);
     EXPECT_EQ(whole.bands, 1u);

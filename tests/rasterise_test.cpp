@@ -200,7 +200,7 @@ TYPED_TEST(RasterisedHits, OfPartsOfASet) {
     auto mesh = soup<T>(600);
     mesh.triangles[599] = mesh.triangles[2];  // equal t
     mesh.triangles[301] = mesh.triangles[300];
-    const PictureSamples<T> samples(seen_from(mesh, 1, false), 90, 60);
+    const PictureSamples<T> samples(seen_from(mesh, 2, false), 90, 60);
     const auto want = hits_of_rays(mesh, samples);
     for (const auto name : instruction_sets())
         for (const Coverage coverage : {Coverage::box, Coverage::tiles})
@@ -225,7 +225,7 @@ TYPED_TEST(RasterisedHits, OfPartsOfASet) {
 TYPED_TEST(RasterisedHits, AreCountedOnRequest) {
     using T = TypeParam;
     const auto mesh = soup<T>(300);
-    const PictureSamples<T> samples(seen_from(mesh, 1, false), 90, 60);
+    const PictureSamples<T> samples(seen_from(mesh, 2, false), 90, 60);
     const auto want = hits_of_rays(mesh, samples);
     std::vector<Hit<T>> hits(samples.size());
     Rasteriser<T> rasteriser(samples);
@@ -249,7 +249,7 @@ TYPED_TEST(RasterisedHits, AreShadedWhenTheyAreNearestSoFar) {
     const auto mesh = soup<T>(600);
     const auto index = build<WideBvh>(mesh);
     const InstanceSet set{Instance(index), Instance(index, Transform<3>::translation({0, 0, 0.3}))};
-    const PictureSamples<T> samples(seen_from(mesh, 1, false), 90, 60);
+    const PictureSamples<T> samples(seen_from(mesh, 2, false), 90, 60);
     const auto expect = [&](const auto& drawn, const std::vector<Hit<T>>& want) {
         std::vector<std::uint64_t> shaded;
         for (const Coverage coverage : {Coverage::all, Coverage::box, Coverage::tiles}) {
@@ -285,7 +285,7 @@ TYPED_TEST(RasterisedHits, OntoThoseOfOthersAndByAnyExecutor) {
     const auto mesh = soup<T>(700);
     auto half = mesh;
     half.triangles.resize(300);
-    const PictureSamples<T> samples(seen_from(mesh, 1, false), 130, 70);
+    const PictureSamples<T> samples(seen_from(mesh, 2, false), 130, 70);
     const auto want = hits_of_rays(mesh, samples), first = hits_of_rays(half, samples);
     for (const auto name : instruction_sets())
         for (const Coverage coverage : {Coverage::box, Coverage::tiles})

@@ -22,6 +22,43 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// The rays through the middles of pixels: what RayMaker::ray computes, the same operations in the same order.
+class MiddleRays {
+public:
+    using F = PacketRays::F;
+    using V = PacketRays::V;
+    static constexpr F f{};
+    static constexpr hn::RebindToSigned<F> i32{};
+    using I = hn::Vec<hn::RebindToSigned<F>>;
+
+    explicit MiddleRays(const PicturePlane& plane) : plane_(plane) {}
+
+    // Numbers from `first` on. A number in Iota other than 0 would be stored lane by lane, and loaded as a
+    // whole.
+    static HWY_INLINE I numbers(int first) { return hn::Add(hn::Iota(i32, 0), hn::Set(i32, first)); }
+    // The places on the plane, from the eye in perspective.
+    HWY_INLINE Coordinates<F> places(I column, I row) const {
+        const V scale = hn::Set(f, plane_.scale), half = hn::Set(f, 0.5f);
+        const V x = hn::Add(hn::ConvertTo(f, column), half), y = hn::Add(hn::ConvertTo(f, row), half);
+        const V right = hn::Mul(hn::Sub(x, hn::Set(f, plane_.middle_x)), scale);
+        const V up = hn::Mul(hn::Sub(hn::Set(f, plane_.middle_y), y), scale);
+        const Coordinates<F> middle = all_lanes(f, plane_.parallel ? plane_.eye : plane_.forward);
+        return plus(plus(middle, times(all_lanes(f, plane_.right), right)),
+                    times(all_lanes(f, plane_.up), up));
+    }
+    // Directions from the eye.
+    HWY_INLINE Coordinates<F> directions(I column, I row) const {
+        const Coordinates<F> d = places(column, row);
+        const V length = hn::Sqrt(product(d, d));
+        const auto is = hn::Gt(length, hn::Zero(f));
+        return {hn::IfThenElse(is, hn::Div(d.x, length), d.x), hn::IfThenElse(is, hn::Div(d.y, length), d.y),
+                hn::IfThenElse(is, hn::Div(d.z, length), d.z)};
+    }
+
+private:
+    const PicturePlane& plane_;
+};
+
 // The rays of a tile's samples from one eye, a vector of `lanes` at a time. Pixels beyond the tile stand for
 // those of its border.
 class PictureRays {
@@ -37,7 +74,7 @@ public:
     HWY_INLINE Coordinates<F> in_row(int left, int y) const {
         if (tile_.rays != nullptr) [[unlikely]]
             return given([&](int i) { return std::pair(left + i, y); });
-        return through_middles(hn::Add(hn::Iota(i32, 0), hn::Set(i32, left)), hn::Set(i32, y));
+        return through_middles(MiddleRays::numbers(left), hn::Set(i32, y));
     }
     // Those of vector p of the block of 8 × 8 samples from (left, top) on, by rows.
     HWY_INLINE Coordinates<F> in_block(int left, int top, int p) const {
@@ -45,8 +82,7 @@ public:
             return given([&](int i) {
                 return std::pair(left + (p * lanes + i) % side, top + (p * lanes + i) / side);
             });
-        // A number in Iota other than 0 would be stored lane by lane, and loaded as a whole.
-        const auto place = hn::Add(hn::Iota(i32, 0), hn::Set(i32, p * lanes));
+        const auto place = MiddleRays::numbers(p * lanes);
         return through_middles(hn::Add(hn::And(place, hn::Set(i32, side - 1)), hn::Set(i32, left)),
                                hn::Add(hn::ShiftRight<3>(place), hn::Set(i32, top)));
     }
@@ -72,22 +108,10 @@ private:
     static constexpr hn::RebindToSigned<F> i32{};
     using I = hn::Vec<hn::RebindToSigned<F>>;
 
-    // What RayMaker::ray computes: the same operations in the same order.
     HWY_INLINE Coordinates<F> through_middles(I column, I row) const {
-        const PicturePlane& plane = tile_.plane;
-        const auto middle = [&](I pixel, int last) __attribute__((always_inline)) {
-            return hn::Add(hn::ConvertTo(f, hn::Min(pixel, hn::Set(i32, last))), hn::Set(f, 0.5f));
-        };
-        const V scale = hn::Set(f, plane.scale);
-        const V right =
-            hn::Mul(hn::Sub(middle(column, tile_.pixels.right), hn::Set(f, plane.middle_x)), scale);
-        const V up = hn::Mul(hn::Sub(hn::Set(f, plane.middle_y), middle(row, tile_.pixels.bottom)), scale);
-        Coordinates<F> d = all_lanes(f, plane.forward);
-        d = plus(plus(d, times(all_lanes(f, plane.right), right)), times(all_lanes(f, plane.up), up));
-        const V length = hn::Sqrt(product(d, d));
-        const auto is = hn::Gt(length, hn::Zero(f));
-        return {hn::IfThenElse(is, hn::Div(d.x, length), d.x), hn::IfThenElse(is, hn::Div(d.y, length), d.y),
-                hn::IfThenElse(is, hn::Div(d.z, length), d.z)};
+        return MiddleRays(tile_.plane)
+            .directions(hn::Min(column, hn::Set(i32, tile_.pixels.right)),
+                        hn::Min(row, hn::Set(i32, tile_.pixels.bottom)));
     }
     // Those of the tile's own rays: lane i has the ray of pixel(i).
     template <class Pixel>

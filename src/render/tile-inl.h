@@ -18,6 +18,7 @@
 
 #include "engine/coordinates-inl.h"
 #include "engine/packet_hits-inl.h"
+#include "picture_rays-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
@@ -48,35 +49,25 @@ private:
         static const WideTree<float, 3> none;
         return none;
     }
-    /// What RayMaker::ray computes, with pixels in lanes: the same operations in the same order.
     HWY_INLINE void rays_through_middles(int p) {
         constexpr auto f = PacketRays::f;
-        constexpr hn::RebindToSigned<PacketRays::F> i32;
-        constexpr int lanes = PacketRays::lanes;
+        constexpr auto i32 = MiddleRays::i32;
         const PicturePlane& plane = tile_.plane;
-        const auto place = hn::Iota(i32, p * lanes);
-        const auto middle = [&](auto column, int first) {
-            return hn::Add(hn::ConvertTo(f, hn::Add(column, hn::Set(i32, first))), hn::Set(f, 0.5f));
-        };
-        const auto x = middle(hn::And(place, hn::Set(i32, tile_side - 1)), tile_.pixels.left);
-        const auto y = middle(hn::ShiftRight<3>(place), tile_.pixels.top);
-        const auto scale = hn::Set(f, plane.scale);
-        const auto right = hn::Mul(hn::Sub(x, hn::Set(f, plane.middle_x)), scale);
-        const auto up = hn::Mul(hn::Sub(hn::Set(f, plane.middle_y), y), scale);
-        Coordinates<PacketRays::F> d = all_lanes(f, plane.parallel ? plane.eye : plane.forward);
-        d = plus(plus(d, times(all_lanes(f, plane.right), right)), times(all_lanes(f, plane.up), up));
-        const hn::Vec<PacketRays::F> places[3] = {d.x, d.y, d.z};
-        const auto length = hn::Sqrt(product(d, d));
-        const auto is = hn::Gt(length, hn::Zero(f));
-        for (int k = 0; k < 3; ++k) {
-            const auto origin = plane.parallel ? places[k] : hn::Set(f, plane.eye[k]);
-            const auto direction = plane.parallel ? hn::Set(f, plane.forward[k])
-                                                  : hn::IfThenElse(is, hn::Div(places[k], length), places[k]);
-            hn::Store(origin, f, rays_.numbers[p][k]);
-            hn::Store(direction, f, rays_.numbers[p][3 + k]);
-        }
-        hn::Store(hn::Zero(f), f, rays_.numbers[p][6]);
-        hn::Store(hn::Set(f, std::numeric_limits<float>::infinity()), f, rays_.numbers[p][7]);
+        const MiddleRays rays(plane);
+        const auto place = MiddleRays::numbers(p * PacketRays::lanes);
+        const auto column =
+            hn::Add(hn::And(place, hn::Set(i32, tile_side - 1)), hn::Set(i32, tile_.pixels.left));
+        const auto row = hn::Add(hn::ShiftRight<3>(place), hn::Set(i32, tile_.pixels.top));
+        const bool parallel = plane.parallel;
+        const auto origin = parallel ? rays.places(column, row) : all_lanes(f, plane.eye);
+        const auto direction = parallel ? all_lanes(f, plane.forward) : rays.directions(column, row);
+        auto& numbers = rays_.numbers[p];
+        hn::Store(origin.x, f, numbers[0]), hn::Store(origin.y, f, numbers[1]),
+            hn::Store(origin.z, f, numbers[2]);
+        hn::Store(direction.x, f, numbers[3]), hn::Store(direction.y, f, numbers[4]);
+        hn::Store(direction.z, f, numbers[5]);
+        hn::Store(hn::Zero(f), f, numbers[6]);
+        hn::Store(hn::Set(f, std::numeric_limits<float>::infinity()), f, numbers[7]);
     }
     /// Draws for the rays that go this way.
     HWY_INLINE void draw(std::uint32_t way) {
