@@ -16,6 +16,7 @@
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
 #include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/shading/surface_point.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 
@@ -35,6 +36,50 @@ struct Ratios {
     double mesa = 1, beams = 1, visits = 1;
     void multiply(const Ratios& r) { mesa *= r.mesa, beams *= r.beams, visits *= r.visits; }
 };
+/// Deferred shading, each hit once, beside forward shading, each fragment that is nearest so far: by normals,
+/// all by the plain loops.
+void measure_shading(const TriangleMesh<float>& mesh, const PictureSamples<float>& samples,
+                     const std::vector<Ray<float, 3>>& rays) {
+    const SurfacesOf surfaces(mesh);
+    Rasteriser<float> rasteriser(samples);
+    std::vector<Hit<float>> hits(rays.size());
+    std::vector<Vec3f> colours(rays.size());
+    const auto shade = [&](std::size_t i, const Hit<float>& hit) {
+        colours[i] = surfaces.at(rays[i], hit).normal;
+    };
+    const auto draw = [&](Coverage coverage) {
+        return rasteriser.draw(mesh.view(), hits, serial_executor(), {coverage, false, true});
+    };
+    Contest contest;
+    std::size_t forward[2]{};
+    for (const Coverage coverage : {Coverage::box, Coverage::tiles}) {
+        const bool sorted = coverage == Coverage::tiles;
+        contest.add(sorted ? "front to back" : "in order",
+                    [&draw, coverage] { return draw(coverage).triangles; });
+        contest.add("with forward shading", [&, coverage, sorted] {
+            return forward[sorted] =
+                       rasteriser.draw(mesh.view(), hits, serial_executor(), {coverage}, shade).nearest;
+        });
+    }
+    std::size_t seen = 0;
+    contest.add("deferred", [&] {
+        seen = 0;
+        for (std::size_t i = 0; i < hits.size(); ++i)
+            if (hits[i]) shade(i, hits[i]), ++seen;
+        return seen;
+    });
+    const auto times = measured_in_turn(3, contest, Clock::thread, [](const std::string&) { return true; });
+    const auto more = [&](std::size_t i) { return 1e3 * (times[i + 1].median - times[i].median); };
+    const auto a_hit = [&](std::size_t shaded) {
+        return double(shaded) / double(std::max<std::size_t>(seen, 1));
+    };
+    std::printf(
+        "    shading: deferred once a hit, %.1f ms; forward %.2f times in order, %.1f ms, and %.2f times "
+        "front to "
+        "back, %.1f ms\n",
+        1e3 * times[4].median, a_hit(forward[0]), more(0), a_hit(forward[1]), more(2));
+}
+
 Ratios measure_scene(const std::string& name, int size) {
     const auto mesh = scene(name);
     Box3f box;
@@ -84,6 +129,7 @@ Ratios measure_scene(const std::string& name, int size) {
         "filled, %llu tiles by packets, %llu again\n",
         ratios.beams, 100 * ratios.visits, 100 * double(beams.filled) / double(rays.size()),
         static_cast<unsigned long long>(beams.packets), static_cast<unsigned long long>(beams.again));
+    measure_shading(mesh, samples, rays);
     if (!peer) return ratios;
     std::vector<std::uint32_t> elements(rays.size());
     peer->read(elements);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <hedgerow/queries/hit.h>
+#include <hedgerow/render/camera/ray_maker.h>
 
 #include "rasterisers.h"
 
