@@ -110,6 +110,8 @@ struct Beam {
     struct Sides {
         hn::Mask<D> meets, covers;
         hn::Vec<D> farthest;
+
+        HWY_INLINE Sides() {}
     };
     template <class D, class Row>
     HWY_INLINE Sides<D> sides_of(D d, Row row) const {

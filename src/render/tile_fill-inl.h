@@ -103,6 +103,9 @@ public:
 private:
     struct LanesOfHits {
         V t, u, v;
+
+        HWY_INLINE LanesOfHits() {}
+        HWY_INLINE LanesOfHits(V of_t, V of_u, V of_v) : t(of_t), u(of_u), v(of_v) {}
     };
     // Tests the triangle with a vector of rays, as WatertightRay does. True if all hit it.
     HWY_INLINE bool meet(const Coordinates<F>& given, float farthest, LanesOfHits& m) const {
