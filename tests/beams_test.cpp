@@ -13,6 +13,7 @@
 
 #include "matrix.h"
 #include "using.h"
+#include "views.h"
 
 using namespace hedgerow;
 
@@ -20,11 +21,6 @@ namespace {
 
 using Mesh = TriangleMesh<float>;
 
-void expect_same(const std::vector<Hit<float>>& want, const std::vector<Hit<float>>& hits) {
-    std::size_t differ = 0;
-    for (std::size_t i = 0; i < hits.size(); ++i) differ += !(hits[i] == want[i]);
-    EXPECT_EQ(differ, 0u) << "of " << hits.size();
-}
 /// Compares what beams of every width and instruction set find with the hits of rays, in trees of every
 /// width. Returns the counts of the widest beams, summed up.
 BeamCounts expect_hits_of_rays(const Mesh& mesh, const PictureSamples<float>& samples) {
@@ -46,20 +42,6 @@ BeamCounts expect_hits_of_rays(const Mesh& mesh, const PictureSamples<float>& sa
             }
     }
     return sum;
-}
-Camera seen_from(const Mesh& mesh, std::uint64_t number, bool inside) {
-    Box3f box;
-    for (const auto& v : mesh.vertices) box.expand(v);
-    Random random(77, number);
-    const auto in_cube = [&] { return Vec3f(random.in_cube<3>() - Vec3d::all(0.5)); };
-    const Vec3f extent = box.extent(), away = in_cube();
-    Camera camera;
-    camera.eye = camera.target = box.center();
-    for (int k = 0; k < 3; ++k) camera.eye[k] += extent[k] * away[k] * (inside ? 0.8f : 3.f);
-    if (inside) camera.target = camera.eye + in_cube();
-    camera.up = number % 3 == 0 ? in_cube() : Vec3f(0, 0, 1);
-    camera.field_of_view = number % 4 == 0 ? 110 : number % 4 == 1 ? 0.5f : 45;
-    return camera;
 }
 
 TEST(Beams, OfGeneratedMeshesFromAllSides) {

@@ -27,12 +27,6 @@ std::vector<Hit<T>> hits_of_rays(const TriangleMesh<T>& mesh, const PictureSampl
     closest_hits(build<WideBvh>(mesh), rays, std::span(hits));
     return hits;
 }
-template <class T>
-void expect_same(const std::vector<Hit<T>>& want, const std::vector<Hit<T>>& hits) {
-    std::size_t differ = 0;
-    for (std::size_t i = 0; i < hits.size(); ++i) differ += !(hits[i] == want[i]);
-    EXPECT_EQ(differ, 0u) << "of " << hits.size();
-}
 /// Compares the buffers that every coverage and instruction set fills with the hits of rays. Every sample of
 /// every triangle is tested on demand alone.
 template <class T>
@@ -56,6 +50,7 @@ void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& s
         }
     }
 }
+
 TYPED_TEST(RasterisedHits, OfGeneratedMeshesFromAllSides) {
     using T = TypeParam;
     const std::size_t views = matrix::in_long_runs(200, 6);

@@ -75,7 +75,7 @@ private:
         OfTile<Ray<T, 3>> rays;
         OfTile<Hit<T>> hits;
         OfTile<SurfacePoint<T>> surfaces;
-        OfTile<Appearance> appearances;  // of the shading `colour`
+        std::vector<Appearance> appearances;  // of the shading `colour`; else empty
         OfTile<std::size_t> pixels;
         std::size_t size;
     };
@@ -112,6 +112,7 @@ private:
         OfTile<Visits> visits{};
         Looks looks;
         looks.size = 0;
+        if (by_colour()) looks.appearances.resize(tile.size());
         for (int y = tile.top; y <= tile.bottom; ++y)
             for (int x = tile.left; x <= tile.right; ++x) looks.pixels[looks.size++] = film_.pixel(x, y);
         for (int sample = first; sample < last; ++sample) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <hedgerow/ask/rays.h>
-#include <hedgerow/base/bare_vector.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/render/visibility/beam_kernels.h>
@@ -95,30 +94,22 @@ BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samp
 /// Finds what is visible by beams through an index. Samples of double are rays of `closest_hits`. Borrows the
 /// index.
 template <class I>
-class BeamTracing final : public Visibility<typename I::Scalar> {
+class BeamTracing final : public WholePictures<typename I::Scalar> {
 public:
     using T = typename I::Scalar;
 
     explicit BeamTracing(const I& index) : index_(index) {}
-    bool finds_whole_pictures() const override { return true; }
     void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) override {
-        hits_.resize(samples.size());
-        width_ = static_cast<std::size_t>(samples.width());
+        const std::span<Hit<T>> hits = this->hits_of(samples);
         if constexpr (std::same_as<T, float>)
-            costs.beams += beam_hits(index_, samples, hits_, executor);
+            costs.beams += beam_hits(index_, samples, hits, executor);
         else
-            closest_hits(index_, samples.rays(), std::span<Hit<T>>(hits_), executor);
+            closest_hits(index_, samples.rays(), hits, executor);
         costs.rays += samples.size();
-    }
-    void look(const PixelBox& box, std::span<const Ray<T, 3>>, std::span<Hit<T>> hits, std::span<Visits>,
-              PictureCosts&) const override {
-        copy_hits(hits_.data(), width_, box, hits);
     }
 
 private:
     const I& index_;
-    BareVector<Hit<T>> hits_;
-    std::size_t width_ = 0;
 };
 
 }  // namespace hedgerow

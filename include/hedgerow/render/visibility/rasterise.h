@@ -490,29 +490,19 @@ private:
     BareVector<std::uint32_t> places_, begins_, listed_;
 };
 
-/// Finds what is visible by drawing triangles, or instances. Borrows the view's arrays. Takes 28 bytes a
-/// sample of float, 48 of double, beside what the rasteriser takes.
+/// Finds what is visible by drawing triangles, or instances. Borrows the view's arrays.
 template <std::floating_point T, class Triangles = TriangleMeshView<T>>
-class Rasterising final : public Visibility<T> {
+class Rasterising final : public WholePictures<T> {
 public:
     explicit Rasterising(const Triangles& triangles, Coverage coverage = Coverage::tiles)
         : triangles_(triangles), coverage_(coverage) {}
-    bool finds_whole_pictures() const override { return true; }
     void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) override {
-        hits_.resize(samples.size());
-        width_ = static_cast<std::size_t>(samples.width());
-        costs.drawn += Rasteriser<T>(samples).draw(triangles_, hits_, executor, {coverage_});
-    }
-    void look(const PixelBox& box, std::span<const Ray<T, 3>>, std::span<Hit<T>> hits, std::span<Visits>,
-              PictureCosts&) const override {
-        copy_hits(hits_.data(), width_, box, hits);
+        costs.drawn += Rasteriser<T>(samples).draw(triangles_, this->hits_of(samples), executor, {coverage_});
     }
 
 private:
     const Triangles triangles_;
     const Coverage coverage_;
-    BareVector<Hit<T>> hits_;
-    std::size_t width_ = 0;
 };
 
 }  // namespace hedgerow

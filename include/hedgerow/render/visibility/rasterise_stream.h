@@ -15,29 +15,22 @@ namespace hedgerow {
 /// of a hit is the number of its triangle. Takes the rasteriser's memory, a part of the stream, and for each
 /// sample its hit and at most one triangle. Borrows the stream.
 template <std::floating_point T>
-class RasterisingStream final : public Visibility<T>, public Surfaces<T> {
+class RasterisingStream final : public WholePictures<T>, public Surfaces<T> {
 public:
     explicit RasterisingStream(TriangleStream<T>& stream) : stream_(stream) {}
 
-    bool finds_whole_pictures() const override { return true; }
     void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) override {
-        hits_.resize(samples.size());
-        width_ = static_cast<std::size_t>(samples.width());
+        const std::span<Hit<T>> hits = this->hits_of(samples);
         Rasteriser<T> rasteriser(samples);
         RasterOptions options;
-        rasteriser.draw(TriangleMeshView<T>(), hits_, executor);  // clears the hits
+        rasteriser.draw(TriangleMeshView<T>(), hits, executor);  // clears the hits
         options.onto = true;
         stream_.for_each_part([&](const TriangleMesh<T>& part, std::uint32_t first) {
             options.first_element = first;
-            costs.drawn += rasteriser.draw(part.view(), hits_, executor, options);
+            costs.drawn += rasteriser.draw(part.view(), hits, executor, options);
         });
-        fetch();
+        fetch(hits);
     }
-    void look(const PixelBox& box, std::span<const Ray<T, 3>>, std::span<Hit<T>> hits, std::span<Visits>,
-              PictureCosts&) const override {
-        copy_hits(hits_.data(), width_, box, hits);
-    }
-
     /// The box of all triangles, by a pass over the stream.
     Box<T, 3> bounds() const override {
         Box<T, 3> box;
@@ -55,9 +48,9 @@ public:
 
 private:
     /// Keeps the triangles that are hit.
-    void fetch() {
+    void fetch(std::span<const Hit<T>> hits) {
         elements_.clear();
-        for (const Hit<T>& hit : hits_)
+        for (const Hit<T>& hit : hits)
             if (hit && (elements_.empty() || elements_.back() != hit.element))
                 elements_.push_back(hit.element);
         std::sort(elements_.begin(), elements_.end());
@@ -77,8 +70,6 @@ private:
     }
 
     TriangleStream<T>& stream_;
-    BareVector<Hit<T>> hits_;
-    std::size_t width_ = 0;
     std::vector<std::uint32_t> elements_;  // of the triangles that are seen, ascending
     TriangleMesh<T> seen_;                 // these, in this order
 };
