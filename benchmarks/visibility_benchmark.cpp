@@ -16,7 +16,7 @@
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
 #include <hedgerow/render/camera/presets.h>
-#include <hedgerow/render/shading/surface_point.h>
+#include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 
@@ -45,7 +45,7 @@ void measure_shading(const TriangleMesh<float>& mesh, const PictureSamples<float
     std::vector<Hit<float>> hits(rays.size());
     std::vector<Vec3f> colours(rays.size());
     const auto shade = [&](std::size_t i, const Hit<float>& hit) {
-        colours[i] = surfaces.at(rays[i], hit).normal;
+        colours[i] = surfaces.normal(rays[i], hit);
     };
     const auto draw = [&](Coverage coverage) {
         return rasteriser.draw(mesh.view(), hits, serial_executor(), {coverage, false, true});

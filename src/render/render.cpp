@@ -74,7 +74,7 @@ private:
     struct Looks {
         OfTile<Ray<T, 3>> rays;
         OfTile<Hit<T>> hits;
-        OfTile<SurfacePoint<T>> surfaces;
+        OfTile<Vec<T, 3>> normals;
         std::vector<Appearance> appearances;  // of the shading `colour`; else empty
         OfTile<std::size_t> pixels;
         std::size_t size;
@@ -150,8 +150,8 @@ private:
     void shade(Looks& looks, int sample, PictureCosts& costs) {
         for (std::size_t i = 0; i < looks.size; ++i) {
             const Hit<T>& hit = looks.hits[i];
-            if (hit) looks.surfaces[i] = parts_.surfaces.at(looks.rays[i], hit);
-            const Vec3f normal(looks.surfaces[i].normal);
+            if (hit) looks.normals[i] = parts_.surfaces.normal(looks.rays[i], hit);
+            const Vec3f normal(looks.normals[i]);
             if (hit && by_colour()) looks.appearances[i] = appearance(hit, normal);
             Vec3f& light = film_.light(looks.pixels[i]);
             light = light + colour(looks, i, normal);
@@ -211,10 +211,11 @@ private:
         std::size_t n = 0;
         for (std::size_t i = 0; i < looks.size; ++i) {
             if (!looks.hits[i] || (by_colour() && looks.appearances[i].unlit)) continue;
-            const float above = dot(Vec3f(looks.surfaces[i].normal), shading_.to_light());
+            const float above = dot(Vec3f(looks.normals[i]), shading_.to_light());
             facing[n] = by_colour() ? dot(looks.appearances[i].normal, shading_.to_light()) : above;
             if (!(above > 0 && facing[n] > 0)) continue;
-            shadows[n] = {looks.surfaces[i].origin, Vec<T, 3>(shading_.to_light())};
+            shadows[n] = {parts_.surfaces.origin(looks.rays[i], looks.hits[i], looks.normals[i]),
+                          Vec<T, 3>(shading_.to_light())};
             places[n++] = i;
         }
         // Cast the shadow rays in one batch.

@@ -8,7 +8,7 @@
 #include <hedgerow/looks/model.h>
 #include <hedgerow/mesh_index.h>
 #include <hedgerow/render/shading/appearance.h>
-#include <hedgerow/render/shading/surface_point.h>
+#include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/tracer.h>
 
 namespace hedgerow {

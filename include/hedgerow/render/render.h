@@ -8,7 +8,7 @@
 #include <hedgerow/render/film/film.h>
 #include <hedgerow/render/shading/appearance.h>
 #include <hedgerow/render/shading/shading.h>
-#include <hedgerow/render/shading/surface_point.h>
+#include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/tracer.h>
 #include <hedgerow/render/visibility/cast.h>
 

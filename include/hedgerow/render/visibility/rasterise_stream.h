@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <hedgerow/io/triangle_stream.h>
-#include <hedgerow/render/shading/surface_point.h>
+#include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/visibility/rasterise.h>
 
 namespace hedgerow {
@@ -39,14 +39,20 @@ public:
         });
         return box;
     }
-    SurfacePoint<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const override {
-        Hit<T> seen = hit;
-        seen.element = static_cast<std::uint32_t>(
-            std::lower_bound(elements_.begin(), elements_.end(), hit.element) - elements_.begin());
-        return SurfacesOf(seen_).at(ray, seen);
+    Vec<T, 3> normal(const Ray<T, 3>& ray, const Hit<T>& hit) const override {
+        return SurfacesOf(seen_).normal(ray, among_seen(hit));
+    }
+    Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const override {
+        return SurfacesOf(seen_).origin(ray, among_seen(hit), normal);
     }
 
 private:
+    /// The hit with its place among the triangles that are seen as its element.
+    Hit<T> among_seen(Hit<T> hit) const {
+        hit.element = static_cast<std::uint32_t>(
+            std::lower_bound(elements_.begin(), elements_.end(), hit.element) - elements_.begin());
+        return hit;
+    }
     /// Keeps the triangles that are hit.
     void fetch(std::span<const Hit<T>> hits) {
         elements_.clear();

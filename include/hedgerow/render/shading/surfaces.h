@@ -1,17 +1,10 @@
-/// The surface at a hit.
+/// The surface at a hit: its normal, and where rays leave it.
 #pragma once
 
 #include <hedgerow/geometry/offset.h>
 #include <hedgerow/surface.h>
 
 namespace hedgerow {
-
-/// Where a ray meets a surface.
-template <std::floating_point T>
-struct SurfacePoint {
-    Vec<T, 3> normal;  ///< of length 1, on the side that the ray comes from
-    Vec<T, 3> origin;  ///< of rays that leave on that side (geometry/offset.h)
-};
 
 /// The surfaces of a set, or of an index's primitives, behind one type. Const use is thread-safe.
 template <std::floating_point T>
@@ -20,8 +13,10 @@ public:
     virtual ~Surfaces() = default;
     /// The box of all surfaces, in O(n).
     virtual Box<T, 3> bounds() const = 0;
-    /// The surface at a hit of a ray. O(1).
-    virtual SurfacePoint<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const = 0;
+    /// The normal at a hit of a ray, of length 1, on the side that the ray comes from. O(1).
+    virtual Vec<T, 3> normal(const Ray<T, 3>& ray, const Hit<T>& hit) const = 0;
+    /// The origin of rays that leave a hit on the side of this normal (geometry/offset.h). O(1).
+    virtual Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const = 0;
 };
 
 /// Surfaces of a set of primitives, or of instances. Borrows a set, keeps a view.
@@ -36,10 +31,12 @@ public:
         for (std::size_t i = 0; i < primitives_.size(); ++i) box.expand(primitives_.bounds(i));
         return box;
     }
-    SurfacePoint<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const override {
+    Vec<T, 3> normal(const Ray<T, 3>& ray, const Hit<T>& hit) const override {
         const Vec<T, 3> n = hedgerow::normal(primitives_, ray, hit);
-        const Vec<T, 3> normal = dot(n, ray.direction) > 0 ? -n : n;
-        return {normal, offset_origin(ray, hit.t, box_of(hit), normal, normal)};
+        return dot(n, ray.direction) > 0 ? -n : n;
+    }
+    Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const override {
+        return offset_origin(ray, hit.t, box_of(hit), normal, normal);
     }
 
 private:
