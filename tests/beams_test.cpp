@@ -45,7 +45,7 @@ BeamCounts expect_hits_of_rays(const Mesh& mesh, const PictureSamples<float>& sa
 }
 
 TEST(Beams, OfGeneratedMeshesFromAllSides) {
-    const std::size_t views = matrix::in_long_runs(200, 4);
+    const std::size_t views = in_long_runs(700, 4);
     for (std::uint64_t i = 0; i < views; ++i)
         for (const bool inside : {false, true}) {
             SCOPED_TRACE(std::to_string(i) + (inside ? " inside" : " outside"));
@@ -65,7 +65,7 @@ TEST(Beams, OfGeneratedMeshesFromAllSides) {
 /// Triangles with corners on the rays of samples, before and behind the eye, near and far: whether a ray hits
 /// them depends on the last bits.
 TEST(Beams, OfTrianglesWithCornersOnRays) {
-    const std::size_t scenes = matrix::in_long_runs(3000, 40);
+    const std::size_t scenes = in_long_runs(3000, 40);
     BeamCounts counts;
     std::vector<std::uint64_t> numbers(scenes);
     std::iota(numbers.begin(), numbers.end(), 0u);
@@ -109,7 +109,7 @@ TEST(Beams, OfTrianglesWithCornersOnRays) {
 /// Walls of large triangles, some of them twice, some in one plane with others, some passing the eye closely:
 /// tiles lie within one triangle, or within several at one depth.
 TEST(Beams, OfWallsAndCoplanarFaces) {
-    const std::size_t scenes = matrix::in_long_runs(2000, 24);
+    const std::size_t scenes = in_long_runs(2000, 24);
     BeamCounts counts;
     for (std::uint64_t scene = 0; scene < scenes; ++scene) {
         SCOPED_TRACE(scene);
@@ -196,7 +196,7 @@ TEST(Beams, OfScans) {
     if (!std::filesystem::exists(name)) GTEST_SKIP() << name << " is missing";
     const auto scan = load_mesh(name);
     const auto index = build<WideBvh>(scan);
-    for (std::uint64_t i = 0; i < matrix::in_long_runs(100, 4); ++i) {
+    for (std::uint64_t i = 0; i < in_long_runs(100, 4); ++i) {
         SCOPED_TRACE(i);
         const PictureSamples<float> samples(seen_from(scan, i, i % 2 == 1), 300, 200);
         std::vector<Hit<float>> want(samples.size()), hits(samples.size());

@@ -89,7 +89,7 @@ TYPED_TEST(OfEveryKind, ALongLifeIsAnsweredAsByBruteForce) {
                              .value();
     BothOf<TypeParam> both(start);
     const auto tame = any_item<P>(false), wild = any_item<P>(true);
-    const std::size_t steps = matrix::in_long_runs(10000, 1000);
+    const std::size_t steps = in_long_runs(10000, 1000);
     for (std::size_t i = 0; i < steps; ++i) {
         Random random(17, i);
         const bool grows = i / 250 % 2 == 0;

@@ -9,15 +9,12 @@
 #include <hedgerow/scenes/particles.h>
 #include <hedgerow/scenes/random.h>
 
+#include "long_runs.h"
 #include "using.h"
 
 using namespace hedgerow;
 
 namespace {
-
-std::size_t in_long_runs(std::size_t many, std::size_t few) {
-    return std::getenv("HEDGEROW_LONG") != nullptr ? many : few;
-}
 
 struct Scene {
     std::vector<Vec3d> places;
@@ -86,7 +83,7 @@ TEST(Forces, KeepTheirAccuracy) {
             const ForceErrors errors = check.errors_of<double>(found);
             EXPECT_LE(errors.rms, accuracy);
             EXPECT_LE(errors.most, 10 * accuracy);
-            if (std::getenv("HEDGEROW_LONG") != nullptr)
+            if (in_long_runs(1, 0) == 1)
                 std::printf("%-14s %.0e: rms %.1e, all but a thousandth %.1e, most %.1e\n", name, accuracy,
                             errors.rms, errors.most, errors.largest);
             EXPECT_LE(errors.imbalance, accuracy >= 3e-7 ? 1e-6 : 1e-13);

@@ -170,7 +170,7 @@ template <int times = 1, class Property>
 void expect_always(Property property) {
     rc::detail::TestParams params;
     params.seed = 11;
-    params.maxSuccess = static_cast<int>(matrix::in_long_runs(20000, 300)) * times;
+    params.maxSuccess = static_cast<int>(in_long_runs(20000, 300)) * times;
     rc::detail::TestListenerAdapter silent;
     const auto cases =
         gen::resize(rc::kNominalSize, rc::detail::toProperty(property));  // full variety in all cases

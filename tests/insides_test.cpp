@@ -249,7 +249,7 @@ TYPED_TEST(Insides, OfManyPointsLevelWithVertices) {
     const Solid solid(index);
     ASSERT_TRUE(solid.closed() && solid.oriented());
     Random random(30, 1);
-    const std::size_t count = matrix::in_long_runs(10'000'000, 20'000);
+    const std::size_t count = in_long_runs(10'000'000, 20'000);
     std::size_t on = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const auto p = exact::integers<T, 3>(random, 20) * T(0.5);

@@ -153,7 +153,7 @@ TYPED_TEST_SUITE(Instances, Scalars);
 TYPED_TEST(Instances, OfMeshes) {
     using T = TypeParam;
     const std::vector<TriangleMesh<T>> sets = {teapot<T>(200), cube<T>(12), soup<T>(50)};
-    const std::size_t rays = matrix::in_long_runs(20000, 400);
+    const std::size_t rays = in_long_runs(20000, 400);
     for (const auto scales : {Scales::none, Scales::even, Scales::any})
         Case<TriangleMesh<T>>(sets, transforms<3>(20, scales, 20), true, rays).expect_all();
 }

@@ -1,7 +1,6 @@
 /// The parts of the test matrix: structures, rays of every kind, and the comparison with brute force.
 #pragma once
 
-#include <cstdlib>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -9,6 +8,7 @@
 #include <hedgerow/questions.h>
 #include <hedgerow/scenes/random.h>
 
+#include "long_runs.h"
 #include "structure_names.h"
 
 namespace hedgerow::matrix {
@@ -71,11 +71,6 @@ std::string named_for(std::string spec) {
                                        {"hull", "obb"}})
         if (const auto at = spec.find(space); at != std::string::npos) spec.replace(at, space.size(), plane);
     return spec;
-}
-
-/// `many` if HEDGEROW_LONG is set in the environment, which chooses the long suites; else `few`.
-inline std::size_t in_long_runs(std::size_t many, std::size_t few) {
-    return std::getenv("HEDGEROW_LONG") != nullptr ? many : few;
 }
 
 template <class T, int D>

@@ -53,7 +53,7 @@ void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& s
 
 TYPED_TEST(RasterisedHits, OfGeneratedMeshesFromAllSides) {
     using T = TypeParam;
-    const std::size_t views = matrix::in_long_runs(200, 6);
+    const std::size_t views = in_long_runs(450, 6);
     for (std::uint64_t i = 0; i < views; ++i)
         for (const int way : {0, 1, 2, 3}) {
             const bool inside = way % 2 == 1, parallel = way >= 2;
@@ -77,7 +77,7 @@ TYPED_TEST(RasterisedHits, OfGeneratedMeshesFromAllSides) {
 /// them depends on the last bits.
 TYPED_TEST(RasterisedHits, OfTrianglesWithCornersOnRays) {
     using T = TypeParam;
-    const std::size_t scenes = matrix::in_long_runs(3000, 60);
+    const std::size_t scenes = in_long_runs(3000, 60);
     for (std::uint64_t scene = 0; scene < scenes; ++scene) {
         SCOPED_TRACE(scene);
         Random random(78, scene);
@@ -136,7 +136,7 @@ TYPED_TEST(RasterisedHits, OfInstances) {
     using T = TypeParam;
     const auto mesh = teapot<T>(300);
     const auto index = build<WideBvh>(mesh);
-    const std::size_t views = matrix::in_long_runs(100, 4);
+    const std::size_t views = in_long_runs(100, 4);
     for (std::uint64_t view = 0; view < views; ++view)
         for (const auto scales : {Scales::none, Scales::even, Scales::any}) {
             SCOPED_TRACE(view);
@@ -157,7 +157,7 @@ TYPED_TEST(RasterisedHits, OfInstances) {
 
 TYPED_TEST(RasterisedHits, OfInstancesWithCornersOnRays) {
     using T = TypeParam;
-    const std::size_t scenes = matrix::in_long_runs(2000, 40);
+    const std::size_t scenes = in_long_runs(2000, 40);
     for (std::uint64_t scene = 0; scene < scenes; ++scene) {
         SCOPED_TRACE(scene);
         Random random(79, scene);

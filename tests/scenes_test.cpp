@@ -178,7 +178,7 @@ TEST(Scenes, InFloatAreTheDoubleOnesRounded) {
 
 TEST(Scenes, AreAboutAsLargeAsAskedFor) {
     std::vector<unsigned> sizes{100, 130, 177, 250, 333, 500, 1000, 4000, 33'333};
-    if (matrix::in_long_runs(1, 0) != 0) sizes.push_back(1'000'000);
+    if (in_long_runs(1, 0) != 0) sizes.push_back(1'000'000);
     for (const SceneInfo& info : scene_list())
         for (const unsigned size : sizes) {
             const double got =
