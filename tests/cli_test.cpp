@@ -1,4 +1,6 @@
 /// The tool as its user sees it: exit codes, messages, pictures.
+#include <nlohmann/json.hpp>
+
 #include <hedgerow/io/image.h>
 
 #include "tool.h"
@@ -207,6 +209,45 @@ TEST_F(Cli, ColoursAreThoseOfTheScene) {
     expect_usage("render gen:cube --shading colour --structure bvh -o " + file("x.png"), "--structure");
     expect_usage("render gen:cube --camera 0 -o " + file("x.png"), "--shading colour");
     expect_usage("render gen:cube --shading colour --camera 0 -o " + file("x.png"), "has 0 cameras");
+}
+
+TEST_F(Cli, LightGoesThroughSurfaces) {
+    const std::string scene = "render gen:cornell-box --size 64x64 -o ";
+    ASSERT_EQ(run(scene + file("opaque.png") + " --shading colour").code, 0);
+    const auto clear = run(scene + file("clear.png") + " --shading colour --opacity 0.5 --json");
+    ASSERT_EQ(clear.code, 0);
+    const auto figures = nlohmann::json::parse(clear.output);
+    EXPECT_GT(figures["layers"].get<int>(), 64 * 64);
+    ASSERT_EQ(run(scene + file("drawn.png") + " --shading colour --opacity 0.5 --visibility raster").code, 0);
+    EXPECT_EQ(bytes_of(file("clear.png")), bytes_of(file("drawn.png")));
+    EXPECT_NE(bytes_of(file("clear.png")), bytes_of(file("opaque.png")));
+    // Without looks, too. The box's materials are opaque.
+    ASSERT_EQ(run(scene + file("grey.png") + " --opacity 0.5 --structure kdtree").code, 0);
+    ASSERT_EQ(run(scene + file("beams.png") + " --opacity 0.5 --visibility beams").code, 0);
+    EXPECT_EQ(bytes_of(file("grey.png")), bytes_of(file("beams.png")));
+    ASSERT_EQ(run(scene + file("same.png") + " --shading colour --transparency").code, 0);
+    EXPECT_EQ(bytes_of(file("same.png")), bytes_of(file("opaque.png")));
+    expect_usage(scene + file("x.png") + " --transparency", "--opacity");
+    expect_usage(scene + file("x.png") + " --opacity 1.5", "--opacity");
+    expect_usage(scene + file("x.png") + " --opacity 0.5 --shading steps", "what rays cost");
+}
+
+TEST_F(Cli, ASheetShowsEveryShading) {
+    const std::string scene = "render gen:cornell-box --quiet -o " + file("sheet.png") + " --sheet";
+    ASSERT_EQ(run(scene + " --size 50x40 --structure kdtree").code, 0);
+    const auto sheet = hedgerow::load_png(file("sheet.png"));
+    EXPECT_EQ(sheet.width, 150);
+    EXPECT_EQ(sheet.height, 80);
+    ASSERT_EQ(run("render gen:cornell-box --quiet --size 50x40 --shading normals -o " + file("n.png")).code,
+              0);
+    const auto normals = hedgerow::load_png(file("n.png"));
+    for (int y = 17; y < 40; ++y)  // below the note
+        for (int x = 0; x < 50; ++x) ASSERT_EQ(sheet.at(100 + x, y), normals.at(x, y)) << x << ' ' << y;
+    expect_usage(scene + " --structure nonsense", "nonsense");
+    expect_usage(scene + " --visibility beams", "beams");
+    expect_usage(scene + " --counts", "--counts");
+    expect_usage(scene + " --size 20000x20", "32768");
+    expect_usage("render gen:cube --sheet -o " + file("x.exr"), ".png");
 }
 
 TEST_F(Cli, ViewsAndProjectionsMakeDifferentPictures) {

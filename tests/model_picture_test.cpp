@@ -116,6 +116,46 @@ TYPED_TEST(ModelPictures, RaysGoThroughMasks) {
             1e-6f);
 }
 
+/// Three squares over each other, of which the upper two are transparent: in the picture, and for the light.
+TYPED_TEST(ModelPictures, LightGoesThroughMaterials) {
+    using T = TypeParam;
+    auto model = textured_square<T>();
+    model.materials.clear(), model.instances.clear();
+    const float alphas[] = {0.25f, 0.5f, 0.3f};
+    const Vec3f colours[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        Material m;
+        m.base_colour = colours[i], m.alpha = alphas[i], m.unlit = i < 2;
+        m.alpha_mode = i < 2 ? AlphaMode::blend : AlphaMode::opaque;  // the alpha of the lowest says nothing
+        model.materials.push_back(m);
+        if (i > 0) model.objects.push_back(square<T>());
+        model.objects[i].material = i;
+        model.instances.push_back({"", i, Transform<3>::translation({0, 0, -1.0 * i})});
+    }
+    const ModelScene<T> scene(model, serial_executor());
+    RenderOptions options = from_above();
+    options.camera.light = {0, 0, 1};
+    options.camera.eye[0] = options.camera.target[0] =
+        0.013f;  // no sample is on the common edge of two triangles, where both count
+    EXPECT_EQ(light_at(cast(scene, options), 8, 8), colours[0]) << "opaque, unless asked for";
+    options.transparent = true;
+    const Picture picture = cast(scene, options);
+    const PlainShading shading(options.camera, 0);
+    const float through = 0.75f * 0.5f;  // the same towards the eye and from the light
+    const Vec3f lowest = (shading.sky({0, 0, 1}) + shading.direct(1) * through) / PlainShading::grey;
+    const Vec3f want(0.25f, 0.75f * 0.5f, through * lowest[2]);
+    for (const int at : {1, 8, 14})
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(light_at(picture, at, at)[k], want[k], 1e-6f);
+    EXPECT_EQ(picture.costs.layers.layers, 3u * 16 * 16);
+    EXPECT_EQ(picture.costs.layers.ended, 16u * 16) << "at the lowest square";
+    options.opacity = 0.5f;
+    const float halved[] = {0.125f, 0.25f, 0.5f};
+    EXPECT_NEAR(
+        light_at(cast(scene, options), 8, 8)[1],
+        (1 - halved[0]) * halved[1] + (1 - halved[0]) * (1 - halved[1]) * 0.5f * shading.background()[1],
+        1e-6f);
+}
+
 TYPED_TEST(ModelPictures, NormalsOfCornersTurnTheLight) {
     using T = TypeParam;
     auto model = textured_square<T>();

@@ -25,14 +25,7 @@ std::vector<Corners<T>> corners_of(const TriangleMesh<T>& mesh) {
 /// The triangles of all instances, as load_mesh writes them out.
 template <class T>
 std::vector<Corners<T>> corners_of(const Model<T>& model) {
-    std::vector<Corners<T>> all;
-    for (const PlacedObject& placed : model.instances)
-        for (Corners<T> c : corners_of(model.objects[placed.object].mesh)) {
-            for (auto& p : c) p = transformed(placed.to_world.there(), p);
-            if (placed.mirrors()) std::swap(c[0], c[2]);
-            all.push_back(c);
-        }
-    return all;
+    return corners_of(model.in_world());
 }
 
 /// Expects a model whose ordinals all name something, and as many values as the mesh needs.

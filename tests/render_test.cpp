@@ -5,6 +5,7 @@
 #include <hedgerow/instances/instance_set.h>
 #include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/render.h>
+#include <hedgerow/render/shading/transparency.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/render/visibility/rasterise_stream.h>
@@ -159,6 +160,62 @@ TYPED_TEST(Rendered, EveryCameraSeesByRays) {
     }
 }
 
+/// What is behind a surface shows through it, whatever finds the first surface of a sample.
+TYPED_TEST(Rendered, LightGoesThroughTransparentSurfaces) {
+    using T = TypeParam;
+    const auto mesh = hairball<T>(20000);
+    const auto index = build<WideBvh>(mesh);
+    const IndexTracer tracer(index);
+    const SurfacesOf surfaces(mesh);
+    RenderOptions options = options_for(index);
+    options.layers = options.transparent = true, options.opacity = 0.7f, options.shading = Shading::normals;
+    options.camera.field_of_view = 15;
+    const Picture cast = render(index, mesh, options, default_executor());
+    // The same by compositing the rays' layers.
+    const PictureSamples<T> samples(options.camera, options.width, options.height);
+    const PlainShading shading(options.camera, 0);
+    const auto layer = [&](const Ray<T, 3>& ray, const Hit<T>& hit) {
+        return Layer{shading.normal(Vec3f(surfaces.normal(ray, hit))), options.opacity};
+    };
+    std::vector<Composite> want(samples.size());
+    const auto counts = composite_front_to_back(index, samples.rays(), layer, want);
+    EXPECT_EQ(cast.costs.layers.layers, counts.layers);
+    EXPECT_GT(counts.ended, 10u);
+    EXPECT_GT(counts.layers, 3 * samples.size() / 2);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        ASSERT_LE(length(cast.light[i] - want[i].over(shading.background())), 1e-6f) << i;
+    for (const auto lit : {Shading::normals, Shading::diffuse}) {
+        options.shading = lit;
+        const Picture by_rays = render(index, mesh, options, default_executor());
+        Rasterising<T> rasterising(mesh.view());
+        BeamTracing beams(index);
+        const PictureParts<T> drawn{rasterising, surfaces, &tracer}, beamed{beams, surfaces, &tracer};
+        expect_same(by_rays, render(drawn, options, default_executor()));
+        expect_same(by_rays, render(beamed, options, default_executor()));
+        expect_same(by_rays, render(*build_any("kdtree", mesh), mesh, options, default_executor()));
+        // Opaque surfaces hide all, and those without opacity nothing.
+        options.opacity = 1;
+        const Picture opaque = render(index, mesh, options, default_executor());
+        options.opacity = 0;
+        const Picture clear = render(index, mesh, options, default_executor());
+        for (const Vec3f& light : clear.light) ASSERT_EQ(light, shading.background());
+        options.transparent = false, options.opacity = 1;
+        expect_same(opaque, render(index, mesh, options, default_executor()));
+        options.transparent = true, options.opacity = 0.7f;
+    }
+}
+
+/// A heat map of any size has a scale, or no room for one.
+TYPED_TEST(Rendered, HeatMapsOfAnySize) {
+    const auto mesh = cornell_box<TypeParam>(0);
+    const auto index = build<WideBvh>(mesh);
+    RenderOptions options = options_for(index);
+    options.shading = Shading::steps;
+    for (options.height = 1; options.height < 300; options.height += options.height < 60 ? 1 : 47)
+        for (options.width = 20; options.width < 100; options.width += 37)
+            EXPECT_TRUE(render(index, mesh, options, serial_executor()).whole);
+}
+
 TYPED_TEST(Rendered, PartsThatDoNotFitAreRefused) {
     using T = TypeParam;
     const auto mesh = cornell_box<T>(0);
@@ -181,6 +238,13 @@ TYPED_TEST(Rendered, PartsThatDoNotFitAreRefused) {
     refused(&tracer, [](RenderOptions& o) { o.camera.field_of_view = 0; });
     refused(&tracer, [](RenderOptions& o) { o.camera.projection = Projection::panorama; });
     refused(&tracer, [](RenderOptions& o) { o.camera.lens_radius = 1; });
+    refused(&tracer, [](RenderOptions& o) { o.transparent = true, o.opacity = 1.5f; });
+    refused(&tracer, [](RenderOptions& o) { o.transparent = true, o.opacity = std::nanf(""); });
+    refused(nullptr, [](RenderOptions& o) { o.transparent = true, o.shading = Shading::normals; });
+    RayCasting<T> casting(tracer);
+    RenderOptions steps = sound;
+    steps.shading = Shading::steps, steps.transparent = true;
+    EXPECT_THROW(render(PictureParts<T>{casting, surfaces, &tracer}, steps, serial_executor()), InputError);
 }
 
 TYPED_TEST(Rendered, AnInterruptedRasterKeepsItsFinishedSamples) {

@@ -1,51 +1,17 @@
 /// hedgerow render: renders a picture, by casting rays or by rasterising.
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
-#include <hedgerow/io/model_file.h>
-#include <hedgerow/render/model_scene.h>
-#include <hedgerow/render/render.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/render/visibility/rasterise_stream.h>
-#include <hedgerow/scenes/looks.h>
 
-#include "kernel_use.h"
+#include "render_looks.h"
 #include "verbs.h"
-#include "view.h"
 
 namespace hedgerow::cli {
 
 namespace {
-
-struct RenderArguments : Common {
-    std::string structure = "wide", shading = "diffuse", visibility = "cast";
-    ViewArguments view;
-    int spp = 1;
-    unsigned threads = 0;
-    std::uint64_t steps_max = 0;
-    int camera = -1;                      // of the file
-    bool counts = false, layers = false;  // layers: whether the output is .exr
-
-    bool rasterises() const { return visibility == "raster"; }
-    bool uses_beams() const { return visibility == "beams"; }
-    /// Whether the picture needs an index: for its rays from the eye, or those to the light.
-    bool needs_index() const { return !rasterises() || is_lit(parse_shading(shading)); }
-};
-
-struct Outcome {
-    Picture picture;
-    std::size_t primitives = 0, bytes = 0;
-    Upright upright{2, ""};
-    Vec3f up;
-    FinishedPicture finished;
-    bool indexed = false, loaded = false;  // whether there is an index, and whether it was loaded, not built
-    bool counted = false;                  // visits of rays were counted
-    double build_seconds = 0, seconds = 0;
-};
 
 constexpr const char* layers_help =
     "Layers of an .exr file, of a pixel's first ray or the mean of its --spp rays:\n"
@@ -55,76 +21,6 @@ constexpr const char* layers_help =
     "  id                       the primitive's number there; 4294967295 where nothing is hit\n"
     "  nodes leaves primitives  looked at to find the hit; mean\n\n";
 
-void report(const RenderArguments& a, const Outcome& o) {
-    const Picture& p = o.picture;
-    const PictureCosts& costs = p.costs;
-    const double rays = double(std::max<std::uint64_t>(costs.rays, 1));
-    const auto a_ray = [&](std::uint64_t count) { return double(count) / rays; };
-    if (a.json) {
-        nlohmann::ordered_json j = {{"structure", a.structure},
-                                    {"visibility", a.visibility},
-                                    {"output", o.finished.output},
-                                    {"width", p.image.width},
-                                    {"height", p.image.height},
-                                    {"primitives", o.primitives},
-                                    {"bytes", o.bytes},
-                                    {o.loaded ? "load_seconds" : "build_seconds", o.build_seconds},
-                                    {"up", {o.up[0], o.up[1], o.up[2]}},
-                                    {"rays", costs.rays},
-                                    {"rays_by", rays_by(costs.use)},
-                                    {"seconds", o.seconds},
-                                    {"rays_per_second", rays / o.seconds},
-                                    {"finished", o.finished.whole}};
-        if (o.counted) {
-            j["nodes_per_ray"] = a_ray(costs.visits.nodes);
-            j["leaves_per_ray"] = a_ray(costs.visits.leaves);
-            j["primitives_per_ray"] = a_ray(costs.visits.primitives);
-        }
-        if (a.uses_beams()) {
-            j["beams"] = costs.beams.beams;
-            j["visits_of_beams"] = costs.beams.visits;
-            j["samples_filled"] = costs.beams.filled;
-        }
-        if (a.rasterises()) {
-            j["triangles_drawn"] = costs.drawn.triangles;
-            j["triangles_outside"] = costs.drawn.outside;
-        }
-        print_json(j);
-    } else if (!a.quiet) {
-        fmt::print("{}: {}x{}, {} primitives", o.finished.output, p.image.width, p.image.height,
-                   o.primitives);
-        if (o.indexed)
-            fmt::print(", {} {} in {:.1f} ms, {:.1f} bytes a primitive", a.structure,
-                       o.loaded ? "loaded" : "built", o.build_seconds * 1e3,
-                       double(o.bytes) / double(std::max<std::size_t>(1, o.primitives)));
-        fmt::print("\n");
-        if (costs.beams.beams > 0)
-            fmt::print("{} beams, {:.0f}% of the samples without a packet; ", costs.beams.beams,
-                       100 * double(costs.beams.filled) /
-                           (double(p.image.width) * double(p.image.height) * double(a.spp)));
-        if (a.rasterises())
-            fmt::print("{} triangles drawn, {} of them outside of the picture; ", costs.drawn.triangles,
-                       costs.drawn.outside);
-        fmt::print("{} rays in {:.3f} s", costs.rays, o.seconds);
-        if (costs.rays > 0) fmt::print(": {:.3f} million a second", rays / o.seconds * 1e-6);
-        if (costs.use.packets + costs.use.phased > 0) fmt::print("; {}", most_used(costs.use, costs.rays));
-        if (o.counted)
-            fmt::print("; a ray visits {:.1f} nodes, {:.1f} leaves, {:.1f} primitives",
-                       a_ray(costs.visits.nodes), a_ray(costs.visits.leaves), a_ray(costs.visits.primitives));
-        fmt::print("\n{}", up_text(a.view, a, o.upright));
-    }
-}
-
-/// The picture's options, with the camera placed by the bounds of the scene.
-RenderOptions options_of(const RenderArguments& a, const Box3f& bounds, const Upright& upright) {
-    RenderOptions options;
-    std::tie(options.width, options.height) = parse_size(a.view.size);
-    options.samples = a.spp, options.seed = a.seed, options.scale.top = a.steps_max;
-    options.shading = parse_shading(a.shading);
-    options.layers = a.layers, options.counts = a.counts;
-    options.camera = camera_of(a.view, a, bounds, upright);
-    return options;
-}
 /// What finds the hits of the samples.
 template <class T, class P>
 std::unique_ptr<Visibility<T>> visibility_of(const RenderArguments& a, const P& primitives,
@@ -134,20 +30,6 @@ std::unique_ptr<Visibility<T>> visibility_of(const RenderArguments& a, const P& 
         return std::make_unique<Rasterising<T>>(view_of(primitives));
     else
         throw InputError(a.scene + ": only triangles can be rasterised; use --visibility cast");
-}
-/// Makes the picture, saves it and reports. After an interruption the finished rows are saved. Returns the
-/// exit code.
-template <class T>
-int finish(const RenderArguments& a, const PictureParts<T>& parts, const RenderOptions& options, Outcome o,
-           const Progress& progress) {
-    o.counted = options.counted(), o.up = options.camera.up;
-    const double start = now();
-    o.picture = render(parts, options, default_executor(), progress);
-    o.seconds = now() - start;
-    o.finished = finish_picture(a.output, o.picture.pixels > 0, o.picture.whole);
-    save(o.finished.output, o.picture);
-    report(a, o);
-    return o.finished.exit_code();
 }
 /// Renders `primitives` by an index over them, or by none. Returns the exit code.
 template <class T, class P>
@@ -206,75 +88,6 @@ int render_stream(const RenderArguments& a) {
     o.upright = a.view.up == "auto" ? upright_by_format(a.scene, {}) : Upright{a.view.up[0] - 'x', ""};
     const RenderOptions options = options_of(a, box, o.upright);
     return finish(a, PictureParts<T>{rasterising, rasterising}, options, std::move(o), {{}, progress.cancel});
-}
-/// Loads or generates a scene with its looks, and tells what of it is not shown.
-template <class T>
-Model<T> load_looks(const RenderArguments& a) {
-    if (a.scene.starts_with("gen:")) {
-        ProgressLine line("generating " + a.scene, a.quiet, "triangles");
-        return generate_model<T>(parse_scene_spec(a.scene), line.progress());
-    }
-    Model<T> model = [&] {
-        ProgressLine line("loading " + a.scene, a.quiet, "bytes");
-        return load_model<T>(a.scene, {}, line.progress());
-    }();
-    if (a.quiet) return model;
-    for (const std::string& warning : model.warnings) fmt::print(stderr, "hedgerow: warning: {}\n", warning);
-    if (!model.not_shown.empty())
-        fmt::print(stderr, "hedgerow: {}: not shown: {}\n", a.scene, fmt::join(model.not_shown, ", "));
-    return model;
-}
-/// The camera of a file, turned into one of ours: it looks along its -z, with y up.
-template <class T>
-Camera camera_of(const RenderArguments& a, const Model<T>& model, const Camera& given) {
-    if (a.camera < 0) return given;
-    if (static_cast<std::size_t>(a.camera) >= model.cameras.size())
-        throw UsageError(fmt::format("--camera {}: {} has {} cameras, counted from 0", a.camera, a.scene,
-                                     model.cameras.size()));
-    const FileCamera& from = model.cameras[static_cast<std::size_t>(a.camera)];
-    Camera c = given;
-    c.eye = Vec3f(from.to_world.point({}));
-    c.target = c.eye + Vec3f(normalized(from.to_world.vector({0, 0, -1})));
-    c.up = Vec3f(normalized(from.to_world.vector({0, 1, 0})));
-    if (const auto* const view = std::get_if<PerspectiveView>(&from.view))
-        c.projection = Projection::perspective,
-        c.field_of_view = static_cast<float>(view->field_of_view * 180 / 3.14159265358979323846);
-    else
-        c.projection = Projection::orthographic,
-        c.height = static_cast<float>(std::get<OrthographicView>(from.view).height);
-    return c;
-}
-/// Renders a scene with its looks, by rays through an index of two levels, or by its triangles.
-template <class T>
-int render_looks(const RenderArguments& a) {
-    const ThreadLimit limit(a.threads);
-    Outcome o;
-    const Model<T> model = load_looks<T>(a);
-    const double start = now();
-    const ModelScene<T> scene(model, interruptible_executor());
-    o.build_seconds = now() - start;
-    o.indexed = true, o.bytes = scene.bytes(), o.primitives = model.triangles();
-    o.upright = model.objects.size() == 1 || a.scene.starts_with("gen:")
-                    ? upright_of(a.view, a, model.objects[0].mesh)
-                : a.view.up != "auto" ? Upright{a.view.up[0] - 'x', ""}
-                                      : upright_by_format(a.scene, {});
-    const auto& box = scene.bounds();
-    RenderOptions options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, o.upright);
-    options.camera = camera_of(a, model, options.camera);
-    const auto& looks = scene.appearances();
-    std::unique_ptr<Visibility<T>> visibility;
-    if (!a.rasterises())
-        visibility = std::make_unique<RayCasting<T>>(
-            scene.tracer(), looks.has_masks() ? [&](const Hit<T>& hit) { return looks.is_there(hit); }
-                                              : std::function<bool(const Hit<T>&)>());
-    else if (!looks.has_masks())
-        visibility =
-            std::make_unique<Rasterising<T, InstanceSetView<MeshIndex<T>>>>(scene.instances().view());
-    else
-        throw InputError(a.scene + ": has masks of opacity, which only rays see; use --visibility cast");
-    ProgressLine line("rendering", a.quiet, "rows");
-    return finish(a, PictureParts<T>{*visibility, scene.surfaces(), &scene.tracer(), &looks}, options,
-                  std::move(o), line.progress());
 }
 template <class P>
 int render(const RenderArguments& a, const P& primitives) {
@@ -336,6 +149,12 @@ Run add_render(CLI::App& verb) {
             "how hits are found: cast rays, raster triangles, or beams of rays; the picture is the same")
         ->capture_default_str()
         ->check(CLI::IsMember({"cast", "raster", "beams"}));
+    verb.add_flag("--transparency", a->transparent,
+                  "light goes through what is not opaque, in shadows too; alone it needs --shading colour");
+    verb.add_option("--opacity", a->opacity,
+                    "of all surfaces, times that of their looks; below 1 light goes through")
+        ->check(CLI::Range(0.0, 1.0));
+    verb.add_flag("--sheet", a->sheet, "every shading side by side, on one .png of three times two pictures");
     verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
     verb.add_flag("--counts", a->counts,
                   "count what rays visit, without the engine's kernels; layers and steps are counts already");
@@ -354,12 +173,23 @@ Run add_render(CLI::App& verb) {
             throw UsageError("--shading " + a->shading + " shows what rays cost: it needs --visibility cast");
         if (a->uses_beams() && a->structure != "wide")
             throw UsageError("--structure " + a->structure + ": beams go through 'wide' alone");
+        if (a->sheet) check_sheet(*a);
         check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
-        const bool by_looks = parse_shading(a->shading) == Shading::colour;
-        if (by_looks && (a->uses_beams() || a->structure != "wide"))
+        const bool by_looks = a->sheet || parse_shading(a->shading) == Shading::colour;
+        if (by_looks && a->uses_beams())
+            throw UsageError("beams go through one mesh without looks: leave out --visibility beams");
+        if (by_looks && !a->sheet && a->structure != "wide")
+            throw UsageError("--shading colour casts rays at 'wide' or rasters: leave out --structure");
+        if (a->transparent && a->opacity == 1 && !by_looks)
             throw UsageError(
-                "--shading colour casts rays at 'wide' or rasters: leave out --structure and beams");
+                "--transparency: --shading " + a->shading +
+                " shows no looks, so all is opaque; give --shading colour, or --opacity for all");
+        a->transparent |= a->opacity < 1;
+        if (a->transparent && !a->sheet && counted(parse_shading(a->shading)))
+            throw UsageError("--shading " + a->shading +
+                             " shows what rays cost, which end at the first hit; leave out "
+                             "--transparency and --opacity");
         if (a->camera >= 0 && !by_looks)
             throw UsageError("--camera is of files with looks: it needs --shading colour");
         return in_precision(*a, [&]<class T>(T) {

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/render/shading/transparency.h>
 
 namespace hedgerow {
 
@@ -27,6 +28,10 @@ void check(const PictureParts<T>& parts, const RenderOptions& o) {
         throw InputError("this shading shows what a model looks like: give its appearances");
     if (parts.tracer == nullptr && (is_lit(o.shading) || o.shading == Shading::time))
         throw InputError("this shading casts rays: give a tracer, or shade by normals or depth");
+    if (!o.transparent) return;
+    if (!(o.opacity >= 0 && o.opacity <= 1)) throw InputError("the opacity of surfaces must be 0 to 1");
+    if (counted(o.shading)) throw InputError("this shading shows what rays cost, which end at the first hit");
+    if (parts.tracer == nullptr) throw InputError("light through surfaces takes rays: give a tracer");
 }
 
 template <class T>
@@ -38,7 +43,8 @@ public:
           whole_(parts.visibility.finds_whole_pictures()),
           shading_(o.camera, diagonal(parts.surfaces, o.shading)),
           film_(o.width, o.height, o.layers) {
-        if (o.shading == Shading::colour && parts.appearances->has_masks())
+        if ((o.shading == Shading::colour || o.transparent) && parts.appearances != nullptr &&
+            parts.appearances->has_masks())
             keeps_ = [&looks = *parts.appearances](std::size_t, const Hit<T>& hit) {
                 return looks.is_there(hit);
             };
@@ -70,15 +76,17 @@ public:
     }
 
 private:
-    /// Rays from the eye, one for each pixel of a tile, with their hits and the surfaces there.
+    /// Rays from the eye, at most one for each pixel of a tile, with their hits and the surfaces there.
     struct Looks {
         OfTile<Ray<T, 3>> rays;
         OfTile<Hit<T>> hits;
         OfTile<Vec<T, 3>> normals;
-        std::vector<Appearance> appearances;  // of the shading `colour`; else empty
+        std::vector<Appearance> appearances;  // where they are asked for; else empty
+        OfTile<Vec3f> light;                  // towards the eye
         OfTile<std::size_t> pixels;
-        std::size_t size;
+        std::size_t size = 0;
     };
+    using Walk = detail::LayerWalk<T, 3>;
 
     static float diagonal(const Surfaces<T>& surfaces, Shading shading) {
         const Box<T, 3> box = shading == Shading::depth ? surfaces.bounds() : Box<T, 3>();
@@ -111,8 +119,7 @@ private:
     bool add(const PixelBox& tile, int first, int last, PictureCosts& costs, const Progress& progress) {
         OfTile<Visits> visits{};
         Looks looks;
-        looks.size = 0;
-        if (by_colour()) looks.appearances.resize(tile.size());
+        if (by_looks()) looks.appearances.resize(tile.size());
         for (int y = tile.top; y <= tile.bottom; ++y)
             for (int x = tile.left; x <= tile.right; ++x) looks.pixels[looks.size++] = film_.pixel(x, y);
         for (int sample = first; sample < last; ++sample) {
@@ -148,22 +155,73 @@ private:
     }
     /// Adds the light of a tile's hits to the film, and stores the layers of the first sample.
     void shade(Looks& looks, int sample, PictureCosts& costs) {
+        if (o_.transparent) {
+            composite(looks, costs);
+        } else {
+            find_light(looks, costs);
+            for (std::size_t i = 0; i < looks.size; ++i) add_light(looks.pixels[i], looks.light[i]);
+        }
+        for (std::size_t i = 0; i < looks.size && o_.layers && sample == 0; ++i) {
+            const Hit<T>& hit = looks.hits[i];
+            if (!hit) continue;
+            Seen& seen = film_.seen(looks.pixels[i]);
+            seen.depth = static_cast<float>(hit.t);  // directions have length 1
+            seen.normal = Vec3f(parts_.surfaces.normal(looks.rays[i], hit));
+            seen.id = hit.primitive;
+        }
+    }
+    void add_light(std::size_t pixel, const Vec3f& light) { film_.light(pixel) = film_.light(pixel) + light; }
+    /// Adds the light of all layers on the rays of a tile, from those of its hits on.
+    void composite(const Looks& first, PictureCosts& costs) {
+        OfTile<Vec3d> light{};
+        OfTile<double> through;
+        through.fill(1);
+        Looks wave;
+        if (by_looks()) wave.appearances.resize(first.size);
+        const auto shade = [&](std::span<typename Walk::Step> steps) {
+            wave.size = steps.size();
+            for (std::size_t i = 0; i < wave.size; ++i)
+                wave.rays[i] = first.rays[steps[i].ray], wave.hits[i] = steps[i].hit;
+            find_light(wave, costs);
+            for (std::size_t i = 0; i < wave.size; ++i) {
+                auto& step = steps[i];
+                step.opacity = opacity(parts_.appearances == nullptr ? 1 : wave.appearances[i].alpha);
+                light[step.ray] =
+                    light[step.ray] + detail::weighted(wave.light[i], step.through * step.opacity);
+                through[step.ray] = step.through * (1 - step.opacity);
+            }
+        };
+        costs.layers +=
+            follow(std::span(first.rays).first(first.size), std::span(first.hits).first(first.size), shade);
+        for (std::size_t i = 0; i < first.size; ++i)
+            add_light(first.pixels[i], Vec3f(light[i] + detail::weighted(shading_.background(), through[i])));
+    }
+    /// Follows rays through layers from their first hits on.
+    template <class Shade>
+    TransparencyCounts follow(std::span<const Ray<T, 3>> rays, std::span<const Hit<T>> first,
+                              const Shade& shade) {
+        const auto find = [&](const auto& some, std::size_t k, const auto& columns, auto after, const auto&) {
+            parts_.tracer->first_hits(some, k, columns, after, keeps_);
+        };
+        return Walk(o_.transparency).follow(rays, 0, rays.size(), first, find, shade);
+    }
+    double opacity(float alpha) const {
+        return static_cast<double>(std::clamp(alpha * o_.opacity, 0.f, 1.f));
+    }
+    /// Finds the light that comes from a tile's hits, and the background's where nothing is hit.
+    void find_light(Looks& looks, PictureCosts& costs) {
         for (std::size_t i = 0; i < looks.size; ++i) {
             const Hit<T>& hit = looks.hits[i];
             if (hit) looks.normals[i] = parts_.surfaces.normal(looks.rays[i], hit);
             const Vec3f normal(looks.normals[i]);
-            if (hit && by_colour()) looks.appearances[i] = appearance(hit, normal);
-            Vec3f& light = film_.light(looks.pixels[i]);
-            light = light + colour(looks, i, normal);
-            if (!o_.layers || sample > 0 || !hit) continue;
-            Seen& seen = film_.seen(looks.pixels[i]);
-            seen.depth = static_cast<float>(hit.t);  // directions have length 1
-            seen.normal = normal;
-            seen.id = hit.primitive;
+            if (hit && by_looks()) looks.appearances[i] = appearance(hit, normal);
+            looks.light[i] = colour(looks, i, normal);
         }
         if (is_lit(o_.shading)) add_direct_light(looks, costs);
     }
     bool by_colour() const { return o_.shading == Shading::colour; }
+    /// Whether the appearances of hits are asked for.
+    bool by_looks() const { return by_colour() || (o_.transparent && parts_.appearances != nullptr); }
     /// What a hit looks like, with a normal on the side of the surface's, which it is where there is no
     /// other.
     Appearance appearance(const Hit<T>& hit, const Vec3f& normal) const {
@@ -201,12 +259,10 @@ private:
         return std::chrono::duration<float, std::nano>(least).count();
     }
     /// Adds direct light to the hits that face the light and are not in shadow.
-    void add_direct_light(const Looks& looks, PictureCosts& costs) {
+    void add_direct_light(Looks& looks, PictureCosts& costs) {
         OfTile<Ray<T, 3>> shadows;
         OfTile<std::size_t> places;  // in the tile
         OfTile<float> facing;
-        OfTile<bool> blocked;
-        OfTile<Visits> visits{};
         // Make a shadow ray for each hit that faces the light.
         std::size_t n = 0;
         for (std::size_t i = 0; i < looks.size; ++i) {
@@ -218,17 +274,37 @@ private:
                           Vec<T, 3>(shading_.to_light())};
             places[n++] = i;
         }
-        // Cast the shadow rays in one batch.
-        costs.rays += n;
-        costs.use += parts_.tracer->any_hits(std::span(shadows).first(n), std::span(blocked).first(n),
-                                             std::span(visits).first(o_.counted() ? n : 0), keeps_);
+        const auto open = let_through(std::span<const Ray<T, 3>>(shadows).first(n), costs);
         for (std::size_t i = 0; i < n; ++i) {
-            const Vec3f direct = shading_.direct(facing[i]);
-            Vec3f& light = film_.light(looks.pixels[places[i]]);
-            if (!blocked[i])
-                light = light + (by_colour() ? coloured(direct, looks.appearances[places[i]]) : direct);
-            costs.visits += visits[i];
+            const Vec3f direct = shading_.direct(facing[i]) * open[i];
+            Vec3f& light = looks.light[places[i]];
+            light = light + (by_colour() ? coloured(direct, looks.appearances[places[i]]) : direct);
         }
+    }
+    /// The share of the light that comes through along each ray. The rays are cast in one batch.
+    OfTile<float> let_through(std::span<const Ray<T, 3>> rays, PictureCosts& costs) {
+        OfTile<float> open;
+        costs.rays += rays.size();
+        if (o_.transparent) {
+            OfTile<Hit<T>> first;
+            const auto hits = std::span(first).first(rays.size());
+            costs.use += parts_.tracer->closest_hits(rays, hits, {}, keeps_);
+            open.fill(1);
+            follow(rays, hits, [&](std::span<typename Walk::Step> steps) {
+                for (auto& step : steps) {
+                    step.opacity =
+                        opacity(parts_.appearances == nullptr ? 1 : parts_.appearances->at(step.hit).alpha);
+                    open[step.ray] = static_cast<float>(step.through * (1 - step.opacity));
+                }
+            });
+            return open;
+        }
+        OfTile<bool> blocked;
+        OfTile<Visits> visits{};
+        costs.use += parts_.tracer->any_hits(rays, std::span(blocked).first(rays.size()),
+                                             std::span(visits).first(o_.counted() ? rays.size() : 0), keeps_);
+        for (std::size_t i = 0; i < rays.size(); ++i) open[i] = blocked[i] ? 0 : 1, costs.visits += visits[i];
+        return open;
     }
 
     const PictureParts<T> parts_;

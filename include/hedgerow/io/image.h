@@ -1,6 +1,7 @@
 /// 8-bit RGB images, and PNG files.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +34,13 @@ private:
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     }
 };
+
+/// Copies an image into another with its upper left corner at (x, y). Copies only what fits.
+inline void paste(const Image& from, Image& into, int x, int y) {
+    for (int row = std::max(0, -y); row < std::min(from.height, into.height - y); ++row)
+        for (int column = std::max(0, -x); column < std::min(from.width, into.width - x); ++column)
+            into.at(x + column, y + row) = from.at(column, row);
+}
 
 /// Writes a PNG file under another name beside `path`, and then renames it. Throws InputError if the image
 /// has no pixels or does not have width × height of them, and OutputError if the path cannot be written.

@@ -1,12 +1,15 @@
 /// A scene with its looks: objects, their instances, cameras, materials, textures and lights.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include <hedgerow/base/error.h>
 #include <hedgerow/geometry/transform.h>
 #include <hedgerow/looks/attributes.h>
 #include <hedgerow/looks/light.h>
@@ -86,6 +89,25 @@ struct Model {
         std::uint64_t sum = 0;
         for (const PlacedObject& i : instances) sum += objects[i.object].mesh.size();
         return sum;
+    }
+    /// All instances as one mesh in the world, whose fronts stay fronts. It has no ids of faces. O(vertices
+    /// and triangles of all instances). Throws InputError for more than 2^32 − 1 of either.
+    TriangleMesh<T> in_world() const {
+        TriangleMesh<T> all;
+        for (const PlacedObject& placed : instances) {
+            const TriangleMesh<T>& mesh = objects[placed.object].mesh;
+            const std::size_t first = all.vertices.size();
+            if (std::max(first + mesh.vertices.size(), all.size() + mesh.size()) > 0xFFFFFFFFu)
+                throw InputError("the instances have too many triangles or vertices for one mesh");
+            for (const auto& v : mesh.vertices)
+                all.vertices.push_back(transformed(placed.to_world.there(), v));
+            for (TriangleIndices corners : mesh.triangles) {
+                for (std::uint32_t& v : corners) v += static_cast<std::uint32_t>(first);
+                if (placed.mirrors()) std::swap(corners[0], corners[2]);
+                all.triangles.push_back(corners);
+            }
+        }
+        return all;
     }
 };
 

@@ -25,6 +25,12 @@ struct RenderOptions {
     /// Whether the visits of rays are counted, which rules out the kernels. Layers and the shadings `steps`
     /// and `tests` imply it.
     bool counts = false;
+    /// Whether surfaces let light through that are not opaque: layers are composited front to back
+    /// (shading/transparency.h), in shadows too. The opacity is that of the appearances, if there are some,
+    /// times `opacity`. Visits are then those up to the first hit.
+    bool transparent = false;
+    float opacity = 1;
+    TransparencyOptions transparency;
 
     bool counted() const { return counts || layers || counts_visits(shading); }
 };
@@ -34,18 +40,20 @@ template <std::floating_point T>
 struct PictureParts {
     Visibility<T>& visibility;
     const Surfaces<T>& surfaces;
-    /// Answers the rays to the light of lit shadings, and those that are timed; other shadings need none.
+    /// Answers the rays to the light of lit shadings, those through transparent surfaces, and those that are
+    /// timed; other pictures need none.
     const Tracer<T>* tracer = nullptr;
-    /// What surfaces look like, for the shading `colour`. Its masks hold for rays to the light; what finds
-    /// the visible has to be given them too.
+    /// What surfaces look like, for the shading `colour`, and their opacity, for transparent ones. Its masks
+    /// hold for rays to the light; what finds the visible has to be given them too.
     const Appearances<T>* appearances = nullptr;
 };
 
 /// Makes a picture, in tiles of pixels over the executor. Diffuse shading and that by colour cast a ray to
 /// the light where the surface faces it. Returns when all rows are finished or the progress is cancelled:
 /// then rows that are not finished stay black, and their layers empty. Throws InputError for a camera that
-/// sees nothing, no pixels or samples, where the shading needs a tracer or appearances and there are none,
-/// and where it shows costs of rays but what is visible is found without them.
+/// sees nothing, no pixels or samples, an opacity that is not 0 to 1, where the picture needs a tracer or
+/// appearances and there are none, and where it shows costs of rays but what is visible is found without
+/// them, or through transparent surfaces.
 template <std::floating_point T>
 Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
                const Progress& progress = {});

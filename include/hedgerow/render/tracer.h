@@ -10,7 +10,7 @@
 
 namespace hedgerow {
 
-/// Closest and any hits of batches of rays. A batch is answered in the calling thread. Const use is
+/// Closest, first and any hits of batches of rays. A batch is answered in the calling thread. Const use is
 /// thread-safe.
 template <std::floating_point T>
 class Tracer {
@@ -28,6 +28,9 @@ public:
                                    std::span<Visits> visits, const Filter& filter) const = 0;
     virtual KernelUse any_hits(const RayArray<T, 3>& rays, std::span<bool> hits, std::span<Visits> visits,
                                const Filter& filter) const = 0;
+    /// Writes the next k hits of each ray after a place, as the function of this name in ask/rays.h does.
+    virtual void first_hits(const RayArray<T, 3>& rays, std::size_t k, const FirstHitsColumns<T>& columns,
+                            std::span<const AfterHit<T>> after, const Filter& filter) const = 0;
 
     KernelUse closest_hits(const RayArray<T, 3>& rays, std::span<Hit<T>> hits,
                            std::span<Visits> visits = {}) const {
@@ -68,6 +71,14 @@ public:
             else
                 return hedgerow::any_hits(index_, rays, hits, serial_executor(), filters...);
         });
+    }
+
+    void first_hits(const RayArray<T, 3>& rays, std::size_t k, const FirstHitsColumns<T>& columns,
+                    std::span<const AfterHit<T>> after, const Filter& filter) const override {
+        if (filter)
+            hedgerow::first_hits(index_, rays, k, columns, after, serial_executor(), filter);
+        else
+            hedgerow::first_hits(index_, rays, k, columns, after, serial_executor());
     }
 
 private:

@@ -94,7 +94,7 @@ inline int bar_unit(const Image& image) {
 inline int colour_bar_left(const Image& image, std::uint64_t most) {
     const int unit = detail::bar_unit(image);
     const int label = (static_cast<int>(std::to_string(most).size()) * 4 + 1) * unit, wide = 6 * unit;
-    if (image.width < 3 * (wide + label) || image.height < 40) return image.width;
+    if (image.width < 3 * (wide + label) || image.height < 8 * wide) return image.width;
     return image.width - label - wide - 4 * unit;
 }
 /// Draws a labelled bar along the right edge, from 0 at the bottom to the scale's most at the top. Draws

@@ -38,34 +38,46 @@ struct TransparencyCounts {
 
 namespace detail {
 
-/// Rays on their way through layers: those that have not ended, of a piece of a batch.
-template <class I, class Filter, class Pass>
+/// Rays on their way through layers: those of a piece of a batch that have not ended. They go in waves: a
+/// wave has the next layer of each of them, so that surfaces can be shaded together.
+template <std::floating_point T, int D>
 class LayerWalk {
 public:
-    using T = typename I::Scalar;
-    using Rays = RayArray<T, I::dimension>;
+    /// The next layer of a ray. What shades a wave writes its opacity, 0 to 1.
+    struct Step {
+        std::size_t ray;  ///< its number in the batch
+        Hit<T> hit;
+        double through;  ///< the share of the light from here that gets through the layers before
+        double opacity = 1;
+    };
 
-    /// `pass(i, ray, hit, through)` takes a layer of ray i into account and returns its opacity.
-    LayerWalk(const I& index, const TransparencyOptions& options, const Filter& filter, const Pass& pass)
-        : index_(index),
-          o_(options),
-          k_(std::clamp<std::size_t>(options.batch, 1, 256)),
-          filter_(filter),
-          pass_(pass) {}
+    explicit LayerWalk(const TransparencyOptions& options)
+        : o_(options), k_(std::clamp<std::size_t>(options.batch, 1, 256)) {}
 
-    /// Follows rays `first` to `last − 1`, front to back.
-    TransparencyCounts follow(const Rays& rays, std::size_t first, std::size_t last) {
-        active_.clear(), rays_.clear(), after_.clear();
+    /// Follows rays `first` to `last − 1` front to back. `find(rays, k, columns, after, number)` finds hits
+    /// as the batch `first_hits` does: number(i) is the number of rays[i] in the batch. `shade(steps)` shades
+    /// a wave. `known` has the first hit of each ray, or is empty.
+    template <class Find, class Shade>
+    TransparencyCounts follow(const RayArray<T, D>& rays, std::size_t first, std::size_t last,
+                              std::span<const Hit<T>> known, const Find& find, const Shade& shade) {
+        active_.clear(), rays_.clear(), after_.clear(), hits_.clear();
         for (std::size_t i = first; i < last; ++i)
             active_.push_back({i, 1.0, false}), rays_.push_back(rays[i]);
         after_.resize(active_.size());
-        hits_.resize(k_ * active_.size()), found_.resize(active_.size());
+        found_.resize(active_.size());
         counts_ = {};
-        while (!active_.empty()) {
-            find_hits();
+        std::size_t k = k_;
+        if (!known.empty()) {
+            k = 1;
+            hits_.assign(known.begin(), known.end());
+            for (std::size_t r = 0; r < hits_.size(); ++r) found_[r] = hits_[r] ? 1 : 0;
+        }
+        for (bool finds = known.empty(); !active_.empty(); finds = true, k = k_) {
+            if (finds) find_hits(find);
+            for (std::size_t j = 0; j < k; ++j) wave(k, j, shade);
             std::size_t left = 0;
             for (std::size_t r = 0; r < active_.size(); ++r)
-                if (goes_on(r)) keep(r, left++);
+                if (found_[r] == k && (!active_[r].ended || o_.counts_saved)) keep(r, k, left++);
             active_.resize(left), rays_.resize(left), after_.resize(left);
         }
         return counts_;
@@ -75,71 +87,81 @@ private:
     struct Active {
         std::size_t ray;  // its number in the batch
         double through;
-        bool ended;  // and now counts what it has saved
+        bool ended;
     };
 
-    void find_hits() {
+    template <class Find>
+    void find_hits(const Find& find) {
         counts_.calls += active_.size();
-        const FirstHitsColumns<T> columns{hits_, found_};
-        if constexpr (std::same_as<Filter, KeepAll>) {
-            first_hits(index_, rays_, k_, columns, after_, serial_executor());
-        } else {
-            const auto filter = [&](std::size_t r, const Hit<T>& hit) {
-                return keeps(filter_, active_[r].ray, hit);
-            };
-            first_hits(index_, rays_, k_, columns, after_, serial_executor(), filter);
-        }
+        hits_.resize(k_ * active_.size());
+        find(RayArray<T, D>(rays_), k_, FirstHitsColumns<T>{hits_, found_},
+             std::span<const AfterHit<T>>(after_), [&](std::size_t r) { return active_[r].ray; });
     }
-    /// Composites the hits that were found of a ray. Returns whether it may have more that matter.
-    bool goes_on(std::size_t r) {
-        Active& active = active_[r];
-        const Hit<T>* const hits = &hits_[k_ * r];
-        for (std::size_t j = 0; j < found_[r]; ++j) {
-            if (active.ended) {
-                ++counts_.saved;
+    /// Shades hit j of each ray that has it and has not ended.
+    template <class Shade>
+    void wave(std::size_t k, std::size_t j, const Shade& shade) {
+        steps_.clear(), places_.clear();
+        for (std::size_t r = 0; r < active_.size(); ++r) {
+            if (j >= found_[r]) continue;
+            if (active_[r].ended) {
+                counts_.saved += o_.counts_saved;
                 continue;
             }
-            ++counts_.layers;
-            const double opacity = pass_(active.ray, rays_[r], hits[j], active.through);
-            active.through *= 1 - opacity;
-            if (!(active.through < static_cast<double>(o_.ends_below))) continue;
-            ++counts_.ended;
-            active.ended = true;
-            if (!o_.counts_saved) return false;
+            steps_.push_back({active_[r].ray, hits_[k * r + j], active_[r].through});
+            places_.push_back(r);
         }
-        return found_[r] == k_;
+        if (steps_.empty()) return;
+        counts_.layers += steps_.size();
+        shade(std::span<Step>(steps_));
+        for (std::size_t i = 0; i < steps_.size(); ++i) {
+            Active& active = active_[places_[i]];
+            active.through *= 1 - steps_[i].opacity;
+            active.ended = active.through < static_cast<double>(o_.ends_below);
+            counts_.ended += active.ended;
+        }
     }
     /// Moves ray r to place `to` among those that go on, after its last hit.
-    void keep(std::size_t r, std::size_t to) {
-        after_[to] = hits_[k_ * r + k_ - 1];
+    void keep(std::size_t r, std::size_t k, std::size_t to) {
+        after_[to] = hits_[k * r + k - 1];
         active_[to] = active_[r];
         rays_[to] = rays_[r];
     }
 
-    const I& index_;
-    const TransparencyOptions& o_;
+    const TransparencyOptions o_;
     const std::size_t k_;
-    const Filter& filter_;
-    const Pass& pass_;
     std::vector<Active> active_;
-    std::vector<RayOf<I>> rays_;
+    std::vector<Ray<T, D>> rays_;
     std::vector<AfterHit<T>> after_;
     std::vector<Hit<T>> hits_;
     std::vector<std::uint32_t> found_;
+    std::vector<Step> steps_;
+    std::vector<std::size_t> places_;  // of the steps' rays among the active
     TransparencyCounts counts_;
 };
 
-/// Follows all rays through layers, in pieces over the executor.
-template <class I, class Filter, class Pass>
+/// Follows all rays through layers, in pieces over the executor. `opacity(i, ray, hit, through)` takes a
+/// layer of ray i into account and returns its opacity.
+template <class I, class Filter, class OpacityOf>
 TransparencyCounts follow_layers(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays,
                                  const TransparencyOptions& options, Threads threads, const Filter& filter,
-                                 const Pass& pass) {
+                                 const OpacityOf& opacity) {
+    using Walk = LayerWalk<typename I::Scalar, I::dimension>;
+    const auto find = [&](const auto& some, std::size_t k, const auto& columns, auto after,
+                          const auto& number) {
+        if constexpr (std::same_as<Filter, KeepAll>)
+            first_hits(index, some, k, columns, after, serial_executor());
+        else
+            first_hits(index, some, k, columns, after, serial_executor(),
+                       [&](std::size_t r, const HitOf<I>& hit) { return keeps(filter, number(r), hit); });
+    };
+    const auto shade = [&](std::span<typename Walk::Step> wave) {
+        for (auto& step : wave) step.opacity = opacity(step.ray, rays[step.ray], step.hit, step.through);
+    };
     TransparencyCounts counts;
     std::mutex adding;
     executor_for<Filter>(threads, rays.size())
         .for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
-            const auto more =
-                LayerWalk<I, Filter, Pass>(index, options, filter, pass).follow(rays, begin, end);
+            const auto more = Walk(options).follow(rays, begin, end, {}, find, shade);
             const std::lock_guard lock(adding);
             counts += more;
         });

@@ -5,7 +5,8 @@
 /// is behind it. Front to back, C += T·a·c and T *= 1 − a, where T is what gets through the layers so far; so
 /// a ray may end where hardly anything does. Hits come in batches by first_hits (Gribble, Naveros and
 /// Kerzner, JCGT 3(1), 2014). Sums are in double, so both orders agree to 10⁻⁵ for thousands of layers.
-/// Refraction and absorption between surfaces are left out: a layer has no thickness.
+/// Refraction and absorption between surfaces are left out: a layer has no thickness. A ray through the
+/// common edge of two triangles hits both, and both count.
 #pragma once
 
 #include <algorithm>
@@ -74,14 +75,14 @@ TransparencyCounts composite_front_to_back(const I& index,
     detail::expect_room("rays", rays.size(), composites.size());
     std::vector<Vec3d> colours(rays.size());
     std::vector<double> through(rays.size(), 1.0);
-    const auto pass = [&](std::size_t i, const RayOf<I>& ray, const HitOf<I>& hit, double before) {
+    const auto opacity_of = [&](std::size_t i, const RayOf<I>& ray, const HitOf<I>& hit, double before) {
         const Layer here = layer(ray, hit);
         const double opacity = detail::checked_opacity(here.opacity, hit);
         colours[i] = colours[i] + detail::weighted(here.colour, before * opacity);
         through[i] = before * (1 - opacity);
         return opacity;
     };
-    const auto counts = detail::follow_layers(index, rays, options, threads, filter, pass);
+    const auto counts = detail::follow_layers(index, rays, options, threads, filter, opacity_of);
     for (std::size_t i = 0; i < rays.size(); ++i)
         composites[i] = {Vec3f(colours[i]), static_cast<float>(through[i])};
     return counts;
@@ -136,12 +137,12 @@ TransparencyCounts transmittances(const I& index, const RayArray<typename I::Sca
                                   const Filter& filter = {}) {
     detail::expect_room("rays", rays.size(), through.size());
     std::fill_n(through.begin(), rays.size(), 1.0f);
-    const auto pass = [&](std::size_t i, const RayOf<I>& ray, const HitOf<I>& hit, double before) {
+    const auto opacity_of = [&](std::size_t i, const RayOf<I>& ray, const HitOf<I>& hit, double before) {
         const double a = detail::checked_opacity(opacity(ray, hit), hit);
         through[i] = static_cast<float>(before * (1 - a));
         return a;
     };
-    return detail::follow_layers(index, rays, options, threads, filter, pass);
+    return detail::follow_layers(index, rays, options, threads, filter, opacity_of);
 }
 
 /// The opacity that a mask makes of an opacity: nothing below the cutoff, everything else opaque.

@@ -8,6 +8,7 @@
 #include <hedgerow/base/bare_vector.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/queries/hit.h>
+#include <hedgerow/render/shading/layer_walk.h>
 #include <hedgerow/render/visibility/samples.h>
 #include <hedgerow/walks/kernel.h>
 #include <hedgerow/walks/visits.h>
@@ -47,15 +48,16 @@ struct BeamCounts {
 
 /// What making a picture took.
 struct PictureCosts {
-    std::uint64_t rays = 0;  ///< cast, those to the light included
-    Visits visits;           ///< 0 unless counted
-    KernelUse use;           ///< which algorithms answered; no kernel if visits are counted
-    RasterCounts drawn;      ///< what rasterising took
-    BeamCounts beams;        ///< what beams took
+    std::uint64_t rays = 0;     ///< cast, those to the light included
+    Visits visits;              ///< 0 unless counted
+    KernelUse use;              ///< which algorithms answered; no kernel if visits are counted
+    RasterCounts drawn;         ///< what rasterising took
+    BeamCounts beams;           ///< what beams took
+    TransparencyCounts layers;  ///< that rays from the eye went through, where surfaces may be transparent
 
     PictureCosts& operator+=(const PictureCosts& more) {
         rays += more.rays, visits += more.visits, use += more.use, drawn += more.drawn;
-        beams += more.beams;
+        beams += more.beams, layers += more.layers;
         return *this;
     }
 };

@@ -1,0 +1,57 @@
+/// What the parts of the verb `render` share: its arguments, the options of the picture, and the report.
+#pragma once
+
+#include <hedgerow/render/render.h>
+
+#include "common.h"
+#include "upright.h"
+#include "view.h"
+
+namespace hedgerow::cli {
+
+struct RenderArguments : Common {
+    std::string structure = "wide", shading = "diffuse", visibility = "cast";
+    ViewArguments view;
+    int spp = 1;
+    unsigned threads = 0;
+    std::uint64_t steps_max = 0;
+    int camera = -1;    // of the file
+    float opacity = 1;  // of all surfaces, times that of their looks
+    bool transparent = false, sheet = false;
+    bool counts = false, layers = false;  // layers: whether the output is .exr
+
+    bool rasterises() const { return visibility == "raster"; }
+    bool uses_beams() const { return visibility == "beams"; }
+    /// Whether the picture needs an index: for its rays from the eye, through surfaces, or to the light.
+    bool needs_index() const { return !rasterises() || transparent || is_lit(parse_shading(shading)); }
+};
+
+struct Outcome {
+    Picture picture;
+    std::size_t primitives = 0, bytes = 0;
+    Upright upright{2, ""};
+    Vec3f up;
+    FinishedPicture finished;
+    bool indexed = false, loaded = false;  // whether there is an index, and whether it was loaded, not built
+    bool counted = false;                  // visits of rays were counted
+    double build_seconds = 0, seconds = 0;
+};
+
+/// The picture's options, with the camera placed by the bounds of the scene.
+RenderOptions options_of(const RenderArguments& a, const Box3f& bounds, const Upright& upright);
+
+/// Saves the picture, and prints what it took, as text or JSON. After an interruption the finished rows are
+/// saved. Returns the exit code.
+int save_and_report(const RenderArguments& a, Outcome o);
+/// Makes the picture, saves it and reports.
+template <class T>
+int finish(const RenderArguments& a, const PictureParts<T>& parts, const RenderOptions& options, Outcome o,
+           const Progress& progress) {
+    o.counted = options.counted(), o.up = options.camera.up;
+    const double start = now();
+    o.picture = render(parts, options, default_executor(), progress);
+    o.seconds = now() - start;
+    return save_and_report(a, std::move(o));
+}
+
+}  // namespace hedgerow::cli
