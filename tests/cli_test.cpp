@@ -232,6 +232,25 @@ TEST_F(Cli, LightGoesThroughSurfaces) {
     expect_usage(scene + file("x.png") + " --opacity 0.5 --shading steps", "what rays cost");
 }
 
+TEST_F(Cli, ConesSmoothEdgesAndShadows) {
+    const std::string scene = "render gen:cornell-box --size 64x64 -o ";
+    ASSERT_EQ(run(scene + file("rays.png")).code, 0);
+    const auto cones = run(scene + file("cones.png") + " --cones --json");
+    ASSERT_EQ(cones.code, 0);
+    EXPECT_EQ(nlohmann::json::parse(cones.output)["cones"].get<int>(), 64 * 64);
+    ASSERT_EQ(run(scene + file("soft.png") + " --light-size 5 --visibility raster").code, 0);
+    const auto rays = bytes_of(file("rays.png"));
+    EXPECT_NE(bytes_of(file("cones.png")), rays);
+    EXPECT_NE(bytes_of(file("soft.png")), rays);
+    for (const char* options : {"--spp 4", "--visibility raster", "--structure bvh", "--shading steps",
+                                "--shading colour", "--opacity 0.5", "--counts"})
+        expect_usage(scene + file("x.png") + " --cones " + options, "cones");
+    expect_usage(scene + file("x.png") + " --light-size 5 --shading colour", "--light-size");
+    expect_usage(scene + file("x.png") + " --light-size 100", "--light-size");
+    expect_bad("render gen:points --cones -o " + file("x.png"), "triangles alone");
+    expect_bad(scene + file("x.png") + " --cones --projection panorama", "panorama");
+}
+
 TEST_F(Cli, ASheetShowsEveryShading) {
     const std::string scene = "render gen:cornell-box --quiet -o " + file("sheet.png") + " --sheet";
     ASSERT_EQ(run(scene + " --size 50x40 --structure kdtree").code, 0);

@@ -46,11 +46,13 @@ int render(const RenderArguments& a, const AnyIndex<T, 3>* index, const P& primi
     ProgressLine line("rendering", a.quiet, "rows");
     return finish(a, PictureParts<T>{*visibility, surfaces, asked}, options, std::move(o), line.progress());
 }
-/// Renders triangles by beams through the engine's index. Returns the exit code.
+/// Renders triangles by beams or cones through the engine's index. Returns the exit code.
 template <class T, class P>
-int render_by_beams(const RenderArguments& a, const P& primitives) {
+int render_by_engine(const RenderArguments& a, const P& primitives) {
     if constexpr (!std::same_as<ViewOf<P>, TriangleMeshView<T>>) {
-        throw InputError(a.scene + ": beams go through triangles alone; use --visibility cast");
+        throw InputError(a.scene + (a.uses_beams()
+                                        ? ": beams go through triangles alone; use --visibility cast"
+                                        : ": cones see triangles alone; leave out --cones and --light-size"));
     } else {
         Outcome o;
         const double start = now();
@@ -64,11 +66,15 @@ int render_by_beams(const RenderArguments& a, const P& primitives) {
         o.upright = upright_of(a.view, a, primitives);
         const IndexTracer<MeshIndex<T>> tracer(index);
         const SurfacesOf<P> surfaces(primitives);
+        const IndexCones<MeshIndex<T>> cones(index);
         BeamTracing<MeshIndex<T>> beams(index);
+        const auto other = a.uses_beams() ? nullptr : visibility_of<T>(a, primitives, &tracer);
+        Visibility<T>& visibility = other ? *other : beams;
         const auto& box = index.bounds();
         const RenderOptions options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, o.upright);
         ProgressLine line("rendering", a.quiet, "rows");
-        return finish(a, PictureParts<T>{beams, surfaces, &tracer}, options, std::move(o), line.progress());
+        return finish(a, PictureParts<T>{visibility, surfaces, &tracer, nullptr, &cones}, options,
+                      std::move(o), line.progress());
     }
 }
 /// Renders the triangles of a file without loading them all.
@@ -93,7 +99,7 @@ template <class P>
 int render(const RenderArguments& a, const P& primitives) {
     using T = typename P::Scalar;
     const ThreadLimit limit(a.threads);
-    if (a.uses_beams()) return render_by_beams<T>(a, primitives);
+    if (a.uses_beams() || a.uses_cones()) return render_by_engine<T>(a, primitives);
     Outcome o;
     if (!a.needs_index()) return render<T>(a, nullptr, primitives, std::move(o));
     const double start = now();
@@ -130,6 +136,21 @@ int render(const RenderArguments& a, const SegmentSet<T>&) {
     throw InputError(a.scene + ": only what lies in space can be rendered, and this is flat");
 }
 
+/// Throws UsageError for options that cones do not go with.
+void check_cones(const RenderArguments& a, bool by_looks) {
+    const std::string name = a.cones ? "--cones" : "--light-size";
+    if (a.structure != "wide")
+        throw UsageError("--structure " + a.structure + ": cones go through 'wide' alone");
+    if (by_looks) throw UsageError(name + ": cones see no looks; choose --shading normals, depth or diffuse");
+    if (a.transparent) throw UsageError(name + ": cones do not see through surfaces; leave out --opacity");
+    if (!a.cones) return;
+    if (a.visibility != "cast")
+        throw UsageError("--cones: leave out --visibility, since cones find what is visible");
+    if (a.spp > 1) throw UsageError("--cones: leave out --spp, since a cone sees all of a pixel");
+    if (counted(parse_shading(a.shading)) || a.counts)
+        throw UsageError("--cones: leave out --shading steps and --counts, which show what rays cost");
+}
+
 }  // namespace
 
 Run add_render(CLI::App& verb) {
@@ -154,6 +175,10 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--opacity", a->opacity,
                     "of all surfaces, times that of their looks; below 1 light goes through")
         ->check(CLI::Range(0.0, 1.0));
+    verb.add_flag("--cones", a->cones, "a cone for each pixel, in place of --spp: smooth edges of triangles");
+    verb.add_option("--light-size", a->light_degrees,
+                    "the light's diameter in degrees (the sun's is 0.53): shadows have soft edges")
+        ->check(CLI::Range(0.0, 89.0));
     verb.add_flag("--sheet", a->sheet, "every shading side by side, on one .png of three times two pictures");
     verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
     verb.add_flag("--counts", a->counts,
@@ -190,11 +215,12 @@ Run add_render(CLI::App& verb) {
             throw UsageError("--shading " + a->shading +
                              " shows what rays cost, which end at the first hit; leave out "
                              "--transparency and --opacity");
+        if (a->uses_cones()) check_cones(*a, by_looks);
         if (a->camera >= 0 && !by_looks)
             throw UsageError("--camera is of files with looks: it needs --shading colour");
         return in_precision(*a, [&]<class T>(T) {
             if (by_looks) return render_looks<T>(*a);
-            if (saved && a->structure == "wide" && !a->uses_beams() &&
+            if (saved && a->structure == "wide" && !a->uses_beams() && !a->uses_cones() &&
                 !index_file_info(a->scene).holds_points)
                 return render_saved<T>(*a);
             if (!a->needs_index() && !a->drop_bad && !a->scene.starts_with("gen:") && can_stream(a->scene))

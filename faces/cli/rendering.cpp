@@ -35,6 +35,7 @@ void report(const RenderArguments& a, const Outcome& o) {
             j["leaves_per_ray"] = a_ray(costs.visits.leaves);
             j["primitives_per_ray"] = a_ray(costs.visits.primitives);
         }
+        if (a.uses_cones()) j["cones"] = costs.cones;
         if (a.transparent) j["layers"] = costs.layers.layers, j["samples_ended"] = costs.layers.ended;
         if (a.uses_beams()) {
             j["beams"] = costs.beams.beams;
@@ -63,8 +64,10 @@ void report(const RenderArguments& a, const Outcome& o) {
         if (a.rasterises())
             fmt::print("{} triangles drawn, {} of them outside of the picture; ", costs.drawn.triangles,
                        costs.drawn.outside);
+        if (a.uses_cones()) fmt::print("{} cones and ", costs.cones);
         fmt::print("{} rays in {:.3f} s", costs.rays, o.seconds);
-        if (costs.rays > 0) fmt::print(": {:.3f} million a second", rays / o.seconds * 1e-6);
+        if (costs.rays > 0 && !a.uses_cones())
+            fmt::print(": {:.3f} million a second", rays / o.seconds * 1e-6);
         if (costs.use.packets + costs.use.phased > 0) fmt::print("; {}", most_used(costs.use, costs.rays));
         if (o.counted)
             fmt::print("; a ray visits {:.1f} nodes, {:.1f} leaves, {:.1f} primitives",
@@ -88,6 +91,7 @@ RenderOptions options_of(const RenderArguments& a, const Box3f& bounds, const Up
     options.samples = a.spp, options.seed = a.seed, options.scale.top = a.steps_max;
     options.shading = parse_shading(a.shading);
     options.layers = a.layers, options.counts = a.counts;
+    options.cones = a.cones, options.light_degrees = a.light_degrees;
     options.transparent = a.transparent, options.opacity = a.opacity;
     options.camera = camera_of(a.view, a, bounds, upright);
     return options;

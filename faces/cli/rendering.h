@@ -18,10 +18,13 @@ struct RenderArguments : Common {
     int camera = -1;    // of the file
     float opacity = 1;  // of all surfaces, times that of their looks
     bool transparent = false, sheet = false;
+    bool cones = false;                   // in place of samples
+    float light_degrees = 0;              // the diameter of the light
     bool counts = false, layers = false;  // layers: whether the output is .exr
 
     bool rasterises() const { return visibility == "raster"; }
     bool uses_beams() const { return visibility == "beams"; }
+    bool uses_cones() const { return cones || light_degrees > 0; }
     /// Whether the picture needs an index: for its rays from the eye, through surfaces, or to the light.
     bool needs_index() const { return !rasterises() || transparent || is_lit(parse_shading(shading)); }
 };

@@ -3,7 +3,9 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <mutex>
+#include <numbers>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/render/shading/transparency.h>
@@ -28,6 +30,19 @@ void check(const PictureParts<T>& parts, const RenderOptions& o) {
         throw InputError("this shading shows what a model looks like: give its appearances");
     if (parts.tracer == nullptr && (is_lit(o.shading) || o.shading == Shading::time))
         throw InputError("this shading casts rays: give a tracer, or shade by normals or depth");
+    if (!(o.light_degrees >= 0 && o.light_degrees < 90))
+        throw InputError("the diameter of the light must be 0 to 90 degrees");
+    const bool soft = is_lit(o.shading) && o.light_degrees > 0;
+    if ((o.cones || soft) && parts.cones == nullptr)
+        throw InputError("smooth edges and soft shadows take cones: give what answers them");
+    if ((o.cones || soft) && o.transparent) throw InputError("cones do not see through transparent surfaces");
+    if ((o.cones || soft) && parts.appearances != nullptr && parts.appearances->has_masks())
+        throw InputError("cones do not see through masks of opacity");
+    if (o.cones && counted(o.shading)) throw InputError("this shading shows what rays cost, not cones");
+    if (o.cones && o.samples > 1) throw InputError("a cone sees all of a pixel: take one sample");
+    if (o.cones && !PictureSamples<T>(o.camera, o.width, o.height).has_plane())
+        throw InputError(
+            "cones see by perspective and by parallel rays, not through a lens or in a panorama");
     if (!o.transparent) return;
     if (!(o.opacity >= 0 && o.opacity <= 1)) throw InputError("the opacity of surfaces must be 0 to 1");
     if (counted(o.shading)) throw InputError("this shading shows what rays cost, which end at the first hit");
@@ -117,6 +132,10 @@ private:
 
     /// Adds samples to the pixels of a tile. Returns false if that was cancelled.
     bool add(const PixelBox& tile, int first, int last, PictureCosts& costs, const Progress& progress) {
+        if (o_.cones) {
+            add_cones(tile, costs);
+            return true;
+        }
         OfTile<Visits> visits{};
         Looks looks;
         if (by_looks()) looks.appearances.resize(tile.size());
@@ -161,13 +180,49 @@ private:
             find_light(looks, costs);
             for (std::size_t i = 0; i < looks.size; ++i) add_light(looks.pixels[i], looks.light[i]);
         }
-        for (std::size_t i = 0; i < looks.size && o_.layers && sample == 0; ++i) {
+        if (o_.layers && sample == 0) store_seen(looks);
+    }
+    /// Stores the layers of hits.
+    void store_seen(const Looks& looks) {
+        for (std::size_t i = 0; i < looks.size; ++i) {
             const Hit<T>& hit = looks.hits[i];
             if (!hit) continue;
             Seen& seen = film_.seen(looks.pixels[i]);
             seen.depth = static_cast<float>(hit.t);  // directions have length 1
             seen.normal = Vec3f(parts_.surfaces.normal(looks.rays[i], hit));
             seen.id = hit.primitive;
+        }
+    }
+    /// Adds what cones see of the pixels of a tile, in waves: each has the next fragment of every cone.
+    void add_cones(const PixelBox& tile, PictureCosts& costs) {
+        const PictureSamples<T> rays = samples(0);
+        OfTile<std::vector<SeenFragment<T>>> seen;
+        OfTile<std::size_t> pixels;
+        std::size_t size = 0, waves = 0;
+        for (int y = tile.top; y <= tile.bottom; ++y)
+            for (int x = tile.left; x <= tile.right; ++x, ++size) {
+                parts_.cones->look(cone_of_pixel(rays, x, y), seen[size]);
+                pixels[size] = film_.pixel(x, y);
+                waves = std::max(waves, seen[size].size());
+                float open = 1;
+                for (const auto& fragment : seen[size]) open -= fragment.share;
+                add_light(pixels[size], shading_.background() * open);
+            }
+        costs.cones += size;
+        Looks wave;
+        if (by_looks()) wave.appearances.resize(size);
+        for (std::size_t j = 0; j < waves; ++j) {
+            OfTile<float> shares;
+            wave.size = 0;
+            for (std::size_t i = 0; i < size; ++i) {
+                if (j >= seen[i].size()) continue;
+                const std::size_t n = wave.size++;
+                wave.rays[n] = seen[i][j].ray, wave.hits[n] = seen[i][j].hit;
+                wave.pixels[n] = pixels[i], shares[n] = seen[i][j].share;
+            }
+            find_light(wave, costs);
+            for (std::size_t n = 0; n < wave.size; ++n) add_light(wave.pixels[n], wave.light[n] * shares[n]);
+            if (o_.layers && j == 0) store_seen(wave);
         }
     }
     void add_light(std::size_t pixel, const Vec3f& light) { film_.light(pixel) = film_.light(pixel) + light; }
@@ -284,6 +339,14 @@ private:
     /// The share of the light that comes through along each ray. The rays are cast in one batch.
     OfTile<float> let_through(std::span<const Ray<T, 3>> rays, PictureCosts& costs) {
         OfTile<float> open;
+        if (o_.light_degrees > 0) {
+            const auto slope =
+                static_cast<T>(std::tan(double(o_.light_degrees) / 2 * std::numbers::pi / 180));
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                open[i] = parts_.cones->open({rays[i], T(0), slope});
+            costs.cones += rays.size();
+            return open;
+        }
         costs.rays += rays.size();
         if (o_.transparent) {
             OfTile<Hit<T>> first;

@@ -1,13 +1,17 @@
 /// The program that scripts/cross runs on this processor and, emulated, on others. It compares the engine
 /// and the rasteriser with brute force for every instruction set that is available, and prints hashes of the
 /// bits of all hits and pairs. The hashes must be the same on every processor.
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdio>
 #include <memory>
 
 #include <hedgerow/ask.h>
+#include <hedgerow/ask/families.h>
 #include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
@@ -76,7 +80,7 @@ bool agrees(const char* name, const TriangleMesh<float>& mesh, std::size_t count
     return true;
 }
 
-/// Whether the rasteriser sees, with every instruction set, what the rays of a picture do.
+/// Whether the rasteriser and beams see, with every instruction set, what the rays of a picture do.
 bool draws(const char* name, const TriangleMesh<float>& mesh) {
     const auto index = build<WideBvh>(mesh);
     const PictureSamples<float> samples(automatic_camera(index.bounds()), 90, 50);
@@ -86,9 +90,34 @@ bool draws(const char* name, const TriangleMesh<float>& mesh) {
     for (const auto set : instruction_sets()) {
         use_instruction_set(set);
         Rasteriser<float>(samples).draw(mesh.view(), got, serial_executor());
-        if (got == want) continue;
-        std::printf("%s, drawn: differs with %s\n", name, std::string(set).c_str());
+        const bool drawn = got == want;
+        beam_hits(index, samples, got, serial_executor());
+        if (drawn && got == want) continue;
+        std::printf("%s, %s: differs with %s\n", name, drawn ? "by beams" : "drawn",
+                    std::string(set).c_str());
         return false;
+    }
+    return true;
+}
+/// Whether lists of first hits, and what cones see, are those of brute force with every instruction set.
+bool lists_agree(const char* name, const TriangleMesh<float>& mesh, std::size_t count) {
+    const auto brute = build<BruteForce>(mesh);
+    const auto index = build<WideBvh>(mesh);
+    for (const auto& ray : rays_through(brute.bounds(), mesh, count)) {
+        std::array<Hit<float>, 4> want, got;
+        const std::size_t hits = first_hits(brute, ray, want);
+        const ConeRays<float, 3> cone(ray, 0, 0.05f);
+        std::vector<ConeFragment<float>> seen, found;
+        cone_fragments(brute, cone, seen);
+        for (const auto set : instruction_sets()) {
+            use_instruction_set(set);
+            cone_fragments(index, cone, found);
+            if (first_hits(index, ray, got) == hits &&
+                std::equal(got.begin(), got.begin() + hits, want.begin()) && found == seen)
+                continue;
+            std::printf("%s: first hits or a cone differ with %s\n", name, std::string(set).c_str());
+            return false;
+        }
     }
     return true;
 }
@@ -123,6 +152,8 @@ int main() {
     const bool good =
         agrees("soup", soup<float>(300), 6400) && agrees("stadium", teapot_in_stadium<float>(1000), 3200) &&
         agrees("hairball", hairball<float>(1000), 3200) && agrees("terrain", terrain<float>(1000), 3200) &&
-        draws("soup", soup<float>(300)) && draws("hairball", hairball<float>(1000)) && pairs_agree(2000);
+        draws("soup", soup<float>(300)) && draws("hairball", hairball<float>(1000)) &&
+        lists_agree("soup", soup<float>(300), 600) && lists_agree("hairball", hairball<float>(1000), 300) &&
+        pairs_agree(2000);
     return good ? 0 : 1;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/engine/cone_kernels.h>
 #include <hedgerow/queries/candidates.h>
 #include <hedgerow/queries/cone_fragments.h>
 

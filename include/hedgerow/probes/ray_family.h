@@ -138,11 +138,13 @@ public:
         }
     }
 
-private:
     /// How far origins and directions reach along a normal. Origins are moved outward by the slack.
     struct Along {
         Extent origin, direction;
     };
+    const Along& along_axis(int k) const { return axes_[k]; }
+
+private:
     Along along(const Vec<double, D>& normal) const {
         Along a{rays_.origins(normal), rays_.directions(normal)};
         const double wider = product(slack_, dot(abs(normal), Vec<double, D>::all(1)));

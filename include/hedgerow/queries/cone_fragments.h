@@ -19,7 +19,7 @@ namespace hedgerow {
 /// net has 64.
 struct ConeSamples {
     static constexpr int count = 64;
-    std::array<double, count> x, y;
+    alignas(64) std::array<double, count> x, y;
 
     /// Point i of the net.
     static constexpr Vec2d in_square(int i) {
@@ -58,61 +58,13 @@ struct ConeFragment {
     double coverage() const { return std::popcount(samples) / double(ConeSamples::count); }
 };
 
-/// Collects fragments in the caller's vector, which is cleared: ascending by (depth, element). A sample is a
-/// ray from the apex's disc to the cross section, and belongs to the triangle that it hits first, with equal
-/// depths to the lowest element; one on a common edge hits both triangles. All is computed in double, so that
-/// the samples do not leak at edges, but may differ from `closest_hit` where rounding decides. Once all
-/// samples have a triangle, what begins beyond the farthest of them is passed over. Needs a set of triangles.
+/// The edges and the plane of triangles as functions of a cone's samples.
 ///
 /// The ray of sample w starts at o + r·w and goes along a + s·w, where r is the cone's radius, s its slope, a
 /// its axis. So the function of an edge from B to C, the triple product of the ray's direction and of both
 /// corners from its origin, is linear in w, as is the height of the origin over the triangle's plane.
-template <class Set>
-class ConeFragments {
+class ConeFrame {
 public:
-    using Scalar = typename Set::Scalar;
-    using T = Scalar;
-    using Probe = ConeProbe<T, 3>;
-    static constexpr Order order = Order::nearest;
-    static constexpr int count = ConeSamples::count;
-
-    template <class Index>
-    ConeFragments(const Index& index, const ConeRays<T, 3>& cone, std::vector<ConeFragment<T>>& found)
-        : probe_(cone, index.bounds()), set_(index.primitives()), found_(found) {
-        found_.clear();
-        const Vec3d& a = cone.axis();
-        Vec3d beside;
-        beside[std::abs(a[0]) < 0.5 ? 0 : 1] = 1;
-        across_[0] = normalized(cross(a, beside));
-        across_[1] = cross(a, across_[0]);
-        depth_.fill(std::numeric_limits<double>::infinity());
-        element_.fill(no_primitive);
-    }
-
-    const Probe& probe() const { return probe_; }
-    T limit() const { return limit_; }
-    Flow offer(const FamilyCandidate<T>& c) {
-        const auto triangle = set_.triangle(c.element);
-        const Vec3d o = probe_.rays().origin();
-        take(Vec3d(triangle.a) - o, Vec3d(triangle.b) - o, Vec3d(triangle.c) - o, c.element);
-        return Flow::go_on;
-    }
-    std::size_t answer() {
-        for (std::size_t i = 0; i < count; ++i) {
-            if (element_[i] == no_primitive) continue;
-            const auto same = [&](const auto& f) { return f.element == element_[i]; };
-            auto it = std::find_if(found_.begin(), found_.end(), same);
-            if (it == found_.end()) it = found_.insert(it, {static_cast<T>(depth_[i]), element_[i], 0});
-            it->depth = std::min(it->depth, static_cast<T>(depth_[i]));
-            it->samples |= std::uint64_t(1) << i;
-        }
-        std::sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
-            return a.depth != b.depth ? a.depth < b.depth : a.element < b.element;
-        });
-        return found_.size();
-    }
-
-private:
     /// A function that is linear in the sample.
     struct Linear {
         double constant, x, y;
@@ -123,51 +75,161 @@ private:
         }
         Linear operator-() const { return {-constant, -x, -y}; }
     };
-    /// The function of the edge from b to c.
-    Linear edge(const Vec3d& b, const Vec3d& c) const {
-        const auto& rays = probe_.rays();
-        const Vec3d normal = cross(b, c), along = c - b;
-        return {
-            dot(rays.axis(), normal),
-            product(rays.slope(), dot(across_[0], normal)) - product(rays.radius(), dot(across_[1], along)),
-            product(rays.slope(), dot(across_[1], normal)) + product(rays.radius(), dot(across_[0], along))};
-    }
-    /// Tests a triangle, given from the apex, at all samples.
-    void take(const Vec3d& a, const Vec3d& b, const Vec3d& c, PrimitiveId element) {
-        const auto& samples = ConeSamples::all();
-        const Linear u = edge(b, c), v = edge(c, a), w = edge(a, b);
-        // Functions of opposite signs in all of the disc: no sample is covered.
-        const bool above = u.surely_above() || v.surely_above() || w.surely_above(),
-                   below = (-u).surely_above() || (-v).surely_above() || (-w).surely_above();
-        if (above && below) return;
-        const Vec3d normal = cross(b - a, c - a);
-        const double radius = probe_.rays().radius();
-        const Linear height{dot(normal, a), -product(radius, dot(normal, across_[0])),
-                            -product(radius, dot(normal, across_[1]))};
-        const Interval<double> depths = probe_.rays().depths();
-        for (std::size_t i = 0; i < count; ++i) {
-            const double x = samples.x[i], y = samples.y[i];
-            const double eu = u.at(x, y), ev = v.at(x, y), ew = w.at(x, y), sum = eu + ev + ew;
-            const bool one_sign = (eu >= 0 && ev >= 0 && ew >= 0) || (eu <= 0 && ev <= 0 && ew <= 0);
-            if (!one_sign || sum == 0) continue;
-            const double depth = height.at(x, y) / sum;
-            if (!(depth >= depths.entry && depth <= depths.exit)) continue;
-            if (depth > depth_[i] || (depth == depth_[i] && element > element_[i])) continue;
-            depth_[i] = depth, element_[i] = element;
+    /// The functions of a triangle: of its edges, and of the height of the origin over its plane. A sample's
+    /// ray hits the triangle if the edges have one sign, at the depth height / (u + v + w).
+    struct Triangle {
+        Linear u, v, w, height;
+
+        /// Whether two edges have opposite signs in all of the disc, so that no sample hits.
+        bool misses() const {
+            const bool above = u.surely_above() || v.surely_above() || w.surely_above(),
+                       below = (-u).surely_above() || (-v).surely_above() || (-w).surely_above();
+            return above && below;
         }
-        // No farther than the farthest sample, rounded up by more than depths err by.
-        const double farthest = *std::max_element(depth_.begin(), depth_.end());
-        const double most = static_cast<double>(std::numeric_limits<T>::max());
-        limit_ = farthest < most ? static_cast<T>(farthest * (1 + 0x1p-18)) : limit_;
+    };
+
+    template <std::floating_point T>
+    explicit ConeFrame(const ConeRays<T, 3>& cone)
+        : axis_(cone.axis()), radius_(cone.radius()), slope_(cone.slope()) {
+        Vec3d beside;
+        beside[std::abs(axis_[0]) < 0.5 ? 0 : 1] = 1;
+        across_[0] = normalized(cross(axis_, beside));
+        across_[1] = cross(axis_, across_[0]);
     }
 
+    /// The functions of a triangle that is given from the apex.
+    Triangle triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+        const Vec3d normal = cross(b - a, c - a);
+        return {edge(b, c),
+                edge(c, a),
+                edge(a, b),
+                {dot(normal, a), -product(radius_, dot(normal, across_[0])),
+                 -product(radius_, dot(normal, across_[1]))}};
+    }
+
+    /// The ray of a sample, or of any place in the disc, where its direction has length 1 along the axis.
+    Ray<double, 3> ray(const Vec3d& apex, double x, double y) const {
+        const Vec3d w = across_[0] * x + across_[1] * y;
+        return {apex + w * radius_, axis_ + w * slope_};
+    }
+
+private:
+    Linear edge(const Vec3d& b, const Vec3d& c) const {
+        const Vec3d normal = cross(b, c), along = c - b;
+        return {dot(axis_, normal),
+                product(slope_, dot(across_[0], normal)) - product(radius_, dot(across_[1], along)),
+                product(slope_, dot(across_[1], normal)) + product(radius_, dot(across_[0], along))};
+    }
+
+    Vec3d axis_, across_[2];
+    double radius_, slope_;
+};
+
+/// What the samples of a cone see so far: the nearest triangle at each, and its depth, which is infinite
+/// where there is none. All is computed in double, so that samples do not leak at edges.
+struct ConeView {
+    static constexpr int count = ConeSamples::count;
+    alignas(64) std::array<double, count> depth;
+    std::array<std::uint64_t, count> element;
+
+    ConeView() { depth.fill(std::numeric_limits<double>::infinity()), element.fill(no_primitive); }
+
+    /// Takes a triangle at the samples that hit it between two depths, and nothing nearer or, at the same
+    /// depth, with a lower ordinal.
+    void take(const ConeFrame::Triangle& t, const Interval<double>& depths, PrimitiveId id) {
+        const auto& samples = ConeSamples::all();
+        for (std::size_t i = 0; i < count; ++i) {
+            const double x = samples.x[i], y = samples.y[i];
+            const double eu = t.u.at(x, y), ev = t.v.at(x, y), ew = t.w.at(x, y), sum = eu + ev + ew;
+            const bool one_sign = (eu >= 0 && ev >= 0 && ew >= 0) || (eu <= 0 && ev <= 0 && ew <= 0);
+            if (!one_sign || sum == 0) continue;
+            const double here = t.height.at(x, y) / sum;
+            if (!(here >= depths.entry && here <= depths.exit)) continue;
+            if (here > depth[i] || (here == depth[i] && id > element[i])) continue;
+            depth[i] = here, element[i] = id;
+        }
+    }
+    /// The depth beyond which nothing is seen if `farthest` is the greatest depth of a sample: rounded up by
+    /// more than depths err by.
+    template <std::floating_point T>
+    static T limit(double farthest) {
+        const double limit = farthest * (1 + 0x1p-18);
+        return limit < static_cast<double>(std::numeric_limits<T>::max()) ? static_cast<T>(limit)
+                                                                          : std::numeric_limits<T>::max();
+    }
+    /// The samples that see a triangle, and its least depth there.
+    struct Share {
+        std::uint64_t samples;
+        double nearest;
+    };
+    Share share(std::uint64_t id) const {
+        Share share{0, std::numeric_limits<double>::infinity()};
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool same = element[i] == id;
+            share.samples |= std::uint64_t(same) << i;
+            share.nearest = same ? std::min(share.nearest, depth[i]) : share.nearest;
+        }
+        return share;
+    }
+    /// Writes the fragments to a vector, which is cleared: ascending by (depth, element). Returns how many
+    /// there are. share_of(view, id) is `share(id)`.
+    template <std::floating_point T, class ShareOf>
+    std::size_t write(std::vector<ConeFragment<T>>& found, ShareOf share_of) const {
+        found.clear();
+        std::uint64_t left = ~share_of(*this, no_primitive).samples;
+        while (left != 0) {
+            const auto id = element[static_cast<std::size_t>(std::countr_zero(left))];
+            const auto [samples, nearest] = share_of(*this, id);
+            found.push_back({static_cast<T>(nearest), static_cast<PrimitiveId>(id), samples});
+            left &= ~samples;
+        }
+        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+            return a.depth != b.depth ? a.depth < b.depth : a.element < b.element;
+        });
+        return found.size();
+    }
+};
+
+/// Collects fragments in the caller's vector, which is cleared: ascending by (depth, element). A sample is a
+/// ray from the apex's disc to the cross section, and belongs to the triangle that it hits first, with equal
+/// depths to the lowest element; one on a common edge hits both triangles. It may differ from `closest_hit`
+/// where rounding decides. Once all samples have a triangle, what begins beyond the farthest of them is
+/// passed over. Needs a set of triangles.
+template <class Set>
+class ConeFragments {
+public:
+    using Scalar = typename Set::Scalar;
+    using T = Scalar;
+    using Probe = ConeProbe<T, 3>;
+    static constexpr Order order = Order::nearest;
+
+    template <class Index>
+    ConeFragments(const Index& index, const ConeRays<T, 3>& cone, std::vector<ConeFragment<T>>& found)
+        : probe_(cone, index.bounds()), frame_(cone), set_(index.primitives()), found_(found) {}
+
+    const Probe& probe() const { return probe_; }
+    T limit() const { return limit_; }
+    Flow offer(const FamilyCandidate<T>& c) {
+        const auto triangle = set_.triangle(c.element);
+        const Vec3d o = probe_.rays().origin();
+        const auto functions =
+            frame_.triangle(Vec3d(triangle.a) - o, Vec3d(triangle.b) - o, Vec3d(triangle.c) - o);
+        if (functions.misses()) return Flow::go_on;
+        view_.take(functions, probe_.rays().depths(), c.element);
+        limit_ = ConeView::limit<T>(*std::max_element(view_.depth.begin(), view_.depth.end()));
+        return Flow::go_on;
+    }
+    std::size_t answer() {
+        return view_.write(found_, [](const ConeView& view, std::uint64_t id) { return view.share(id); });
+    }
+
+private:
     Probe probe_;
+    const ConeFrame frame_;
     const Set& set_;
     std::vector<ConeFragment<T>>& found_;
-    Vec3d across_[2];
+    ConeView view_;
     T limit_ = std::numeric_limits<T>::max();
-    std::array<double, count> depth_;
-    std::array<PrimitiveId, count> element_;
 };
 
 }  // namespace hedgerow

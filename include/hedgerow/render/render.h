@@ -11,6 +11,7 @@
 #include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/tracer.h>
 #include <hedgerow/render/visibility/cast.h>
+#include <hedgerow/render/visibility/cones.h>
 
 namespace hedgerow {
 
@@ -31,6 +32,12 @@ struct RenderOptions {
     bool transparent = false;
     float opacity = 1;
     TransparencyOptions transparency;
+    /// Whether a cone sees each pixel as a whole (visibility/cones.h), in place of samples: edges are smooth.
+    /// Layers are then those of its nearest surface.
+    bool cones = false;
+    /// The diameter of the distant light in degrees, less than 90. Shadows of a disc have soft edges, for
+    /// which a cone goes to the light in place of a ray. 0 is a light without extent.
+    float light_degrees = 0;
 
     bool counted() const { return counts || layers || counts_visits(shading); }
 };
@@ -46,14 +53,17 @@ struct PictureParts {
     /// What surfaces look like, for the shading `colour`, and their opacity, for transparent ones. Its masks
     /// hold for rays to the light; what finds the visible has to be given them too.
     const Appearances<T>* appearances = nullptr;
+    /// Answers the cones of pixels and of soft shadows; other pictures need none.
+    const Cones<T>* cones = nullptr;
 };
 
 /// Makes a picture, in tiles of pixels over the executor. Diffuse shading and that by colour cast a ray to
 /// the light where the surface faces it. Returns when all rows are finished or the progress is cancelled:
 /// then rows that are not finished stay black, and their layers empty. Throws InputError for a camera that
-/// sees nothing, no pixels or samples, an opacity that is not 0 to 1, where the picture needs a tracer or
-/// appearances and there are none, and where it shows costs of rays but what is visible is found without
-/// them, or through transparent surfaces.
+/// sees nothing, no pixels or samples, an opacity that is not 0 to 1, where the picture needs a tracer, cones
+/// or appearances and there are none, where it shows costs of rays but what is visible is found without them,
+/// or through transparent surfaces, and for cones of transparent surfaces, of more samples than one, or of a
+/// lens.
 template <std::floating_point T>
 Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
                const Progress& progress = {});

@@ -49,6 +49,7 @@ struct BeamCounts {
 /// What making a picture took.
 struct PictureCosts {
     std::uint64_t rays = 0;     ///< cast, those to the light included
+    std::uint64_t cones = 0;    ///< in place of rays
     Visits visits;              ///< 0 unless counted
     KernelUse use;              ///< which algorithms answered; no kernel if visits are counted
     RasterCounts drawn;         ///< what rasterising took
@@ -56,7 +57,7 @@ struct PictureCosts {
     TransparencyCounts layers;  ///< that rays from the eye went through, where surfaces may be transparent
 
     PictureCosts& operator+=(const PictureCosts& more) {
-        rays += more.rays, visits += more.visits, use += more.use, drawn += more.drawn;
+        rays += more.rays, cones += more.cones, visits += more.visits, use += more.use, drawn += more.drawn;
         beams += more.beams, layers += more.layers;
         return *this;
     }
