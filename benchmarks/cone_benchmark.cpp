@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <numbers>
 
+#include <hedgerow/ask/rays.h>
 #include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/index.h>
 #include <hedgerow/measure/contest.h>
