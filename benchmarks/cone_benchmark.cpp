@@ -5,8 +5,6 @@
 ///   gen:cornell-box gen:teapot-in-stadium:50000 gen:terrain:200000 gen:hairball:200000 gen:soup:50000
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 
@@ -15,12 +13,11 @@
 #include <hedgerow/index.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
-#include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/shading/shading.h>
 #include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/visibility/cones.h>
 
-#include "scene.h"
+#include "picture_scene.h"
 
 using namespace hedgerow;
 using namespace hedgerow::measure;
@@ -73,9 +70,6 @@ Trial shadows(const TriangleMesh<float>& mesh, const PictureSamples<float>& samp
     Trial trial;
     const SurfacesOf surfaces(mesh);
     const auto slope = static_cast<float>(std::tan(2.5 * std::numbers::pi / 180));
-    Vec3f beside;
-    beside[std::abs(light[0]) < 0.5f ? 0 : 1] = 1;
-    const Vec3f right = normalized(cross(light, beside)), up = cross(light, right);
     const std::size_t step = 1 + hits.size() / (4 * most_cones);
     for (std::size_t i = 0; i < hits.size() && trial.cones.size() < most_cones; i += step) {
         if (!hits[i]) continue;
@@ -84,11 +78,13 @@ Trial shadows(const TriangleMesh<float>& mesh, const PictureSamples<float>& samp
         const Vec3f normal = surfaces.normal(ray, hits[i]);
         if (dot(normal, light) < 0.1f) continue;  // so that all of the disc is above the surface
         const Vec3f from = surfaces.origin(ray, hits[i], normal);
-        trial.cones.push_back({Ray3f{from, light}, 0, slope});
+        const ConeRays<float, 3>& cone = trial.cones.emplace_back(Ray3f{from, light}, 0.0f, slope);
+        const ConeFrame frame(cone);
         for (std::size_t s = 0; s < across * across; ++s) {
             const auto at = [](std::size_t cell) { return (static_cast<float>(cell) + 0.5f) / across; };
             const LensPoint p = lens_point(at(s % across), at(s / across));
-            trial.rays.push_back({from, light + (right * p.right + up * p.up) * slope});
+            const Ray3d ray_of_place = frame.ray(cone.origin(), double(p.right), double(p.up));
+            trial.rays.push_back({from, Vec3f(ray_of_place.direction)});
         }
     }
     return trial;
@@ -99,7 +95,6 @@ void compare(const I& index, const char* what, const Trial& trial) {
     const IndexCones cones(index);
     const std::size_t n = trial.cones.size();
     if (n == 0) return;
-    std::vector<float> open(n);
     const auto blocked = std::make_unique<bool[]>(trial.rays.size());
     std::vector<ConeFragment<float>> found;
     std::size_t fragments = 0;
@@ -141,31 +136,19 @@ void compare(const I& index, const char* what, const Trial& trial) {
 }  // namespace
 
 int main(int count, char** arguments) try {
-    std::vector<std::string> names(arguments + 1, arguments + count);
-    int size = 1024;
-    if (!names.empty() && std::atoi(names[0].c_str()) > 0) {
-        size = std::atoi(names[0].c_str());
-        names.erase(names.begin());
-    }
-    if (names.empty()) {
-        if (std::filesystem::exists("data/dragon.ply.gz")) names.push_back("data/dragon.ply.gz");
-        for (const char* name : {"gen:cornell-box", "gen:teapot-in-stadium:50000", "gen:terrain:200000",
-                                 "gen:hairball:200000", "gen:soup:50000"})
-            names.push_back(name);
-    }
+    const auto [size, names] =
+        PictureArguments(count, arguments,
+                         {"gen:cornell-box", "gen:teapot-in-stadium:50000", "gen:terrain:200000",
+                          "gen:hairball:200000", "gen:soup:50000"});
     std::printf("%s, %s, one thread, %d x %d, medians of %d\n", processor().c_str(), compiler().c_str(), size,
                 size, rounds);
     for (const auto& name : names) {
-        const auto mesh = scene(name);
-        Box3f box;
-        for (const auto& v : mesh.vertices) box.expand(v);
-        const std::string kind = name.starts_with("gen:") ? name.substr(4, name.find(':', 4) - 4) : "";
-        const Camera camera = camera_for(kind).value_or(automatic_camera(box));
+        const auto [mesh, kind, camera] = PictureScene(name);
         const PictureSamples<float> samples(camera, size, size);
         const auto index = build<WideBvh>(mesh, {}, serial_executor());
         std::vector<Hit<float>> hits(samples.size());
         closest_hits(index, samples.rays(), std::span(hits), serial_executor());
-        std::printf("%s, %zu triangles\n", kind.empty() ? "file" : kind.c_str(), mesh.size());
+        std::printf("%s, %zu triangles\n", kind.c_str(), mesh.size());
         compare(index, "pixels", pixels(camera, samples, on_edges(samples, hits)));
         compare(index, "shadows", shadows(mesh, samples, hits, PlainShading(camera, 0).to_light()));
     }

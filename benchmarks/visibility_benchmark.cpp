@@ -7,21 +7,18 @@
 ///   gen:teapot-in-stadium:50000 gen:terrain:200000 gen:hairball:200000 gen:cornell-box
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 
 #include <hedgerow/ask/rays.h>
 #include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/index.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
-#include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 
 #include "peers/rasterisers.h"
-#include "scene.h"
+#include "picture_scene.h"
 
 using namespace hedgerow;
 using namespace hedgerow::measure;
@@ -81,11 +78,9 @@ void measure_shading(const TriangleMesh<float>& mesh, const PictureSamples<float
 }
 
 Ratios measure_scene(const std::string& name, int size) {
-    const auto mesh = scene(name);
-    Box3f box;
-    for (const auto& v : mesh.vertices) box.expand(v);
-    const std::string kind = name.starts_with("gen:") ? name.substr(4, name.find(':', 4) - 4) : "";
-    const Camera camera = camera_for(kind).value_or(automatic_camera(box));
+    const PictureScene shown(name);
+    const auto& mesh = shown.mesh;
+    const Camera& camera = shown.camera;
     const PictureSamples<float> samples(camera, size, size);
     const auto rays = samples.rays();
 
@@ -115,9 +110,8 @@ Ratios measure_scene(const std::string& name, int size) {
     std::size_t hit = 0, differ = 0;
     for (std::size_t i = 0; i < rays.size(); ++i)
         hit += bool(cast[i]), differ += !(cast[i] == drawn[i]) + !(cast[i] == beamed[i]);
-    std::printf("%-28s %7zu triangles, %5.1f%% of pixels hit, %zu samples differ\n",
-                kind.empty() ? "file" : kind.c_str(), mesh.size(), 100 * double(hit) / double(rays.size()),
-                differ);
+    std::printf("%-28s %7zu triangles, %5.1f%% of pixels hit, %zu samples differ\n", shown.kind.c_str(),
+                mesh.size(), 100 * double(hit) / double(rays.size()), differ);
     for (std::size_t i = 0; i < times.size(); ++i)
         std::printf("    %-16s %9.2f ms\n", contest.names[i].c_str(), times[i].median * 1e3);
     // Beams beside rays.
@@ -145,23 +139,15 @@ Ratios measure_scene(const std::string& name, int size) {
 }  // namespace
 
 int main(int count, char** arguments) try {
-    std::vector<std::string> names(arguments + 1, arguments + count);
-    int size = 1024;
-    if (!names.empty() && std::atoi(names[0].c_str()) > 0) {
-        size = std::atoi(names[0].c_str());
-        names.erase(names.begin());
-    }
-    if (names.empty()) {
-        if (std::filesystem::exists("data/dragon.ply.gz")) names.push_back("data/dragon.ply.gz");
-        for (const char* name :
-             {"gen:teapot-in-stadium:50000", "gen:terrain:200000", "gen:hairball:200000", "gen:cornell-box"})
-            names.push_back(name);
-    }
+    const auto [size, names] = PictureArguments(
+        count, arguments,
+        {"gen:teapot-in-stadium:50000", "gen:terrain:200000", "gen:hairball:200000", "gen:cornell-box"});
     std::printf("%s, %s, one thread, %d x %d, medians of %d\n", processor().c_str(), compiler().c_str(), size,
                 size, rounds);
     Ratios product;
     for (const auto& name : names) product.multiply(measure_scene(name, size));
-    const auto mean = [&](double of_all) { return std::pow(of_all, 1 / double(names.size())); };
+    const double scenes = double(names.size());
+    const auto mean = [scenes](double of_all) { return std::pow(of_all, 1 / scenes); };
     if (product.mesa > 0) std::printf("geometric mean: %.2f times as fast as Mesa\n", mean(product.mesa));
     std::printf("geometric mean: beams %.2f times as fast as rays, with %.1f%% of their visits\n",
                 mean(product.beams), 100 * mean(product.visits));

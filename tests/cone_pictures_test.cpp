@@ -28,15 +28,25 @@ RenderOptions options_for(const TriangleMesh<T>& mesh, const char* preset) {
     options.shading = Shading::normals;
     return options;
 }
+/// A mesh with all that pictures by cones are made from.
+template <class T>
+struct ConeScene {
+    using Engine = MeshIndex<T>;
+    Engine index;
+    IndexTracer<Engine> tracer{index};
+    IndexCones<Engine> cones{index};
+    SurfacesOf<TriangleMesh<T>> surfaces;
+    RayCasting<T> casting{tracer};
+
+    explicit ConeScene(const TriangleMesh<T>& mesh) : index(build<WideBvh>(mesh)), surfaces(mesh) {}
+    ConeScene(const ConeScene&) = delete;
+    PictureParts<T> parts() { return {casting, surfaces, &tracer, nullptr, &cones}; }
+};
 template <class T>
 Picture by_cones(const TriangleMesh<T>& mesh, RenderOptions options) {
-    const auto index = build<WideBvh>(mesh);
-    const IndexTracer tracer(index);
-    const IndexCones cones(index);
-    const SurfacesOf surfaces(mesh);
-    RayCasting<T> casting(tracer);
+    ConeScene<T> scene(mesh);
     options.cones = true;
-    return render(PictureParts<T>{casting, surfaces, &tracer, nullptr, &cones}, options, default_executor());
+    return render(scene.parts(), options, default_executor());
 }
 float difference(const Vec3f& a, const Vec3f& b) {
     return max_component(abs(a - b));
@@ -125,11 +135,7 @@ TYPED_TEST(ConePictures, ShadowsAreSoftAtTheirEdges) {
         {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}, {-9, -9, 1}, {0, -9, 1}, {0, 9, 1}, {-9, 9, 1}},
         {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}},
         {}};
-    const auto index = build<WideBvh>(mesh);
-    const IndexTracer tracer(index);
-    const IndexCones cones(index);
-    const SurfacesOf surfaces(mesh);
-    RayCasting<T> casting(tracer);
+    ConeScene<T> scene(mesh);
     RenderOptions options;
     options.width = 200, options.height = 1, options.layers = true;
     options.camera.eye = {0, 0, 0.5f}, options.camera.target = {0, 0, 0}, options.camera.up = {0, 1, 0};
@@ -137,8 +143,7 @@ TYPED_TEST(ConePictures, ShadowsAreSoftAtTheirEdges) {
     options.camera.height = 0.002f;  // x from -0.2 to 0.2
     options.camera.light = {0, 0, 1};
     options.light_degrees = 10;
-    const Picture soft =
-        render(PictureParts<T>{casting, surfaces, &tracer, nullptr, &cones}, options, serial_executor());
+    const Picture soft = render(scene.parts(), options, serial_executor());
     const PlainShading shading(options.camera, 0);
     const float reach = std::tan(5 * 3.14159265f / 180);  // of the penumbra, to either side
     for (std::size_t i = 0; i < 200; ++i) {
@@ -154,26 +159,23 @@ TYPED_TEST(ConePictures, ShadowsAreSoftAtTheirEdges) {
 TYPED_TEST(ConePictures, RefuseWhatTheyCannotSee) {
     using T = TypeParam;
     const auto mesh = cornell_box<T>(0);
-    const auto index = build<WideBvh>(mesh);
-    const IndexTracer tracer(index);
-    const IndexCones answering(index);
-    const SurfacesOf surfaces(mesh);
-    RayCasting<T> casting(tracer);
+    ConeScene<T> scene(mesh);
+    const Cones<T>* const answering = &scene.cones;
     const auto refused = [&](const Cones<T>* cones, auto change) {
+        PictureParts<T> parts = scene.parts();
+        parts.cones = cones;
         RenderOptions options = options_for(mesh, "cornell-box");
         options.cones = true;
         change(options);
-        EXPECT_THROW(
-            render(PictureParts<T>{casting, surfaces, &tracer, nullptr, cones}, options, serial_executor()),
-            InputError);
+        EXPECT_THROW(render(parts, options, serial_executor()), InputError);
     };
     refused(nullptr, [](RenderOptions&) {});
-    refused(&answering, [](RenderOptions& o) { o.samples = 2; });
-    refused(&answering, [](RenderOptions& o) { o.transparent = true; });
-    refused(&answering, [](RenderOptions& o) { o.shading = Shading::steps; });
-    refused(&answering, [](RenderOptions& o) { o.camera.lens_radius = 1; });
-    refused(&answering, [](RenderOptions& o) { o.camera.projection = Projection::panorama; });
-    refused(&answering, [](RenderOptions& o) { o.light_degrees = 90; });
+    refused(answering, [](RenderOptions& o) { o.samples = 2; });
+    refused(answering, [](RenderOptions& o) { o.transparent = true; });
+    refused(answering, [](RenderOptions& o) { o.shading = Shading::steps; });
+    refused(answering, [](RenderOptions& o) { o.camera.lens_radius = 1; });
+    refused(answering, [](RenderOptions& o) { o.camera.projection = Projection::panorama; });
+    refused(answering, [](RenderOptions& o) { o.light_degrees = 90; });
     refused(nullptr,
             [](RenderOptions& o) { o.cones = false, o.light_degrees = 5, o.shading = Shading::diffuse; });
 }

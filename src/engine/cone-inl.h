@@ -18,6 +18,7 @@
 #include <hedgerow/engine/cone_kernels.h>
 #include <hedgerow/geometry/rounding.h>
 
+#include "coordinates-inl.h"
 #include "walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -179,27 +180,17 @@ public:
     // corner(c, k) is coordinate k of corner c of each triangle.
     template <class F, class Corner>
     HWY_INLINE hn::Mask<F> may_hit(F f, const Corner& corner) const {
-        using V = hn::Vec<F>;
-        struct Vec3 {
-            V x, y, z;
-            HWY_INLINE Vec3(V x_, V y_, V z_) : x(x_), y(y_), z(z_) {}
+        const auto axis = all_lanes(f, axis_), apex = all_lanes(f, apex_);
+        const auto at = [&](int c) HWY_ATTR {
+            return Coordinates<F>{corner(c, 0), corner(c, 1), corner(c, 2)};
         };
-        const auto dot = [](const Vec3& a, const Vec3& b) HWY_ATTR {
-            return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
-        };
-        const auto all = [&](float x) HWY_ATTR { return hn::Set(f, x); };
-        const Vec3 axis(all(axis_[0]), all(axis_[1]), all(axis_[2]));
-        const Vec3 apex(all(apex_[0]), all(apex_[1]), all(apex_[2]));
         auto above = hn::FirstN(f, 0), below = above;
         for (int c = 0; c < 3; ++c) {
             const int next = c == 2 ? 0 : c + 1;
-            const Vec3 from(hn::Sub(corner(c, 0), apex.x), hn::Sub(corner(c, 1), apex.y),
-                            hn::Sub(corner(c, 2), apex.z));
-            const Vec3 edge(hn::Sub(corner(next, 0), corner(c, 0)), hn::Sub(corner(next, 1), corner(c, 1)),
-                            hn::Sub(corner(next, 2), corner(c, 2)));
-            const Vec3 normal(hn::MulSub(from.y, edge.z, hn::Mul(from.z, edge.y)),
-                              hn::MulSub(from.z, edge.x, hn::Mul(from.x, edge.z)),
-                              hn::MulSub(from.x, edge.y, hn::Mul(from.y, edge.x)));
+            const auto from = minus(at(c), apex), edge = minus(at(next), at(c));
+            const Coordinates<F> normal{hn::MulSub(from.y, edge.z, hn::Mul(from.z, edge.y)),
+                                        hn::MulSub(from.z, edge.x, hn::Mul(from.x, edge.z)),
+                                        hn::MulSub(from.x, edge.y, hn::Mul(from.y, edge.x))};
             const auto middle = dot(axis, normal);
             const auto change = hn::MulAdd(hn::Sqrt(dot(from, from)), hn::Set(f, 24 * unit_roundoff<float>),
                                            hn::Set(f, radius_));

@@ -40,9 +40,7 @@ void check(const PictureParts<T>& parts, const RenderOptions& o) {
         throw InputError("cones do not see through masks of opacity");
     if (o.cones && counted(o.shading)) throw InputError("this shading shows what rays cost, not cones");
     if (o.cones && o.samples > 1) throw InputError("a cone sees all of a pixel: take one sample");
-    if (o.cones && !PictureSamples<T>(o.camera, o.width, o.height).has_plane())
-        throw InputError(
-            "cones see by perspective and by parallel rays, not through a lens or in a panorama");
+    if (o.cones) cone_of_pixel(PictureSamples<T>(o.camera, o.width, o.height), 0, 0);  // throws without one
     if (!o.transparent) return;
     if (!(o.opacity >= 0 && o.opacity <= 1)) throw InputError("the opacity of surfaces must be 0 to 1");
     if (counted(o.shading)) throw InputError("this shading shows what rays cost, which end at the first hit");
