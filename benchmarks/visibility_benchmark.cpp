@@ -1,12 +1,15 @@
 /// What is seen through each pixel of a picture, on one thread: by rasterising and by casting rays, with the
-/// build of an index and without, and by beams; beside Mesa's rasteriser, if it was found. Times in
-/// milliseconds, and the geometric means of Mesa's times to the rasteriser's, and of those of rays to those
-/// of beams.
+/// build of an index and without, and by beams; beside Mesa's rasteriser, if it was found. The rasteriser
+/// draws a visibility buffer, numbers and depths as Mesa does, and hits, at once or from that buffer. Times
+/// in milliseconds, and the geometric means of Mesa's times to those of visibility buffers and of hits, and
+/// of those of rays to those of beams.
 ///
 ///   visibility_benchmark [SIZE] [SCENE ...]     default: 1024, and the dragon if it is there,
 ///   gen:teapot-in-stadium:50000 gen:terrain:200000 gen:hairball:200000 gen:cornell-box
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include <hedgerow/ask/rays.h>
 #include <hedgerow/engine/wide_bvh.h>
@@ -27,11 +30,13 @@ namespace {
 
 constexpr int rounds = 9;
 
-/// What is measured of a scene: Mesa's time by the rasteriser's, or 0 without Mesa; the time of rays by that
-/// of beams, and the visits of beams by those of packets.
+/// What is measured of a scene: Mesa's time by that of a visibility buffer and of hits, or 0 without Mesa;
+/// the time of rays by that of beams, and the visits of beams by those of packets.
 struct Ratios {
-    double mesa = 1, beams = 1, visits = 1;
-    void multiply(const Ratios& r) { mesa *= r.mesa, beams *= r.beams, visits *= r.visits; }
+    double visible = 1, hits = 1, beams = 1, visits = 1;
+    void multiply(const Ratios& r) {
+        visible *= r.visible, hits *= r.hits, beams *= r.beams, visits *= r.visits;
+    }
 };
 /// Deferred shading, each hit once, beside forward shading, each fragment that is nearest so far: by normals,
 /// all by the plain loops.
@@ -55,7 +60,8 @@ void measure_shading(const TriangleMesh<float>& mesh, const PictureSamples<float
                     [&draw, coverage] { return draw(coverage).triangles; });
         contest.add("with forward shading", [&, coverage, sorted] {
             return forward[sorted] =
-                       rasteriser.draw(mesh.view(), hits, serial_executor(), {coverage}, shade).nearest;
+                       rasteriser.draw(mesh.view(), hits, serial_executor(), {coverage, false, true}, shade)
+                           .nearest;
         });
     }
     std::size_t seen = 0;
@@ -86,13 +92,20 @@ Ratios measure_scene(const std::string& name, int size) {
 
     const auto index = build<WideBvh>(mesh, {}, serial_executor());
     Rasteriser<float> rasteriser(samples);
-    std::vector<Hit<float>> cast(rays.size()), drawn(rays.size()), beamed(rays.size());
+    std::vector<Hit<float>> cast(rays.size()), drawn(rays.size()), resolved(rays.size()), beamed(rays.size());
+    std::vector<Visible> visible(rays.size());
     Contest contest;
-    contest.add("raster", [&] { return rasteriser.draw(mesh.view(), drawn, serial_executor()).triangles; });
     contest.add("cast", [&] {
         closest_hits(index, rays, std::span(cast), serial_executor());
         return rays.size();
     });
+    contest.add("visible",
+                [&] { return rasteriser.draw_visible(mesh.view(), visible, serial_executor()).triangles; });
+    contest.add("hits of visible", [&] {
+        rasteriser.resolve(mesh.view(), visible, resolved, serial_executor());
+        return rays.size();
+    });
+    contest.add("hits", [&] { return rasteriser.draw(mesh.view(), drawn, serial_executor()).triangles; });
     contest.add("beams", [&] { return beam_hits(index, samples, beamed, serial_executor()).beams; });
     contest.add("build and cast", [&] {
         closest_hits(build<WideBvh>(mesh, {}, serial_executor()), rays, std::span(cast), serial_executor());
@@ -109,7 +122,8 @@ Ratios measure_scene(const std::string& name, int size) {
 
     std::size_t hit = 0, differ = 0;
     for (std::size_t i = 0; i < rays.size(); ++i)
-        hit += bool(cast[i]), differ += !(cast[i] == drawn[i]) + !(cast[i] == beamed[i]);
+        hit += bool(cast[i]),
+            differ += !(cast[i] == drawn[i]) + !(cast[i] == resolved[i]) + !(cast[i] == beamed[i]);
     std::printf("%-28s %7zu triangles, %5.1f%% of pixels hit, %zu samples differ\n", shown.kind.c_str(),
                 mesh.size(), 100 * double(hit) / double(rays.size()), differ);
     for (std::size_t i = 0; i < times.size(); ++i)
@@ -117,7 +131,11 @@ Ratios measure_scene(const std::string& name, int size) {
     // Beams beside rays.
     const BeamCounts packets = beam_hits(index, samples, beamed, serial_executor(), {.widest = 0}),
                      beams = beam_hits(index, samples, beamed, serial_executor());
-    Ratios ratios{0, times[1].median / times[2].median, double(beams.visits) / double(packets.visits)};
+    const auto time_of = [&](std::string_view way) {
+        return times[static_cast<std::size_t>(std::ranges::find(contest.names, way) - contest.names.begin())]
+            .median;
+    };
+    Ratios ratios{0, 0, time_of("cast") / time_of("beams"), double(beams.visits) / double(packets.visits)};
     std::printf(
         "    beams are %.2f times as fast as rays, with %.1f%% of their visits; %.1f%% of the samples "
         "filled, %llu tiles by packets, %llu again\n",
@@ -129,10 +147,12 @@ Ratios measure_scene(const std::string& name, int size) {
     peer->read(elements);
     std::size_t other = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) other += elements[i] != cast[i].element;
-    std::printf("    %.2f times as fast as %s, which shows another triangle at %.3f%% of the pixels\n",
-                times.back().median / times[0].median, peer->name().c_str(),
-                100 * double(other) / double(rays.size()));
-    ratios.mesa = times.back().median / times[0].median;
+    ratios.visible = times.back().median / time_of("visible");
+    ratios.hits = times.back().median / time_of("hits");
+    std::printf(
+        "    %.2f times as fast as %s, %.2f times for hits; it shows another triangle at %.3f%% of the "
+        "pixels\n",
+        ratios.visible, peer->name().c_str(), ratios.hits, 100 * double(other) / double(rays.size()));
     return ratios;
 }
 
@@ -148,7 +168,9 @@ int main(int count, char** arguments) try {
     for (const auto& name : names) product.multiply(measure_scene(name, size));
     const double scenes = double(names.size());
     const auto mean = [scenes](double of_all) { return std::pow(of_all, 1 / scenes); };
-    if (product.mesa > 0) std::printf("geometric mean: %.2f times as fast as Mesa\n", mean(product.mesa));
+    if (product.visible > 0)
+        std::printf("geometric mean: %.2f times as fast as Mesa, %.2f times for hits\n",
+                    mean(product.visible), mean(product.hits));
     std::printf("geometric mean: beams %.2f times as fast as rays, with %.1f%% of their visits\n",
                 mean(product.beams), 100 * mean(product.visits));
 } catch (const InputError& error) {

@@ -27,6 +27,29 @@ std::vector<Hit<T>> hits_of_rays(const TriangleMesh<T>& mesh, const PictureSampl
     closest_hits(build<WideBvh>(mesh), rays, std::span(hits));
     return hits;
 }
+/// Compares a visibility buffer, and the hits that it resolves to, with the hits of rays.
+template <class T>
+void expect_visible(const TriangleMesh<T>& mesh, const PictureSamples<T>& samples,
+                    const std::vector<Hit<T>>& want) {
+    Rasteriser<T> rasteriser(samples);
+    std::vector<Visible> visible(samples.size(), Visible{7, 1});
+    EXPECT_EQ(rasteriser.draw_visible(mesh.view(), visible, default_executor()).triangles, mesh.size());
+    const auto rays = samples.rays();
+    const Vec<T, 3> forward(samples.plane().forward);
+    for (std::size_t i = 0; i < want.size(); ++i) {
+        SCOPED_TRACE(i);
+        ASSERT_EQ(visible[i].element, want[i].element);
+        if (!want[i]) {
+            EXPECT_EQ(visible[i].depth, std::numeric_limits<float>::infinity());
+        } else {
+            const double depth = double(want[i].t) * double(dot(rays[i].direction, forward));
+            EXPECT_NEAR(double(visible[i].depth), depth, depth / 4096);
+        }
+    }
+    std::vector<Hit<T>> hits(samples.size(), Hit<T>{T(1e-30), T(2), T(3), 4, 5, 6, 7});
+    rasteriser.resolve(mesh.view(), visible, hits, default_executor());
+    expect_same(want, hits);
+}
 /// Compares the buffers that every coverage and instruction set fills with the hits of rays. Every sample of
 /// every triangle is tested on demand alone.
 template <class T>
@@ -48,6 +71,7 @@ void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& s
                 EXPECT_EQ(counts.tests, mesh.size() * samples.size());
             }
         }
+        expect_visible(mesh, samples, want);
     }
 }
 
@@ -309,7 +333,7 @@ TYPED_TEST(RasterisedHits, OfTrianglesThatFillThePicture) {
     Camera camera;
     camera.eye = {0, 0, 0}, camera.target = {0, 1, 0.1f};
     TriangleMesh<T> mesh;
-    for (std::uint32_t i = 0; i < 2300; ++i) {
+    for (std::uint32_t i = 0; i < 3500; ++i) {
         const auto distance = static_cast<T>(1 + (i * 7919) % 1000);
         mesh.vertices.insert(mesh.vertices.end(), {{-9 * distance, distance, -9 * distance},
                                                    {9 * distance, distance, -9 * distance},
@@ -323,6 +347,8 @@ TYPED_TEST(RasterisedHits, OfTrianglesThatFillThePicture) {
     const auto counts = rasteriser.draw(mesh.view(), hits, default_executor());
     expect_same(want, hits);
     EXPECT_EQ(counts.outside, 0u);
+    EXPECT_LT(rasteriser.bytes(), std::size_t(64) << 20);
+    expect_visible(mesh, samples, want);
 }
 
 TYPED_TEST(RasterisedHits, OfNothingWhereNothingCanBeSeen) {
@@ -340,7 +366,37 @@ TYPED_TEST(RasterisedHits, NeedAPlaceForEachSample) {
     using T = TypeParam;
     Rasteriser<T> rasteriser(PictureSamples<T>(Camera{{0, 0, 1}, {1, 0, 1}}, 5, 4));
     std::vector<Hit<T>> hits(19);
-    EXPECT_THROW(rasteriser.draw(soup<T>(5).view(), hits, serial_executor()), InputError);
+    const auto mesh = soup<T>(5);
+    EXPECT_THROW(rasteriser.draw(mesh.view(), hits, serial_executor()), InputError);
+    std::vector<Visible> visible(19);
+    EXPECT_THROW(rasteriser.draw_visible(mesh.view(), visible, serial_executor()), InputError);
+    visible.resize(20);
+    EXPECT_THROW(rasteriser.resolve(mesh.view(), visible, hits, serial_executor()), InputError);
+    hits.resize(20);
+    rasteriser.resolve(mesh.view(), visible, hits, serial_executor());
+    EXPECT_EQ(hits, std::vector<Hit<T>>(20));
+    visible[7].element = 5;
+    EXPECT_THROW(rasteriser.resolve(mesh.view(), visible, hits, serial_executor()), InputError);
+}
+
+/// An element that the ray of its sample does not hit is not seen.
+TYPED_TEST(RasterisedHits, OfAVisibilityBufferThatIsWrong) {
+    using T = TypeParam;
+    const auto mesh = soup<T>(300);
+    const PictureSamples<T> samples(seen_from(mesh, 1, false), 40, 30);
+    auto want = hits_of_rays(mesh, samples);
+    std::vector<Visible> visible(samples.size());
+    for (std::size_t i = 0; i < visible.size(); ++i) visible[i].element = want[i].element;
+    for (std::size_t i = 0; i < visible.size(); i += 3)
+        visible[i].element = (static_cast<std::uint32_t>(i) * 7) % 300;
+    std::vector<Hit<T>> hits(samples.size());
+    Rasteriser<T>(samples).resolve(mesh.view(), visible, hits, default_executor());
+    const auto index = build<BruteForce>(mesh);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const auto only = [&](const Hit<T>& hit) { return hit.element == visible[i].element; };
+        const auto x = static_cast<int>(i % 40), y = static_cast<int>(i / 40);
+        EXPECT_EQ(hits[i], closest_hit(index, samples.ray(x, y), only)) << i;
+    }
 }
 
 }  // namespace

@@ -354,10 +354,6 @@ private:
         return true;
     }
 
-    static HWY_INLINE M mask_of(unsigned rays) {
-        const std::uint64_t bits = rays;
-        return hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits));
-    }
     /// Any hit: gives rays from `at` on (a bit each) their answer.
     HWY_INLINE void end(unsigned rays, std::uint32_t id, int at) {
         const M hit = mask_of(rays);

@@ -74,6 +74,11 @@ struct PacketRays {
         hn::Store(all, u32, each);
         return std::accumulate(each, each + lanes, 0u, std::bit_or());
     }
+    /// The rays of a vector, a bit each, as a mask.
+    static HWY_INLINE M mask_of(unsigned rays) {
+        const std::uint64_t bits = rays;
+        return hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits));
+    }
     /// The number of ray i in the batch.
     HWY_INLINE std::size_t number(int i) const {
         const auto place = static_cast<std::size_t>(i);

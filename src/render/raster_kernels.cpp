@@ -13,11 +13,13 @@
 #if HWY_TARGET != HWY_SCALAR
 #include "bounds-inl.h"
 #include "tile-inl.h"
+#include "visible_tile-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-inline constexpr RasterKernels raster_kernels{pixel_bounds, draw_tile};
+inline constexpr RasterKernels raster_kernels{pixel_bounds, triangle_functions, draw_tile, see_tile,
+                                              resolve_tile};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -89,8 +89,13 @@ bool draws(const char* name, const TriangleMesh<float>& mesh) {
     closest_hits(index, std::span<const Ray3f>(rays), std::span(want));
     for (const auto set : instruction_sets()) {
         use_instruction_set(set);
-        Rasteriser<float>(samples).draw(mesh.view(), got, serial_executor());
-        const bool drawn = got == want;
+        Rasteriser<float> rasteriser(samples);
+        rasteriser.draw(mesh.view(), got, serial_executor());
+        std::vector<Visible> visible(rays.size());
+        std::vector<Hit<float>> resolved(rays.size());
+        rasteriser.draw_visible(mesh.view(), visible, serial_executor());
+        rasteriser.resolve(mesh.view(), visible, resolved, serial_executor());
+        const bool drawn = got == want && resolved == want;
         beam_hits(index, samples, got, serial_executor());
         if (drawn && got == want) continue;
         std::printf("%s, %s: differs with %s\n", name, drawn ? "by beams" : "drawn",

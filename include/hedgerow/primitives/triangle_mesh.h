@@ -37,6 +37,9 @@ public:
     std::size_t vertex_count() const { return vertices_.size(); }
     Vec<T, 3> vertex(std::size_t i) const { return vertices_[i]; }
     TriangleIndices indices(std::size_t i) const { return triangles_[i]; }
+    /// Where they are, to prefetch them.
+    const std::byte* vertex_at(std::size_t i) const { return vertices_.at(i); }
+    const std::byte* indices_at(std::size_t i) const { return triangles_.at(i); }
     Triangle<T, 3> triangle(std::size_t i) const {
         const auto [a, b, c] = triangles_[i];
         return {vertices_[a], vertices_[b], vertices_[c]};

@@ -15,12 +15,12 @@
 #include <hedgerow/ask/asking.h>
 #include <hedgerow/base/bare_vector.h>
 #include <hedgerow/instances/instance_set.h>
-#include <hedgerow/parallel/blocks.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/probes/ray.h>
 #include <hedgerow/queries/first_hits.h>
 #include <hedgerow/render/visibility/pixel_bounds.h>
 #include <hedgerow/render/visibility/raster_kernels.h>
+#include <hedgerow/render/visibility/tile_lists.h>
 #include <hedgerow/render/visibility/visibility.h>
 
 namespace hedgerow {
@@ -51,10 +51,7 @@ template <class T>
 class Rasteriser {
 public:
     explicit Rasteriser(const PictureSamples<T>& samples)
-        : samples_(samples),
-          plane_(samples.plane()),
-          columns_((samples.width() + tile_side - 1) / tile_side),
-          tiles_(columns_ * ((samples.height() + tile_side - 1) / tile_side)) {
+        : samples_(samples), plane_(samples.plane()), lists_(samples.width(), samples.height()) {
         if (!samples.has_plane()) throw InputError("a panorama or a lens cannot be rasterised: cast rays");
     }
 
@@ -85,6 +82,46 @@ public:
         });
     }
 
+    /// Draws a visibility buffer: what `draw` finds, in 8 bytes a sample, by number. `resolve` computes the
+    /// hits. With kernels, for samples in the middles of their pixels and up to about a million triangles, it
+    /// takes less time and memory than hits do; else hits are drawn first. Throws InputError for too few
+    /// places.
+    RasterCounts draw_visible(const TriangleMeshView<T>& mesh, std::span<Visible> visible,
+                              Executor& executor) {
+        detail::expect_room("samples", samples_.size(), visible.size());
+        IeeeExecutor threads(executor);
+        counts_ = false;
+        bool seen = false;
+        in_each_space(mesh, 0, [&](const auto& triangles) {
+            seen = see_in_tiles(triangles, visible, threads);
+            return RasterCounts();
+        });
+        if (seen) return {mesh.size()};
+        BareVector<Hit<T>> hits(samples_.size());
+        const RasterCounts counts = draw(mesh, hits, executor);
+        for_each_row(threads, [&](int x, int y, std::size_t i) {
+            visible[i] = {hits[i].element, static_cast<float>(forward_of(x, y, hits[i].t))};
+        });
+        return counts;
+    }
+    /// Computes the hits of a visibility buffer of the same samples and mesh: those that `draw` finds. A
+    /// sample whose ray does not hit its element gets no hit. Throws InputError for an element that the mesh
+    /// has not, and for too few places.
+    void resolve(const TriangleMeshView<T>& mesh, std::span<const Visible> visible, std::span<Hit<T>> hits,
+                 Executor& executor) {
+        detail::expect_room("samples", samples_.size(), std::min(visible.size(), hits.size()));
+        for (const Visible& v : visible.first(samples_.size()))
+            if (v.element >= mesh.size() && v.element != Hit<T>::none)
+                throw InputError("the visibility buffer names element " + std::to_string(v.element) +
+                                 " of a mesh of " + std::to_string(mesh.size()) + " triangles");
+        IeeeExecutor threads(executor);
+        counts_ = false;
+        in_each_space(mesh, 0, [&](const auto& triangles) {
+            resolve_samples(triangles, visible, hits, threads);
+            return RasterCounts();
+        });
+    }
+
     /// Calls f(number, hit) for each sample in some rows of the picture and each triangle that covers it, of
     /// one sample in the order of the triangles: the fragments of the rows. Threads of the executor call f at
     /// the same time, for different samples.
@@ -95,23 +132,23 @@ public:
         const auto bands = static_cast<std::size_t>((bottom - top + rows_at_once) / rows_at_once);
         return in_each_space(set, 0, [&](const auto& triangles) {
             prepare_rays(threads);
-            return in_parts(triangles, Coverage::box, threads, [&](std::size_t first) {
-                return counted(bands, 1, threads, [&](std::size_t band, RasterCounts& counts) {
+            return in_parts(triangles, [&](std::size_t first, std::size_t count) {
+                look(triangles, first, count, Coverage::box, threads);
+                RasterCounts sum = counted(bands, 1, threads, [&](std::size_t band, RasterCounts& counts) {
                     const int from = top + static_cast<int>(band) * rows_at_once;
                     const PixelBox rows{0, from, samples_.width() - 1,
                                         std::min(from + rows_at_once - 1, bottom)};
                     for (std::size_t i = 0; i < sights_.size(); ++i)
                         meet_samples(triangles, first + i, common(sights_[i].box, rows), counts, f);
                 });
+                sum.outside = outside();
+                return sum;
             });
         });
     }
     /// Bytes of memory that drawing has taken so far, beside the hits.
     std::size_t bytes() const {
-        const auto of = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-        std::size_t lists = of(lists_);
-        for (const auto& list : lists_) lists += of(list);
-        return of(rays_) + of(sights_) + lists + of(places_) + of(begins_) + of(listed_);
+        return rays_.capacity() * sizeof(rays_[0]) + sights_.capacity() * sizeof(sights_[0]) + lists_.bytes();
     }
 
 private:
@@ -140,15 +177,16 @@ private:
                           Executor& threads, bool onto, const Shade& shade) {
         if (!(coverage == Coverage::tiles && shades_nothing<Shade> && uses_kernels<Triangles>()))
             prepare_rays(threads);
-        return in_parts(triangles, coverage, threads, [&](std::size_t first) {
+        return in_parts(triangles, [&](std::size_t first, std::size_t count) {
             const bool over = std::exchange(onto, true);
-            return coverage == Coverage::tiles ? draw_in_tiles(triangles, first, hits, threads, over, shade)
-                                               : draw_in_bands(triangles, first, hits, threads, over, shade);
+            if (coverage == Coverage::tiles)
+                return draw_in_tiles(triangles, first, count, hits, threads, over, shade);
+            look(triangles, first, count, coverage, threads);
+            return draw_in_bands(triangles, first, hits, threads, over, shade);
         });
     }
 
-    /// Triangles that are looked at together, and entries of triangles in tiles that are sorted together.
-    static constexpr std::size_t at_once = std::size_t(1) << 20, entries_at_once = std::size_t(1) << 21;
+    static constexpr std::size_t at_once = TileTriangle::numbers;  // triangles that are looked at together
     static constexpr int band_rows = 64;
     struct Prepared {
         WatertightRay<T> ray;
@@ -185,19 +223,21 @@ private:
             }
         });
     }
-    /// Calls work(first) for some triangles after the other, once it is known where they are seen.
+    /// Calls work(first, count) for some triangles after the other.
     template <class Triangles, class Work>
-    RasterCounts in_parts(const Triangles& triangles, Coverage coverage, Executor& threads, Work work) {
+    RasterCounts in_parts(const Triangles& triangles, Work work) {
         RasterCounts counts;
-        for (std::size_t first = 0; first < std::max<std::size_t>(triangles.size(), 1) && tiles_ > 0;
+        for (std::size_t first = 0; first < std::max<std::size_t>(triangles.size(), 1) && lists_.size() > 0;
              first += at_once) {
             const std::size_t count = std::min(at_once, triangles.size() - first);
-            look(triangles, first, count, coverage, threads);
-            counts += work(first);
-            for (const Sight& sight : sights_) counts.outside += sight.box.empty();
+            counts += work(first, count);
             counts.triangles += count;
         }
         return counts;
+    }
+    template <class Triangles>
+    TrianglesSeen<Triangles> seen(const Triangles& triangles) const {
+        return {triangles, bounds_, kernels<Triangles>()};
     }
     /// Finds where triangles from `first` on are seen.
     template <class Triangles>
@@ -206,15 +246,15 @@ private:
         sights_.resize(count);
         threads.for_each_piece(count, 4096, [&](std::size_t begin, std::size_t end) {
             const std::span<Sight> some(sights_.data() + begin, end - begin);
-            std::fill(some.begin(), some.end(),
-                      Sight{coverage == Coverage::all ? bounds_.whole() : uncut, 0});
-            if (coverage == Coverage::all) return;
-            if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>)
-                if (const RasterKernels* const in_lanes = kernels<Triangles>())
-                    in_lanes->bounds(bounds_, triangles, first + begin, some);
-            for (std::size_t i = begin; i < end; ++i)
-                if (sights_[i].box == uncut) sights_[i] = bounds_.of(triangles.triangle(first + i));
+            if (coverage == Coverage::all)
+                std::fill(some.begin(), some.end(), Sight{bounds_.whole(), 0});
+            else
+                seen(triangles).find_sights(first + begin, some);
         });
+    }
+    std::uint64_t outside() const {
+        return static_cast<std::uint64_t>(
+            std::ranges::count_if(sights_, [](const Sight& s) { return s.box.empty(); }));
     }
     /// Calls work(i, counts) for i below `count`, over the executor, and sums up the counts.
     template <class Work>
@@ -234,7 +274,7 @@ private:
     RasterCounts draw_in_bands(const Triangles& triangles, std::size_t first, std::span<Hit<T>> hits,
                                Executor& threads, bool onto, const Shade& shade) {
         const auto bands = static_cast<std::size_t>((samples_.height() + band_rows - 1) / band_rows);
-        return counted(bands, 1, threads, [&](std::size_t band, RasterCounts& counts) {
+        RasterCounts sum = counted(bands, 1, threads, [&](std::size_t band, RasterCounts& counts) {
             const int top = static_cast<int>(band) * band_rows;
             const PixelBox rows =
                 common({0, top, samples_.width() - 1, top + band_rows - 1}, bounds_.whole());
@@ -242,154 +282,56 @@ private:
             for (std::size_t i = 0; i < sights_.size(); ++i)
                 test(triangles, first + i, common(sights_[i].box, rows), hits, counts, shade);
         });
+        sum.outside = outside();
+        return sum;
     }
 
     // ---- Tiles: in each, the triangles that may cover a sample of it ----
 
     template <class Triangles, class Shade>
-    RasterCounts draw_in_tiles(const Triangles& triangles, std::size_t first, std::span<Hit<T>> hits,
-                               Executor& threads, bool onto, const Shade& shade) {
+    RasterCounts draw_in_tiles(const Triangles& triangles, std::size_t first, std::size_t count,
+                               std::span<Hit<T>> hits, Executor& threads, bool onto, const Shade& shade) {
         RasterCounts counts;
-        std::size_t begin = 0;
-        do {
-            begin = list_triangles(triangles, first, begin, threads);
-            counts += counted(static_cast<std::size_t>(tiles_), 16, threads,
+        lists_.start(first, count);
+        for (bool all = false; !all; onto = true) {
+            all = lists_.fill(seen(triangles), threads);
+            counts += counted(static_cast<std::size_t>(lists_.size()), 16, threads,
                               [&](std::size_t tile, RasterCounts& c) {
                                   draw_tile(triangles, first, static_cast<int>(tile), hits, onto, c, shade);
                               });
-            onto = true;
-        } while (begin < sights_.size());
+        }
+        counts.outside = lists_.outside();
         return counts;
-    }
-    /// Lists triangles from `begin` on by tile, ascending, and returns where that ends: a sort by counting,
-    /// over blocks of triangles.
-    template <class Triangles>
-    std::size_t list_triangles(const Triangles& triangles, std::size_t first, std::size_t begin,
-                               Executor& threads) {
-        const std::size_t end = end_of_list(begin);
-        const Blocks blocks{end - begin, std::size_t(1) << 17};
-        const auto tiles = static_cast<std::size_t>(tiles_);
-        if (lists_.size() < blocks.number()) lists_.resize(blocks.number());
-        places_.resize(blocks.number() * tiles);
-        blocks.each(threads, [&](std::size_t block, std::size_t from, std::size_t to) {
-            std::uint32_t* const counts = places_.data() + block * tiles;
-            std::fill_n(counts, tiles, 0u);
-            lists_[block].clear();
-            for (std::size_t i = begin + from; i < begin + to; ++i)
-                for_each_tile(triangles, first + i, sights_[i].box, [&](std::uint32_t tile) {
-                    lists_[block].push_back({tile, static_cast<std::uint32_t>(i)});
-                    ++counts[tile];
-                });
-        });
-        // Turn counts into places: by tile, and within a tile by block.
-        begins_.resize(tiles + 1);
-        std::uint32_t before = 0;
-        for (std::size_t tile = 0; tile < tiles; ++tile) {
-            begins_[tile] = before;
-            for (std::size_t b = 0; b < blocks.number(); ++b)
-                before += std::exchange(places_[b * tiles + tile], before);
-        }
-        begins_[tiles] = before;
-        listed_.resize(before);
-        blocks.each(threads, [&](std::size_t block, std::size_t, std::size_t) {
-            std::uint32_t* const places = places_.data() + block * tiles;
-            for (const InTile& entry : lists_[block]) listed_[places[entry.tile]++] = entry.triangle;
-        });
-        return end;
-    }
-    /// How far triangles from `begin` on make a list that is not too long.
-    std::size_t end_of_list(std::size_t begin) const {
-        std::size_t end = begin, total = 0;
-        for (; end < sights_.size(); ++end) {
-            if (sights_[end].box.empty()) continue;
-            const std::size_t more = tiles_of(sights_[end].box);
-            if (total > 0 && total + more > entries_at_once) break;
-            total += more;
-        }
-        return end;
-    }
-    static std::size_t tiles_of(const PixelBox& box) {
-        const auto along = [](int first, int last) {
-            const int tiles = last / tile_side - first / tile_side + 1;
-            return static_cast<std::size_t>(tiles);
-        };
-        return along(box.left, box.right) * along(box.top, box.bottom);
-    }
-    PixelBox pixels_of(int tile) const {
-        const int left = tile % columns_ * tile_side, top = tile / columns_ * tile_side;
-        return common({left, top, left + tile_side - 1, top + tile_side - 1}, bounds_.whole());
-    }
-    /// Calls f(tile) for the tiles in which a triangle with this box may cover a sample.
-    template <class Triangles, class F>
-    void for_each_tile(const Triangles& triangles, std::size_t i, const PixelBox& box, F f) const {
-        if (box.empty()) return;
-        const int left = box.left / tile_side, right = box.right / tile_side, top = box.top / tile_side,
-                  bottom = box.bottom / tile_side;
-        const auto number = [&](int x, int y) { return static_cast<std::uint32_t>(y * columns_ + x); };
-        constexpr std::size_t few = 4;  // to find the edges takes as long as to look at as many tiles in vain
-        if (tiles_of(box) <= few) {
-            for (int y = top; y <= bottom; ++y)
-                for (int x = left; x <= right; ++x) f(number(x, y));
-            return;
-        }
-        const PixelEdges edges(bounds_, triangles.triangle(i));
-        for (int y = top; y <= bottom; ++y)
-            for (int x = left; x <= right; ++x)
-                if (!edges.exclude(pixels_of(static_cast<int>(number(x, y))))) f(number(x, y));
     }
     template <class Triangles, class Shade>
     void draw_tile(const Triangles& triangles, std::size_t first, int tile, std::span<Hit<T>> hits, bool onto,
                    RasterCounts& counts, const Shade& shade) {
-        const PixelBox here = pixels_of(tile);
-        const auto t = static_cast<std::size_t>(tile);
-        const std::span<std::uint32_t> list(listed_.data() + begins_[t], begins_[t + 1] - begins_[t]);
+        const PixelBox here = lists_.pixels(tile);
+        const auto list = lists_.front_to_back(tile);
         if (list.empty()) return onto ? void() : clear(here, hits);
-        order_front_to_back(list);
         if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>> && shades_nothing<Shade>)
             if (const RasterKernels* const in_lanes = kernels<Triangles>())
                 return draw_by_kernel(*in_lanes, triangles, first, here, list, hits, onto);
         if (!onto) clear(here, hits);
         float farthest = farthest_of(here, hits);
-        for (const std::uint32_t i : list) {
-            if (sights_[i].nearest > farthest)
+        for (const TileTriangle& triangle : list) {
+            if (triangle.nearest > farthest)
                 ++counts.hidden;
-            else if (test(triangles, first + i, common(sights_[i].box, here), hits, counts, shade))
+            else if (test(triangles, first + triangle.number(), triangle.box(here), hits, counts, shade))
                 farthest = farthest_of(here, hits);
         }
     }
-    /// Orders triangles by their nearest points in steps: a sort by counting. A few are left as they are.
-    void order_front_to_back(std::span<std::uint32_t> list) const {
-        constexpr std::size_t few = 8, steps = 32;
-        if (list.size() <= few) return;
-        static thread_local std::vector<std::uint32_t> given;
-        given.assign(list.begin(), list.end());
-        float least = std::numeric_limits<float>::max(), most = 0;
-        for (const std::uint32_t i : given) {
-            least = std::min(least, sights_[i].nearest);
-            most = std::max(most, std::min(sights_[i].nearest, std::numeric_limits<float>::max()));
-        }
-        const float scale = most > least ? (steps - 1) / (most - least) : 0;
-        const auto step = [&](std::uint32_t i) {
-            return static_cast<std::size_t>((std::min(sights_[i].nearest, most) - least) * scale);
-        };
-        std::array<std::uint32_t, steps + 1> places{};
-        for (const std::uint32_t i : given) ++places[step(i) + 1];
-        for (std::size_t k = 0; k < steps; ++k) places[k + 1] += places[k];
-        for (const std::uint32_t i : given) list[places[step(i)]++] = i;
+    RasterTile tile_of(const PixelBox& pixels, std::size_t first, std::span<const TileTriangle> list) const {
+        RasterTile tile{plane_, bounds_.frame(), pixels, list};
+        tile.first = static_cast<std::uint32_t>(first);
+        tile.row = static_cast<std::size_t>(samples_.width()), tile.names = names_;
+        return tile;
     }
     void draw_by_kernel(const RasterKernels& in_lanes, const TriangleMeshView<float>& triangles,
-                        std::size_t first, const PixelBox& pixels, std::span<const std::uint32_t> list,
+                        std::size_t first, const PixelBox& pixels, std::span<const TileTriangle> list,
                         std::span<Hit<float>> hits, bool onto) const {
-        RasterTile tile{nullptr,
-                        plane_,
-                        pixels,
-                        list,
-                        static_cast<std::uint32_t>(first),
-                        sights_.data(),
-                        &hits[samples_.number(pixels.left, pixels.top)],
-                        static_cast<std::size_t>(samples_.width()),
-                        onto,
-                        names_};
+        RasterTile tile = tile_of(pixels, first, list);
+        tile.hits = &hits[samples_.number(pixels.left, pixels.top)], tile.onto = onto;
         if (samples_.in_the_middle() && back_ == nullptr) return in_lanes.draw(triangles, tile);
         // Make the rays. Those of an instance may be unusable: others take their places.
         std::array<Ray<float, 3>, tile_side * tile_side> rays;
@@ -419,6 +361,83 @@ private:
             rays[static_cast<std::size_t>(std::countr_zero(left))] = rays[static_cast<std::size_t>(usable)];
         in_lanes.draw(triangles, tile);
         each_unusable([&](std::size_t i, Hit<float>& hit) { hit = before[i]; });
+    }
+
+    // ---- Visibility buffers ----
+
+    /// Draws one by kernels. False where that cannot be, or takes more than one list of triangles.
+    template <class Triangles>
+    bool see_in_tiles(const Triangles& triangles, std::span<Visible> visible, Executor& threads) {
+        if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>) {
+            const RasterKernels* const in_lanes = kernels<Triangles>();
+            if (in_lanes == nullptr || !samples_.in_the_middle() || triangles.size() > at_once) return false;
+            lists_.start(0, triangles.size());
+            if (!lists_.fill(seen(triangles), threads)) return false;
+            for_each_tile(threads, [&](int number) {
+                const PixelBox here = lists_.pixels(number);
+                const auto list = lists_.front_to_back(number);
+                if (list.empty()) {
+                    for (int y = here.top; y <= here.bottom; ++y)
+                        std::fill_n(&visible[samples_.number(here.left, y)], here.width(), Visible());
+                    return;
+                }
+                RasterTile tile = tile_of(here, 0, list);
+                tile.visible = &visible[samples_.number(here.left, here.top)];
+                in_lanes->see(triangles, tile);
+            });
+            return true;
+        } else {
+            return false;
+        }
+    }
+    template <class Triangles>
+    void resolve_samples(const Triangles& triangles, std::span<const Visible> visible, std::span<Hit<T>> hits,
+                         Executor& threads) {
+        if constexpr (std::is_same_v<Triangles, TriangleMeshView<float>>) {
+            const RasterKernels* const in_lanes = kernels<Triangles>();
+            if (in_lanes != nullptr && samples_.in_the_middle()) {
+                for_each_tile(threads, [&](int number) {
+                    const PixelBox here = lists_.pixels(number);
+                    const std::size_t first = samples_.number(here.left, here.top);
+                    RasterTile tile = tile_of(here, 0, {});
+                    tile.hits = &hits[first];
+                    in_lanes->resolve(triangles, tile, &visible[first]);
+                });
+                return;
+            }
+        }
+        for_each_row(threads, [&](int x, int y, std::size_t i) {
+            hits[i] = {};
+            if (visible[i].element == Hit<T>::none) return;
+            const auto given = samples_.ray(x, y);
+            const RayProbe<T, 3> probe(given, {given.origin, given.origin});
+            if (!probe.usable()) return;
+            const std::uint32_t element = visible[i].element;
+            if (const auto m = meet(probe.watertight(), triangles.triangle(element)); m && m->t >= 0)
+                hits[i] = {m->t, m->u, m->v, triangles.id(element), 0, 0, element};
+        });
+    }
+    /// How far forward of the eye the point at t on the ray of a sample is.
+    double forward_of(int x, int y, T t) const {
+        if (plane_.parallel || !(t <= std::numeric_limits<T>::max())) return static_cast<double>(t);
+        return static_cast<double>(t) * dot(Vec3d(samples_.ray(x, y).direction), Vec3d(plane_.forward));
+    }
+    /// Calls f(tile) over the executor; or f(x, y, number) for each sample.
+    template <class F>
+    void for_each_tile(Executor& threads, F f) const {
+        threads.for_each_piece(static_cast<std::size_t>(lists_.size()), 16,
+                               [&](std::size_t begin, std::size_t end) {
+                                   for (std::size_t t = begin; t < end; ++t) f(static_cast<int>(t));
+                               });
+    }
+    template <class F>
+    void for_each_row(Executor& threads, F f) const {
+        threads.for_each_piece(static_cast<std::size_t>(samples_.height()), 8,
+                               [&](std::size_t begin, std::size_t end) {
+                                   for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+                                       for (int x = 0; x < samples_.width(); ++x)
+                                           f(x, y, samples_.number(x, y));
+                               });
     }
 
     // ---- A triangle at some samples ----
@@ -473,7 +492,6 @@ private:
 
     const PictureSamples<T> samples_;
     const PicturePlane plane_;
-    const int columns_, tiles_;
     // What is drawn at the moment.
     PixelBounds bounds_{samples_};
     const Affine<3>* back_ = nullptr;
@@ -481,13 +499,8 @@ private:
     bool counts_ = false;
     std::vector<Prepared> rays_;  // empty until they are needed
     bool rays_placed_ = false;    // whether these are in the space of an instance
-    // Of the triangles that are drawn at the moment: where each is seen, and lists of those in each tile.
-    struct InTile {
-        std::uint32_t tile, triangle;
-    };
-    BareVector<Sight> sights_;
-    std::vector<BareVector<InTile>> lists_;  // by block of triangles
-    BareVector<std::uint32_t> places_, begins_, listed_;
+    TileLists lists_;
+    BareVector<Sight> sights_;  // where each triangle is seen that is drawn at the moment, but in tiles
 };
 
 /// Finds what is visible by drawing triangles, or instances. Borrows the view's arrays.
