@@ -1,42 +1,17 @@
 #include "embree.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <limits>
-#include <stdexcept>
-
-#if defined(__SSE3__) || defined(__x86_64__)
-#include <xmmintrin.h>
-#endif
 
 #include <hedgerow/measure/clock.h>
+
+#include "embree_scene.h"
 
 namespace hedgerow::measure {
 
 namespace {
-
-/// Sets flush-to-zero and denormals-are-zero while it lives, which Embree's manual asks of its callers.
-class FlushToZero {
-public:
-#if defined(__SSE3__) || defined(__x86_64__)
-    FlushToZero() : before_(_mm_getcsr()) {
-        _mm_setcsr(before_ | 0x8040u);
-    }
-    ~FlushToZero() {
-        _mm_setcsr(before_);
-    }
-    FlushToZero(const FlushToZero&) = delete;
-    FlushToZero& operator=(const FlushToZero&) = delete;
-
-private:
-    unsigned before_;
-#else
-    FlushToZero() {}
-#endif
-};
 
 /// Bytes that Embree has allocated, now and at most, as its memory monitor reports them.
 struct Memory {
@@ -50,11 +25,6 @@ struct Memory {
         return true;
     }
 };
-
-RTCRay ray_of(const Ray3f& r) {
-    return {r.origin[0], r.origin[1], r.origin[2], r.t_min, r.direction[0], r.direction[1], r.direction[2], 0,
-            r.t_max,     0xFFFFFFFFu, 0,           0};
-}
 
 struct Packets16 final : PeerIndex::Packets {
     Packets16(std::span<const Ray3f> from, bool together) : rays(from.size() / 16), coherent(together) {
@@ -74,39 +44,15 @@ struct Packets16 final : PeerIndex::Packets {
 
 class EmbreeIndex final : public PeerIndex {
 public:
-    EmbreeIndex(const TriangleMesh<float>& mesh, const PeerBuild& how, const std::string& config) {
-        // Open a device whose allocations are counted.
-        device_ = rtcNewDevice(config.c_str());
-        if (device_ == nullptr) throw std::runtime_error("Embree refuses '" + config + "'");
-        rtcSetDeviceMemoryMonitorFunction(device_, &Memory::changed, &memory_);
-        scene_ = rtcNewScene(device_);
-        rtcSetSceneFlags(scene_, how.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-        rtcSetSceneBuildQuality(
-            scene_, how.like == WideBuilder::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
-        // Share the mesh with Embree.
-        RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        vertices_ = mesh.vertices;
-        vertices_.emplace_back();  // Embree reads 16 bytes at the last vertex
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_.data(), 0, 12,
-                                   mesh.vertices.size());
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
-                                   12, mesh.triangles.size());
-        rtcCommitGeometry(g);
-        rtcAttachGeometry(scene_, g);
-        rtcReleaseGeometry(g);
+    EmbreeIndex(const TriangleMesh<float>& mesh, const PeerBuild& how, const std::string& config)
+        : held_(mesh, config, how.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE,
+                how.like == WideBuilder::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM) {
         // Measure the time and the bytes of the build alone.
-        const ssize_t before = memory_.now;
-        memory_.most = before;
-        build_seconds = measure::seconds_of([&] { rtcCommitScene(scene_); }, measure::Clock::process);
-        bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.now - before));
-        most_bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.most - before));
+        rtcSetDeviceMemoryMonitorFunction(held_.device(), &Memory::changed, &memory_);
+        build_seconds = measure::seconds_of([&] { held_.commit(); }, measure::Clock::process);
+        bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.now));
+        most_bytes = static_cast<std::size_t>(std::max<ssize_t>(0, memory_.most));
     }
-    ~EmbreeIndex() override {
-        rtcReleaseScene(scene_);
-        rtcReleaseDevice(device_);
-    }
-    EmbreeIndex(const EmbreeIndex&) = delete;
-    EmbreeIndex& operator=(const EmbreeIndex&) = delete;
 
     std::size_t closest(std::span<const Ray3f> rays) const override {
         const FlushToZero flush;
@@ -180,10 +126,9 @@ private:
         return found;
     }
 
-    Memory memory_;
-    RTCDevice device_;
-    RTCScene scene_;
-    std::vector<Vec3f> vertices_;
+    Memory memory_;  // outlives the device, which reports to it
+    EmbreeScene held_;
+    RTCScene scene_ = held_.scene();
 };
 
 class Embree final : public Peer {
