@@ -160,9 +160,9 @@ TEST_F(FieldTest, EveryKindOfSceneInSpace) {
     }
     // The picture does not depend on the number of threads.
     draw("gen:teapot:500 --field signed-distance --threads 1");
-    const auto one = bytes_of(file("field.png"));
+    const auto one = pixels_of(file("field.png"));
     draw("gen:teapot:500 --field signed-distance --threads 4");
-    EXPECT_EQ(bytes_of(file("field.png")), one);
+    EXPECT_EQ(pixels_of(file("field.png")), one);
 }
 
 TEST_F(FieldTest, WrongUsageIsTwoAndBadInputIsThree) {

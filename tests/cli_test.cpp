@@ -1,7 +1,9 @@
 /// The tool as its user sees it: exit codes, messages, pictures.
 #include <nlohmann/json.hpp>
 
+#include <hedgerow/io/exr.h>
 #include <hedgerow/io/image.h>
+#include <hedgerow/version.h>
 
 #include "tool.h"
 
@@ -85,7 +87,7 @@ TEST_F(Cli, EveryStructureMakesTheSamePicture) {
                 run("render gen:teapot:500 --quiet --size 48x32 --shading " + std::string(shading) +
                     " --structure " + structure + " -o " + file("same.png"));
             ASSERT_EQ(r.code, 0) << r.output;
-            const auto picture = bytes_of(file("same.png"));
+            const auto picture = pixels_of(file("same.png"));
             if (first.empty()) first = picture;
             EXPECT_EQ(picture, first) << structure << ", " << shading;
         }
@@ -119,12 +121,12 @@ TEST_F(Cli, ASavedIndexIsDescribedAndRendered) {
 
         // Pictures of the file are those of the scene.
         ASSERT_EQ(run("render " + scene + view).code, 0);
-        const std::string picture = bytes_of(file("saved.png"));
+        const std::string picture = pixels_of(file("saved.png"));
         for (const std::string structure : {"", " --structure wide", " --structure kdtree"}) {
             // The file does not record the scene that the mesh is from, so the axis that is up is given.
             const auto rendered = run("render --json --up z " + saved + structure + view);
             ASSERT_EQ(rendered.code, 0) << rendered.output;
-            EXPECT_EQ(bytes_of(file("saved.png")), picture) << precision << structure;
+            EXPECT_EQ(pixels_of(file("saved.png")), picture) << precision << structure;
             const bool built = structure == " --structure kdtree";
             EXPECT_NE(rendered.output.find(built ? "\"build_seconds\"" : "\"load_seconds\""),
                       std::string::npos)
@@ -157,8 +159,8 @@ TEST_F(Cli, KernelsRenderTheBitsOfWalksThatCount) {
     EXPECT_EQ(fast.output.find("nodes_per_ray"), std::string::npos) << fast.output;
     EXPECT_NE(counted.output.find("nodes_per_ray"), std::string::npos) << counted.output;
     EXPECT_NE(counted.output.find("\"packets\": 0"), std::string::npos) << counted.output;
-    EXPECT_EQ(bytes_of(file("fast.png")), bytes_of(file("counted.png")));
-    EXPECT_EQ(bytes_of(file("fast.png")), bytes_of(file("other.png")));
+    EXPECT_EQ(pixels_of(file("fast.png")), pixels_of(file("counted.png")));
+    EXPECT_EQ(pixels_of(file("fast.png")), pixels_of(file("other.png")));
 }
 
 TEST_F(Cli, RasterisingMakesThePictureOfRays) {
@@ -169,10 +171,10 @@ TEST_F(Cli, RasterisingMakesThePictureOfRays) {
                    drawn = run(scene + file("drawn.png") + " --visibility raster");
         ASSERT_EQ(cast.code, 0) << cast.output;
         ASSERT_EQ(drawn.code, 0) << drawn.output;
-        EXPECT_EQ(bytes_of(file("cast.png")), bytes_of(file("drawn.png")));
+        EXPECT_EQ(pixels_of(file("cast.png")), pixels_of(file("drawn.png")));
         const auto beamed = run(scene + file("beamed.png") + " --visibility beams");
         ASSERT_EQ(beamed.code, 0) << beamed.output;
-        EXPECT_EQ(bytes_of(file("cast.png")), bytes_of(file("beamed.png")));
+        EXPECT_EQ(pixels_of(file("cast.png")), pixels_of(file("beamed.png")));
         EXPECT_NE(drawn.output.find("\"triangles_drawn\""), std::string::npos) << drawn.output;
         // Without light there is no need for an index.
         EXPECT_EQ(drawn.output.find("\"rays\": 0") != std::string::npos, !options.empty()) << drawn.output;
@@ -186,7 +188,7 @@ TEST_F(Cli, RasterisingMakesThePictureOfRays) {
         ASSERT_EQ(run(scene + words + "-o " + file("cast" + ending)).code, 0);
         ASSERT_EQ(run(scene + words + "--visibility raster -o " + file("drawn" + ending)).code, 0);
         if (ending == ".png") {
-            EXPECT_EQ(bytes_of(file("cast.png")), bytes_of(file("drawn.png")));
+            EXPECT_EQ(pixels_of(file("cast.png")), pixels_of(file("drawn.png")));
         }
     }
     expect_usage("render gen:cube --visibility raster --shading steps -o " + file("x.png"),
@@ -197,12 +199,26 @@ TEST_F(Cli, RasterisingMakesThePictureOfRays) {
     expect_bad("render gen:cube --visibility raster --projection panorama -o " + file("x.png"), "panorama");
 }
 
+TEST_F(Cli, PicturesSayHowTheyWereMade) {
+    for (const std::string name : {"a.png", "a.exr"}) {
+        if (name == "a.exr" && !hedgerow::exr_supported()) continue;
+        const std::string command = "render gen:soup:50 --seed 9 --quiet --size 16x9 -o " + file(name);
+        ASSERT_EQ(run(command).code, 0);
+        const std::string bytes = bytes_of(file(name));
+        for (const std::string& note : {"hedgerow " + command, std::string("hedgerow ") + hedgerow::version})
+            EXPECT_NE(bytes.find(note), bytes.npos) << note;
+        EXPECT_EQ(run("--version").output, std::string("hedgerow ") + hedgerow::version + "\n");
+    }
+    ASSERT_EQ(run("draw gen:soup:50 --quiet -o '" + file("it is.png") + "'").code, 0);
+    EXPECT_NE(bytes_of(file("it is.png")).find("-o '" + file("it is.png") + "'"), std::string::npos);
+}
+
 TEST_F(Cli, ColoursAreThoseOfTheScene) {
     const std::string scene = "render gen:cornell-box --quiet --size 64x64 -o ";
     ASSERT_EQ(run(scene + file("grey.png")).code, 0);
     ASSERT_EQ(run(scene + file("colour.png") + " --shading colour").code, 0);
     ASSERT_EQ(run(scene + file("drawn.png") + " --shading colour --visibility raster").code, 0);
-    EXPECT_EQ(bytes_of(file("colour.png")), bytes_of(file("drawn.png")));
+    EXPECT_EQ(pixels_of(file("colour.png")), pixels_of(file("drawn.png")));
     const auto colour = hedgerow::load_png(file("colour.png")), grey = hedgerow::load_png(file("grey.png"));
     EXPECT_GT(colour.at(3, 32)[0], colour.at(3, 32)[1] + 40) << "the left wall is red";
     EXPECT_LT(std::abs(int(grey.at(3, 32)[0]) - int(grey.at(3, 32)[1])), 20);
@@ -219,14 +235,14 @@ TEST_F(Cli, LightGoesThroughSurfaces) {
     const auto figures = nlohmann::json::parse(clear.output);
     EXPECT_GT(figures["layers"].get<int>(), 64 * 64);
     ASSERT_EQ(run(scene + file("drawn.png") + " --shading colour --opacity 0.5 --visibility raster").code, 0);
-    EXPECT_EQ(bytes_of(file("clear.png")), bytes_of(file("drawn.png")));
-    EXPECT_NE(bytes_of(file("clear.png")), bytes_of(file("opaque.png")));
+    EXPECT_EQ(pixels_of(file("clear.png")), pixels_of(file("drawn.png")));
+    EXPECT_NE(pixels_of(file("clear.png")), pixels_of(file("opaque.png")));
     // Without looks, too. The box's materials are opaque.
     ASSERT_EQ(run(scene + file("grey.png") + " --opacity 0.5 --structure kdtree").code, 0);
     ASSERT_EQ(run(scene + file("beams.png") + " --opacity 0.5 --visibility beams").code, 0);
-    EXPECT_EQ(bytes_of(file("grey.png")), bytes_of(file("beams.png")));
+    EXPECT_EQ(pixels_of(file("grey.png")), pixels_of(file("beams.png")));
     ASSERT_EQ(run(scene + file("same.png") + " --shading colour --transparency").code, 0);
-    EXPECT_EQ(bytes_of(file("same.png")), bytes_of(file("opaque.png")));
+    EXPECT_EQ(pixels_of(file("same.png")), pixels_of(file("opaque.png")));
     expect_usage(scene + file("x.png") + " --transparency", "--opacity");
     expect_usage(scene + file("x.png") + " --opacity 1.5", "--opacity");
     expect_usage(scene + file("x.png") + " --opacity 0.5 --shading steps", "what rays cost");
@@ -239,9 +255,9 @@ TEST_F(Cli, ConesSmoothEdgesAndShadows) {
     ASSERT_EQ(cones.code, 0);
     EXPECT_EQ(nlohmann::json::parse(cones.output)["cones"].get<int>(), 64 * 64);
     ASSERT_EQ(run(scene + file("soft.png") + " --light-size 5 --visibility raster").code, 0);
-    const auto rays = bytes_of(file("rays.png"));
-    EXPECT_NE(bytes_of(file("cones.png")), rays);
-    EXPECT_NE(bytes_of(file("soft.png")), rays);
+    const auto rays = pixels_of(file("rays.png"));
+    EXPECT_NE(pixels_of(file("cones.png")), rays);
+    EXPECT_NE(pixels_of(file("soft.png")), rays);
     for (const char* options : {"--spp 4", "--visibility raster", "--structure bvh", "--shading steps",
                                 "--shading colour", "--opacity 0.5", "--counts"})
         expect_usage(scene + file("x.png") + " --cones " + options, "cones");
@@ -278,7 +294,7 @@ TEST_F(Cli, ViewsAndProjectionsMakeDifferentPictures) {
         const auto r = run("render gen:teapot:500 --quiet --size 60x40 " + std::string(options) + " -o " +
                            file("a.png"));
         ASSERT_EQ(r.code, 0) << options << r.output;
-        pictures.push_back(bytes_of(file("a.png")));
+        pictures.push_back(pixels_of(file("a.png")));
         for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
             EXPECT_NE(pictures[i], pictures.back()) << options;
     }

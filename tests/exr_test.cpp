@@ -6,6 +6,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfStringAttribute.h>
 
 #include <bit>
 #include <limits>
@@ -114,6 +115,23 @@ TEST(Exr, ManyChannelsWithLongNames) {
     }
     save_exr(folder / "a.exr", layers);
     EXPECT_EQ(Read(folder / "a.exr").words.size(), 100u);
+}
+
+TEST(Exr, KeepsNotes) {
+    TempFolder folder;
+    const std::vector<float> values(6, 2.5f);
+    const Layers layers{3, 2, {{"Y", Strided<float>(values)}}};
+    save_exr(folder / "a.exr", layers, {}, {{"Command", "draw h\u00e4.ply"}, {"Seed", "7"}});
+    const Imf::InputFile file((folder / "a.exr").c_str());
+    EXPECT_EQ(file.header().typedAttribute<Imf::StringAttribute>("command").value(), "draw h\u00e4.ply");
+    EXPECT_EQ(file.header().typedAttribute<Imf::StringAttribute>("seed").value(), "7");
+    for (const Note& note : {Note{"", "a"}, Note{"Channels", "a"}, Note{"seed", "8"}})
+        expect_input_error(
+            [&] {
+                save_exr(folder / "b.exr", layers, {}, {{"Seed", "1"}, note});
+            },
+            {"b.exr", "note"});
+    EXPECT_EQ(folder.file_count(), 1u);
 }
 
 TEST(Exr, BadInput) {

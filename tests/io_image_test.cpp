@@ -55,6 +55,25 @@ TEST(Exr, StaysAsItWasWhereSavingIsCancelled) {
     EXPECT_EQ(folder.file_count(), 1u);
 }
 
+TEST(Png, KeepsNotes) {
+    TempFolder folder;
+    const Image image(30, 20, {1, 2, 3});
+    save_png(folder / "a.png", image, {},
+             {{"Software", "hedgerow"}, {"Seed", ""}, {"Command", "draw h\u00e4.ply"}});
+    EXPECT_EQ(load_png(folder / "a.png"), image);
+    const std::string bytes = contents(folder / "a.png");
+    const std::string separators(5, '\0');  // of iTXt: word, not compressed, no language, no word in it
+    EXPECT_NE(bytes.find("iTXtSoftware" + separators + "hedgerow"), bytes.npos);
+    EXPECT_NE(bytes.find("iTXtCommand" + separators + "draw h\u00e4.ply"), bytes.npos);
+    for (const Note& note : {Note{"", "a"}, Note{"two words", "a"}, Note{std::string(80, 'a'), "a"},
+                             Note{"a", std::string(1, '\0')}})
+        expect_input_error(
+            [&] {
+                save_png(folder / "b.png", image, {}, {{"Seed", "1"}, note});
+            },
+            {"b.png", "note 2"});
+}
+
 TEST(Png, BadInput) {
     TempFolder folder;
     expect_input_error([&] { save_png(folder / "a.png", Image()); }, {"a.png", "0x0"});

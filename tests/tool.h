@@ -17,6 +17,8 @@
 
 #include <gtest/gtest.h>
 
+#include <hedgerow/io/image.h>
+
 namespace hedgerow {
 
 struct ToolResult {
@@ -89,6 +91,14 @@ inline std::string bytes_of(const std::filesystem::path& path) {
     std::ostringstream all;
     all << std::ifstream(path, std::ios::binary).rdbuf();
     return all.str();
+}
+
+/// The size and the pixels of a PNG, whose other bytes say how it was made.
+inline std::string pixels_of(const std::filesystem::path& path) {
+    const hedgerow::Image image = hedgerow::load_png(path);
+    std::string all = std::to_string(image.width) + "x" + std::to_string(image.height) + ":";
+    for (const auto& pixel : image.pixels) all.append(pixel.begin(), pixel.end());
+    return all;
 }
 
 /// A test with a folder of its own.

@@ -16,6 +16,7 @@
 
 #include "draw.h"
 #include "field_picture.h"
+#include "picture_notes.h"
 #include "slice.h"
 
 namespace hedgerow::cli {
@@ -192,7 +193,8 @@ int draw_field_of(const DrawArguments& a, const P& set) {
                     plane.frame.high[0], letter(plane.up), plane.frame.low[1], plane.frame.high[1])};
     if (!note.empty()) title.push_back(note);
     save_png(finished.output,
-             field_picture(field, scale, title, flat_primitives(set, plane.section, 0.01 * plane.diagonal)));
+             field_picture(field, scale, title, flat_primitives(set, plane.section, 0.01 * plane.diagonal)),
+             {}, picture_notes(a.seed));
     if (a.json) {
         ordered_json report = {{"output", finished.output},
                                {"field", a.field},

@@ -55,7 +55,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
                                       picture.most)},
                          colour_bar_left(picture.image, options.scale.top)),
               letter_scale(picture.image));
-    save(finished.output, picture);
+    save(finished.output, picture, a.seed);
     if (a.json)
         print_json({{"output", finished.output},
                     {"structure", a.structure},

@@ -12,6 +12,7 @@
 #include <hedgerow/render/wireframe.h>
 
 #include "draw.h"
+#include "picture_notes.h"
 #include "report/svg.h"
 
 namespace hedgerow::cli {
@@ -173,7 +174,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
         text += fmt::format("{}: {}\n", spec, facts);
     }
     // Save the picture and report.
-    save_png(a.output, joined(images));
+    save_png(a.output, joined(images), {}, picture_notes(a.seed));
     if (a.json)
         print_json({{"output", a.output}, {"structures", report}});
     else if (!a.quiet)

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <new>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -13,9 +14,11 @@
 
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
+#include <hedgerow/version.h>
 
 #include "arguments.h"
 #include "memory.h"
+#include "picture_notes.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -136,13 +139,14 @@ void use_instruction_set_of_environment() {
 }
 
 int run(int count, char** arguments) {
+    remember_command(count, arguments);
     CLI::App app(
         "Examples:\n  hedgerow render gen:teapot-in-stadium -o stadium.png\n  hedgerow render dragon.ply "
         "--shading steps -o steps.png\n"
         "  hedgerow info dragon.ply\n  hedgerow bench dragon.ply\n  hedgerow generate gen:terrain:200000 -o "
         "terrain.ply\n\n"
         "Spatial data structures for rays, geometric queries and particles.");
-    app.set_version_flag("--version", "hedgerow 0.1.0");
+    app.set_version_flag("--version", std::string("hedgerow ") + version);
     app.require_subcommand(1);
     // Add the verbs with their options.
     std::vector<std::pair<CLI::App*, Run>> runs;

@@ -13,6 +13,7 @@
 
 #include "density_picture.h"
 #include "nbody.h"
+#include "picture_notes.h"
 #include "view.h"
 
 namespace hedgerow::cli {
@@ -128,7 +129,7 @@ void read_options(const fs::path& path, NbodyArguments& a, DensityFrame& frame) 
 class Recorder {
 public:
     Recorder(const NbodyArguments& a, const RunFolder& folder, const DensityFrame& frame)
-        : folder_(folder), frame_(frame), period_(a.period), began_(now()) {
+        : folder_(folder), frame_(frame), period_(a.period), seed_(a.seed), began_(now()) {
         if (a.size != no_pictures) std::tie(width_, height_) = parse_size(a.size);
     }
 
@@ -151,7 +152,8 @@ public:
         save_png(folder_.picture(step),
                  density_picture(state.particles, frame_, width_, height_,
                                  {fmt::format("t = {:.4g}", state.time),
-                                  fmt::format("{} particles", state.particles.size())}));
+                                  fmt::format("{} particles", state.particles.size())}),
+                 {}, picture_notes(seed_));
     }
     bool has(std::uint64_t step) const { return any_ && last_ == step; }
 
@@ -159,7 +161,9 @@ private:
     const RunFolder& folder_;
     const DensityFrame& frame_;
     std::ofstream log_;
-    double period_, began_;
+    double period_;
+    std::uint64_t seed_;
+    double began_;
     int width_ = 0, height_ = 0;
     std::uint64_t last_ = 0;
     bool any_ = false;

@@ -80,7 +80,7 @@ void report(const RenderArguments& a, const Outcome& o) {
 
 int save_and_report(const RenderArguments& a, Outcome o) {
     o.finished = finish_picture(a.output, o.picture.pixels > 0, o.picture.whole);
-    save(o.finished.output, o.picture);
+    save(o.finished.output, o.picture, a.seed);
     report(a, o);
     return o.finished.exit_code();
 }

@@ -15,6 +15,7 @@
 #include <hedgerow/render/camera/presets.h>
 
 #include "memory.h"
+#include "picture_notes.h"
 
 namespace hedgerow::cli {
 
@@ -99,11 +100,11 @@ void check_picture_memory(const std::string& size, bool layers) {
     expect_memory("a picture of " + size, pixel * width * height, "ask for a smaller --size");
 }
 
-void save(const std::string& output, const Picture& picture) {
+void save(const std::string& output, const Picture& picture, std::uint64_t seed) {
     if (picture.seen.empty())
-        save_png(output, picture.image);
+        save_png(output, picture.image, {}, picture_notes(seed));
     else
-        save_exr(output, picture.layers());
+        save_exr(output, picture.layers(), {}, picture_notes(seed));
 }
 
 std::string up_text(const ViewArguments& view, const Common& common, const Upright& upright) {

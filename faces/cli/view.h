@@ -69,7 +69,7 @@ FinishedPicture finish_picture(const std::string& output, bool some, bool all);
 void check_picture_memory(const std::string& size, bool layers);
 
 /// Saves the layers of a picture as .exr if it has them, else its colours as .png.
-void save(const std::string& output, const Picture& picture);
+void save(const std::string& output, const Picture& picture, std::uint64_t seed);
 
 /// Small spheres in place of points, since rays pass between points. A radius of 0 stands for 1/10 of the
 /// box's diagonal over the cube root of the number of points, or for 1 if the points coincide. O(n).

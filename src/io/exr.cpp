@@ -14,10 +14,13 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
 
+#include <cctype>
 #include <cstring>
 #include <set>
 
+#include "check_notes.h"
 #include "image_size.h"
 #include "output_file.h"
 #endif
@@ -97,9 +100,22 @@ private:
     std::vector<char> bytes_;
 };
 
-void write(detail::OutputFile& file, const Layers& layers) {
+/// The header, without channels.
+Imf::Header header_of(const std::filesystem::path& path, const Layers& layers, const Notes& notes) {
     Imf::Header header(layers.width, layers.height);
     header.compression() = Imf::ZIP_COMPRESSION;
+    for (const Note& note : notes) {
+        std::string name = note.word;
+        for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (header.find(name) != header.end())
+            throw InputError(path.string() + ": the word \"" + note.word +
+                             "\" of a note is used twice, or is one of OpenEXR's own. Choose another");
+        header.insert(name, Imf::StringAttribute(note.text));
+    }
+    return header;
+}
+
+void write(detail::OutputFile& file, Imf::Header header, const Layers& layers) {
     for (const Channel& channel : layers.channels)
         header.channels().insert(channel.name, Imf::Channel(Row::type_of(channel)));
     Stream stream(file);
@@ -117,11 +133,14 @@ void write(detail::OutputFile& file, const Layers& layers) {
 
 }  // namespace
 
-void save_exr(const std::filesystem::path& path, const Layers& layers, const Progress& progress) {
+void save_exr(const std::filesystem::path& path, const Layers& layers, const Progress& progress,
+              const Notes& notes) {
     check(path, layers);
+    detail::check_notes(path, notes);
+    const Imf::Header header = header_of(path, layers, notes);
     detail::OutputFile file(path, progress);
     try {
-        write(file, layers);
+        write(file, header, layers);
     } catch (const Iex::BaseExc& error) {
         throw OutputError(path.string() + ": cannot be written (" + error.what() +
                           "). Check the folder, its permissions and the space left");
@@ -133,7 +152,7 @@ bool exr_supported() {
     return true;
 }
 #else
-void save_exr(const std::filesystem::path& path, const Layers&, const Progress&) {
+void save_exr(const std::filesystem::path& path, const Layers&, const Progress&, const Notes&) {
     throw InputError(path.string() +
                      ": this build has no OpenEXR: build with HEDGEROW_EXR=ON, or save a PNG");
 }

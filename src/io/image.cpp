@@ -1,15 +1,19 @@
-/// PNG through libpng's simplified interface, which reports by return values.
+/// PNG through libpng: reading by its simplified interface, which reports by return values; writing row by
+/// row, with notes.
 #include <hedgerow/io/image.h>
 
 #include <png.h>
 
+#include <csetjmp>
 #include <cstring>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <hedgerow/base/error.h>
 
 #include "byte_source.h"
+#include "check_notes.h"
 #include "image_size.h"
 #include "output_file.h"
 
@@ -29,17 +33,61 @@ struct Handle : png_image {
     throw InputError(name + ": is not a sound PNG image (" + png.message + "). Fetch or write it again");
 }
 
+/// libpng's writer, freed whatever happens.
+struct Writer {
+    std::string message;  // of what went wrong
+    png_structp png =
+        png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, fail, [](png_structp, png_const_charp) {});
+    png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
+
+    Writer() = default;
+    ~Writer() { png_destroy_write_struct(&png, &info); }
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    [[noreturn]] static void fail(png_structp png, png_const_charp what) {
+        *static_cast<std::string*>(png_get_error_ptr(png)) = what;
+        png_longjmp(png, 1);
+    }
+};
+// Where libpng jumps back to, nothing may wait to be destroyed: what has to be is the caller's. False if it
+// failed.
+bool write_png(const Writer& writer, const Image& image, std::vector<png_text>& texts,
+               detail::OutputFile& file) {
+    if (writer.info == nullptr || setjmp(png_jmpbuf(writer.png)) != 0) return false;
+    png_init_io(writer.png, file.stream());
+    const auto width = static_cast<png_uint_32>(image.width), height = static_cast<png_uint_32>(image.height);
+    png_set_IHDR(writer.png, writer.info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_text(writer.png, writer.info, texts.data(), static_cast<int>(texts.size()));
+    png_write_info(writer.png, writer.info);
+    for (png_uint_32 y = 0; y < height; ++y) {
+        png_write_row(writer.png, image.pixels[std::size_t(y) * width].data());
+        file.advance(width);
+    }
+    png_write_end(writer.png, writer.info);
+    return true;
+}
+
 }  // namespace
 
-void save_png(const std::filesystem::path& path, const Image& image, const Progress& progress) {
+void save_png(const std::filesystem::path& path, const Image& image, const Progress& progress,
+              const Notes& notes) {
     detail::expect_pixels(path, image.width, image.height, image.pixels.size(), "pixels");
-    Handle png;
-    png.width = static_cast<png_uint_32>(image.width);
-    png.height = static_cast<png_uint_32>(image.height);
-    png.format = PNG_FORMAT_RGB;
+    detail::check_notes(path, notes);
+    std::vector<std::string> words, values;  // libpng takes them as not const
+    for (const Note& note : notes) words.push_back(note.word), values.push_back(note.text);
+    std::vector<png_text> texts(notes.size());
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+        texts[i].compression = PNG_ITXT_COMPRESSION_NONE;
+        texts[i].key = words[i].data(), texts[i].text = values[i].data();
+    }
     detail::OutputFile file(path, progress);
-    if (!png_image_write_to_stdio(&png, file.stream(), 0, image.pixels.data(), 0, nullptr))
-        throw OutputError(path.string() + ": cannot be written (" + png.message +
+    file.expect(image.pixels.size());
+    const Writer writer;
+    if (!write_png(writer, image, texts, file))
+        throw OutputError(path.string() + ": cannot be written (" + writer.message +
                           "). Check the folder, its permissions and the space left");
     file.commit();
 }

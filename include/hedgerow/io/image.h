@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <vector>
 
+#include <hedgerow/io/notes.h>
 #include <hedgerow/parallel/progress.h>
 
 namespace hedgerow {
@@ -43,10 +44,11 @@ inline void paste(const Image& from, Image& into, int x, int y) {
 }
 
 /// Writes a PNG file under another name beside `path`, and then renames it. Throws InputError if the image
-/// has no pixels or does not have width × height of them, and OutputError if the path cannot be written.
-/// Throws Cancelled if `progress` is cancelled, which is checked once the image is compressed; a file that
-/// was there before is kept.
-void save_png(const std::filesystem::path& path, const Image& image, const Progress& progress = {});
+/// has no pixels or does not have width × height of them, or for a note that cannot be kept, and OutputError
+/// if the path cannot be written. Throws Cancelled if `progress`, which counts pixels, is cancelled; a file
+/// that was there before is kept.
+void save_png(const std::filesystem::path& path, const Image& image, const Progress& progress = {},
+              const Notes& notes = {});
 
 /// Reads any PNG as 8-bit RGB: greys and palettes become RGB, 16 bits become 8, and transparent pixels are
 /// laid over black. Throws InputError if the file is not a PNG, is damaged, or declares more pixels than a
