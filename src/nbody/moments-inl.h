@@ -132,9 +132,13 @@ private:
         for (V& sum : sums) sum = hn::Zero(f);
         const V unit = hn::Set(f, 1 / cells.scale[c]);
         for (std::size_t i = first; i < end; i += hn::Lanes(f)) {
-            const auto here = hn::FirstN(f, end - i);
-            const auto row = [&](const BareVector<T>& all)
-                                 HWY_ATTR { return hn::IfThenElseZero(here, hn::LoadU(f, all.data() + i)); };
+            // What follows the last point belongs to another cell, and perhaps to another thread.
+            const auto row = [&](const BareVector<T>& all) HWY_ATTR {
+                if (i + hn::Lanes(f) <= end) return hn::LoadU(f, all.data() + i);
+                alignas(64) T last[HWY_MAX_BYTES / sizeof(T)] = {};
+                std::copy(all.data() + i, all.data() + end, last);
+                return hn::Load(f, last);
+            };
             const V x = hn::Mul(unit, row(cells.dx)), y = hn::Mul(unit, row(cells.dy)),
                     z = hn::Mul(unit, row(cells.dz));
             expand_points<p>(f, row(cells.charge), x, y, z, sums);
