@@ -91,7 +91,7 @@ private:
     // The element of a hit so far, as ties see it: equal t goes to the lowest (instance, element).
     HWY_INLINE std::uint32_t element_so_far(const Hit<float>& hit) const {
         if (hit.instance == tile_.names.instance) return hit.element;
-        return hit.instance < tile_.names.instance ? 0 : Hit<float>::none;
+        return hit.instance < tile_.names.instance ? 0 : none;
     }
     HWY_INLINE Hit<float> hit_of(int i) const {
         const RasterNames& names = tile_.names;
@@ -104,11 +104,9 @@ private:
     }
     // No hit of the rays that go this way is farther forward of the eye.
     HWY_INLINE float farthest_of(std::uint32_t way) const {
-        constexpr auto f = PacketRays::f;
-        constexpr auto u32 = PacketRays::u32;
-        auto most = hn::Zero(f);
-        for (int p = 0; p < PacketRays::parts; ++p) {
-            const int at = p * PacketRays::lanes;
+        V most = hn::Zero(f);
+        for (int p = 0; p < parts; ++p) {
+            const int at = p * lanes;
             auto forward = hn::Set(f, tile_.names.placed ? 1.0f : 0.0f);  // at most that in the world
             for (int k = 0; k < 3 && !tile_.names.placed; ++k)
                 forward = hn::MulAdd(hn::Load(f, rays_.numbers[p][3 + k]), hn::Set(f, tile_.plane.forward[k]),

@@ -25,8 +25,8 @@ namespace hedgerow::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Functions of eight triangles that are linear in the place (x, y) of a sample, in pixels from the middle of
-// a tile. A corner P is (right, down, 1) times its distance forward of the eye, with right and down in
-// pixels; of parallel rays, without that factor.
+// a box of samples. A corner P is (right, down, 1) times its distance forward of the eye, with right and down
+// in pixels; of parallel rays, without that factor.
 //
 // *Edges* (Olano and Greer 1997): the triple products of (x, y, 1) and two corners, which are not below 0
 // within the triangle, by the sign of the three corners'. What the test of a ray sees is the triangle with
@@ -194,7 +194,7 @@ private:
         for (int i = 0; i < 3; ++i)
             band[i] = hn::MulAdd(slopes(a[i], b[i]), room,
                                  hn::Mul(hn::Mul(away[(i + 1) % 3], away[(i + 2) % 3]), all(8 * u)));
-        // Floats hold the numbers with all their bits, and the test does not see the triangle from behind.
+        // Floats hold the numbers with all their bits, and from which side the triangle is seen is sure.
         constexpr float tiny = 1e-30f, huge = 1e30f;
         const W size = hn::Abs(volume), farthest_away = greatest(away),
                 most_h = frame.parallel ? one : hn::Max(hn::Abs(least_forward), hn::Abs(greatest(forward)));

@@ -91,12 +91,8 @@ public:
         detail::expect_room("samples", samples_.size(), visible.size());
         IeeeExecutor threads(executor);
         counts_ = false;
-        bool seen = false;
-        in_each_space(mesh, 0, [&](const auto& triangles) {
-            seen = see_in_tiles(triangles, visible, threads);
-            return RasterCounts();
-        });
-        if (seen) return {mesh.size()};
+        enter(nullptr, {});
+        if (see_in_tiles(mesh, visible, threads)) return {mesh.size()};
         BareVector<Hit<T>> hits(samples_.size());
         const RasterCounts counts = draw(mesh, hits, executor);
         for_each_row(threads, [&](int x, int y, std::size_t i) {
@@ -116,10 +112,8 @@ public:
                                  " of a mesh of " + std::to_string(mesh.size()) + " triangles");
         IeeeExecutor threads(executor);
         counts_ = false;
-        in_each_space(mesh, 0, [&](const auto& triangles) {
-            resolve_samples(triangles, visible, hits, threads);
-            return RasterCounts();
-        });
+        enter(nullptr, {});
+        resolve_samples(mesh, visible, hits, threads);
     }
 
     /// Calls f(number, hit) for each sample in some rows of the picture and each triangle that covers it, of
@@ -152,13 +146,14 @@ public:
     }
 
 private:
+    /// Enters the space of triangles, to which `back` leads; null: they are in the world.
+    void enter(const Affine<3>* back, const RasterNames& names) {
+        back_ = back, names_ = names;
+        bounds_ = PixelBounds(samples_, back);
+    }
     /// Calls work(triangles) for a set of triangles, or for each instance of a set, in its space.
     template <class Set, class Work>
     RasterCounts in_each_space(const Set& set, std::uint32_t first_element, Work work) {
-        const auto enter = [&](const Affine<3>* back, const RasterNames& names) {
-            back_ = back, names_ = names;
-            bounds_ = PixelBounds(samples_, back);
-        };
         RasterCounts counts;
         if constexpr (Instanced<Set>) {
             for (std::uint32_t i = 0; i < set.size(); ++i) {
@@ -406,15 +401,13 @@ private:
                 return;
             }
         }
+        prepare_rays(threads);
         for_each_row(threads, [&](int x, int y, std::size_t i) {
             hits[i] = {};
             if (visible[i].element == Hit<T>::none) return;
-            const auto given = samples_.ray(x, y);
-            const RayProbe<T, 3> probe(given, {given.origin, given.origin});
-            if (!probe.usable()) return;
-            const std::uint32_t element = visible[i].element;
-            if (const auto m = meet(probe.watertight(), triangles.triangle(element)); m && m->t >= 0)
-                hits[i] = {m->t, m->u, m->v, triangles.id(element), 0, 0, element};
+            RasterCounts counts;
+            meet_samples(triangles, visible[i].element, {x, y, x, y}, counts,
+                         [&](std::size_t s, const Hit<T>& hit) { hits[s] = hit; });
         });
     }
     /// How far forward of the eye the point at t on the ray of a sample is.
