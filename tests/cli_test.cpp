@@ -259,9 +259,12 @@ TEST_F(Cli, ConesSmoothEdgesAndShadows) {
     EXPECT_NE(pixels_of(file("cones.png")), rays);
     EXPECT_NE(pixels_of(file("soft.png")), rays);
     for (const char* options : {"--spp 4", "--visibility raster", "--structure bvh", "--shading steps",
-                                "--shading colour", "--opacity 0.5", "--counts"})
+                                "--opacity 0.5", "--counts", "--sheet"})
         expect_usage(scene + file("x.png") + " --cones " + options, "cones");
-    expect_usage(scene + file("x.png") + " --light-size 5 --shading colour", "--light-size");
+    ASSERT_EQ(run(scene + file("coloured.png") + " --cones --light-size 5 --shading colour").code, 0);
+    EXPECT_NE(pixels_of(file("coloured.png")), pixels_of(file("soft.png")));
+    ASSERT_EQ(run(scene + file("footprints.png") + " --footprints --shading colour").code, 0);
+    expect_usage(scene + file("x.png") + " --footprints", "textures");
     expect_usage(scene + file("x.png") + " --light-size 100", "--light-size");
     expect_bad("render gen:points --cones -o " + file("x.png"), "triangles alone");
     expect_bad(scene + file("x.png") + " --cones --projection panorama", "panorama");

@@ -3,6 +3,7 @@
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/model_cones.h>
 #include <hedgerow/render/model_scene.h>
 #include <hedgerow/render/render.h>
 #include <hedgerow/render/visibility/rasterise.h>
@@ -200,6 +201,87 @@ TYPED_TEST(ModelPictures, ByTrianglesAreThoseByRays) {
     const Vec3f left = light_at(picture, 4, 32), right = light_at(picture, 59, 32);
     EXPECT_GT(left[0], 3 * left[1]);
     EXPECT_GT(right[1], 2 * right[0]);
+}
+
+/// A floor of fine tiles up to the horizon: two instances, one of them mirrored and stretched.
+template <class T>
+Model<T> tiled_floor() {
+    auto model = textured_square<T>();
+    for (Vec2f& c : model.objects[0].attributes.texture_coordinates[0].values) c = c * 40.f;
+    model.instances[0].to_world =
+        Transform<3>::translation({-10, 0, 0}) * Transform<3>::scaling(Vec3d(-10, 10, 1));
+    model.instances.push_back(
+        {"", 0, Transform<3>::translation({10, 0, 0}) * Transform<3>::scaling(Vec3d(10, 10, 1))});
+    return model;
+}
+RenderOptions along_the_floor() {
+    RenderOptions options;
+    options.width = 64, options.height = 48;
+    options.shading = Shading::colour, options.layers = true;
+    options.camera.eye = {0, -12, 2}, options.camera.target = {0, 0, 0}, options.camera.up = {0, 0, 1};
+    options.camera.field_of_view = 50;
+    return options;
+}
+/// The mean error of pixels beside others of the same picture.
+double error_of(const Picture& picture, const Picture& truth) {
+    double sum = 0;
+    for (std::size_t i = 0; i < truth.light.size(); ++i)
+        sum += double(max_component(abs(picture.light[i] - truth.light[i])));
+    return sum / double(truth.light.size());
+}
+
+TYPED_TEST(ModelPictures, FootprintsShowTexturesAsManySamplesDo) {
+    using T = TypeParam;
+    const auto model = tiled_floor<T>();
+    const ModelScene<T> scene(model, default_executor());
+    for (const auto projection : {Projection::perspective, Projection::orthographic}) {
+        RenderOptions options = along_the_floor();
+        options.camera.projection = projection, options.camera.height = 16;
+        const Picture points = cast(scene, options);
+        options.footprints = true;
+        const Picture areas = cast(scene, options);
+        options.samples = 4;
+        const Picture quarters = cast(scene, options);
+        options.footprints = false;
+        const Picture four_points = cast(scene, options);
+        options.samples = 1024;
+        const Picture many = cast(scene, options);
+        EXPECT_LT(error_of(areas, many), 0.2 * error_of(points, many));
+        EXPECT_LT(error_of(areas, many), 0.03);
+        EXPECT_LT(error_of(quarters, many), 0.8 * error_of(four_points, many));
+    }
+    RenderOptions panorama = along_the_floor();
+    panorama.camera.projection = Projection::panorama, panorama.footprints = true;
+    EXPECT_THROW(cast(scene, panorama), InputError);
+}
+
+TYPED_TEST(ModelPictures, ConesSeeLooks) {
+    using T = TypeParam;
+    const auto expect = [](const Model<T>& model, RenderOptions options) {
+        const ModelScene<T> scene(model, default_executor());
+        const ModelCones<T> cones(model, default_executor());
+        RayCasting<T> casting(scene.tracer());
+        options.cones = options.footprints = true;
+        const Picture by_cones =
+            render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer(), &scene.appearances(), &cones},
+                   options, default_executor());
+        EXPECT_EQ(by_cones.costs.cones, by_cones.image.pixels.size());
+        options.cones = options.footprints = false;
+        const Picture one = cast(scene, options);
+        options.samples = 1024;
+        const Picture many = cast(scene, options);
+        EXPECT_LT(error_of(by_cones, many), 0.03);
+        EXPECT_LT(error_of(by_cones, many), 0.5 * error_of(one, many));
+    };
+    expect(tiled_floor<T>(), along_the_floor());
+    // Two squares at a slant before the sky, of which one is turned over, so that edges cross many pixels.
+    auto model = textured_square<T>();
+    model.instances[0].to_world = Transform<3>::rotation({0, 0, 1}, 0.3);
+    model.instances.push_back(
+        {"", 0, Transform<3>::translation({0.4, 0.2, 0.5}) * Transform<3>::rotation({0, 1, 0}, 2.5)});
+    RenderOptions options = from_above();
+    options.width = options.height = 48, options.camera.height = 4;
+    expect(model, options);
 }
 
 TYPED_TEST(ModelPictures, NeedLooksAndTriangles) {

@@ -137,13 +137,13 @@ int render(const RenderArguments& a, const SegmentSet<T>&) {
 }
 
 /// Throws UsageError for options that cones do not go with.
-void check_cones(const RenderArguments& a, bool by_looks) {
+void check_cones(const RenderArguments& a) {
     const std::string name = a.cones ? "--cones" : "--light-size";
     if (a.structure != "wide")
         throw UsageError("--structure " + a.structure + ": cones go through 'wide' alone");
-    if (by_looks) throw UsageError(name + ": cones see no looks; choose --shading normals, depth or diffuse");
     if (a.transparent) throw UsageError(name + ": cones do not see through surfaces; leave out --opacity");
     if (!a.cones) return;
+    if (a.sheet) throw UsageError("--cones: leave out --sheet, which also shows what rays cost");
     if (a.visibility != "cast")
         throw UsageError("--cones: leave out --visibility, since cones find what is visible");
     if (a.spp > 1) throw UsageError("--cones: leave out --spp, since a cone sees all of a pixel");
@@ -176,6 +176,9 @@ Run add_render(CLI::App& verb) {
                     "of all surfaces, times that of their looks; below 1 light goes through")
         ->check(CLI::Range(0.0, 1.0));
     verb.add_flag("--cones", a->cones, "a cone for each pixel, in place of --spp: smooth edges of triangles");
+    verb.add_flag("--footprints", a->footprints,
+                  "of --shading colour: textures are averaged over what a sample's part of its pixel sees of "
+                  "them; --cones does so too");
     verb.add_option("--light-size", a->light_degrees,
                     "the light's diameter in degrees (the sun's is 0.53): shadows have soft edges")
         ->check(CLI::Range(0.0, 89.0));
@@ -215,7 +218,10 @@ Run add_render(CLI::App& verb) {
             throw UsageError("--shading " + a->shading +
                              " shows what rays cost, which end at the first hit; leave out "
                              "--transparency and --opacity");
-        if (a->uses_cones()) check_cones(*a, by_looks);
+        if (a->footprints && !by_looks)
+            throw UsageError("--footprints: --shading " + a->shading +
+                             " shows no textures; give --shading colour");
+        if (a->uses_cones()) check_cones(*a);
         if (a->camera >= 0 && !by_looks)
             throw UsageError("--camera is of files with looks: it needs --shading colour");
         return in_precision(*a, [&]<class T>(T) {

@@ -6,6 +6,7 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/io/model_file.h>
 #include <hedgerow/render/lettering.h>
+#include <hedgerow/render/model_cones.h>
 #include <hedgerow/render/model_scene.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/scenes/looks.h>
@@ -124,7 +125,10 @@ int render_looks(const RenderArguments& a) {
     if (a.rasterises() && looks.has_masks())
         throw InputError(a.scene + ": has masks of opacity, which only rays see; use --visibility cast");
     Visibility<T>& visibility = a.rasterises() ? static_cast<Visibility<T>&>(rasterising) : casting;
-    const PictureParts<T> parts{visibility, scene.surfaces(), &scene.tracer(), &looks};
+    std::optional<ModelCones<T>> cones;
+    if (a.uses_cones()) cones.emplace(model, interruptible_executor()), o.bytes += cones->bytes();
+    const PictureParts<T> parts{visibility, scene.surfaces(), &scene.tracer(), &looks,
+                                cones ? &*cones : nullptr};
     if (a.sheet) return finish_sheet(a, parts, model, options, std::move(o));
     ProgressLine line("rendering", a.quiet, "rows");
     return finish(a, parts, options, std::move(o), line.progress());

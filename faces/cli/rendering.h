@@ -18,6 +18,7 @@ struct RenderArguments : Common {
     int camera = -1;    // of the file
     float opacity = 1;  // of all surfaces, times that of their looks
     bool transparent = false, sheet = false;
+    bool footprints = false;              // of textures
     bool cones = false;                   // in place of samples
     float light_degrees = 0;              // the diameter of the light
     bool counts = false, layers = false;  // layers: whether the output is .exr

@@ -41,6 +41,8 @@ void check(const PictureParts<T>& parts, const RenderOptions& o) {
     if (o.cones && counted(o.shading)) throw InputError("this shading shows what rays cost, not cones");
     if (o.cones && o.samples > 1) throw InputError("a cone sees all of a pixel: take one sample");
     if (o.cones) cone_of_pixel(PictureSamples<T>(o.camera, o.width, o.height), 0, 0);  // throws without one
+    if (o.footprints && o.camera.projection == Projection::panorama)
+        throw InputError("footprints are what pixels of a plane see, not those of a panorama");
     if (!o.transparent) return;
     if (!(o.opacity >= 0 && o.opacity <= 1)) throw InputError("the opacity of surfaces must be 0 to 1");
     if (counted(o.shading)) throw InputError("this shading shows what rays cost, which end at the first hit");
@@ -55,6 +57,7 @@ public:
           o_(o),
           whole_(parts.visibility.finds_whole_pictures()),
           shading_(o.camera, diagonal(parts.surfaces, o.shading)),
+          plane_(RayMaker(o.camera, o.width, o.height).plane()),
           film_(o.width, o.height, o.layers) {
         if ((o.shading == Shading::colour || o.transparent) && parts.appearances != nullptr &&
             parts.appearances->has_masks())
@@ -96,6 +99,7 @@ private:
         OfTile<Vec<T, 3>> normals;
         std::vector<Appearance> appearances;  // where they are asked for; else empty
         OfTile<Vec3f> light;                  // towards the eye
+        OfTile<float> shares;                 // of a pixel, that a ray stands for
         OfTile<std::size_t> pixels;
         std::size_t size = 0;
     };
@@ -139,6 +143,7 @@ private:
         if (by_looks()) looks.appearances.resize(tile.size());
         for (int y = tile.top; y <= tile.bottom; ++y)
             for (int x = tile.left; x <= tile.right; ++x) looks.pixels[looks.size++] = film_.pixel(x, y);
+        looks.shares.fill(share_of_sample());
         for (int sample = first; sample < last; ++sample) {
             if (!whole_ && progress.cancelled()) return false;  // else each pixel has the samples before
             look(tile, sample, looks, visits, costs);
@@ -210,16 +215,16 @@ private:
         Looks wave;
         if (by_looks()) wave.appearances.resize(size);
         for (std::size_t j = 0; j < waves; ++j) {
-            OfTile<float> shares;
             wave.size = 0;
             for (std::size_t i = 0; i < size; ++i) {
                 if (j >= seen[i].size()) continue;
                 const std::size_t n = wave.size++;
                 wave.rays[n] = seen[i][j].ray, wave.hits[n] = seen[i][j].hit;
-                wave.pixels[n] = pixels[i], shares[n] = seen[i][j].share;
+                wave.pixels[n] = pixels[i], wave.shares[n] = seen[i][j].share;
             }
             find_light(wave, costs);
-            for (std::size_t n = 0; n < wave.size; ++n) add_light(wave.pixels[n], wave.light[n] * shares[n]);
+            for (std::size_t n = 0; n < wave.size; ++n)
+                add_light(wave.pixels[n], wave.light[n] * wave.shares[n]);
             if (o_.layers && j == 0) store_seen(wave);
         }
     }
@@ -230,6 +235,7 @@ private:
         OfTile<double> through;
         through.fill(1);
         Looks wave;
+        wave.shares.fill(share_of_sample());
         if (by_looks()) wave.appearances.resize(first.size);
         const auto shade = [&](std::span<typename Walk::Step> steps) {
             wave.size = steps.size();
@@ -267,7 +273,7 @@ private:
             const Hit<T>& hit = looks.hits[i];
             if (hit) looks.normals[i] = parts_.surfaces.normal(looks.rays[i], hit);
             const Vec3f normal(looks.normals[i]);
-            if (hit && by_looks()) looks.appearances[i] = appearance(hit, normal);
+            if (hit && by_looks()) looks.appearances[i] = appearance(looks, i, normal);
             looks.light[i] = colour(looks, i, normal);
         }
         if (is_lit(o_.shading)) add_direct_light(looks, costs);
@@ -275,13 +281,21 @@ private:
     bool by_colour() const { return o_.shading == Shading::colour; }
     /// Whether the appearances of hits are asked for.
     bool by_looks() const { return by_colour() || (o_.transparent && parts_.appearances != nullptr); }
+    float share_of_sample() const { return 1 / static_cast<float>(o_.samples); }
     /// What a hit looks like, with a normal on the side of the surface's, which it is where there is no
     /// other.
-    Appearance appearance(const Hit<T>& hit, const Vec3f& normal) const {
-        Appearance a = parts_.appearances->at(hit);
+    Appearance appearance(const Looks& looks, std::size_t i, const Vec3f& normal) const {
+        Appearance a = parts_.appearances->at(
+            looks.hits[i], o_.footprints ? footprint(looks, i, normal) : SurfaceFootprint());
         if (length2(a.normal) == 0) a.normal = normal;
         if (dot(a.normal, normal) < 0) a.normal = -a.normal;
         return a;
+    }
+    /// What a ray's share of its pixel sees of the surface.
+    SurfaceFootprint footprint(const Looks& looks, std::size_t i, const Vec3f& normal) const {
+        const Vec3f direction(looks.rays[i].direction);
+        const float radius = pixel_radius(plane_, direction, static_cast<float>(looks.hits[i].t));
+        return footprint_of(Vec3d(direction), double(radius * std::sqrt(looks.shares[i])), Vec3d(normal));
     }
     /// What is reflected of light on a grey surface by one with a colour.
     static Vec3f coloured(const Vec3f& light, const Appearance& a) {
@@ -353,8 +367,8 @@ private:
             open.fill(1);
             follow(rays, hits, [&](std::span<typename Walk::Step> steps) {
                 for (auto& step : steps) {
-                    step.opacity =
-                        opacity(parts_.appearances == nullptr ? 1 : parts_.appearances->at(step.hit).alpha);
+                    step.opacity = opacity(
+                        parts_.appearances == nullptr ? 1 : parts_.appearances->at(step.hit, {}).alpha);
                     open[step.ray] = static_cast<float>(step.through * (1 - step.opacity));
                 }
             });
@@ -372,6 +386,7 @@ private:
     const RenderOptions& o_;
     const bool whole_;  // samples of the whole picture are found at once
     const PlainShading shading_;
+    const PicturePlane plane_;
     typename Tracer<T>::Filter keeps_;
     Film film_;
     std::mutex mutex_;

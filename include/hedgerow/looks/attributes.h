@@ -39,6 +39,14 @@ struct CornerValues {
         if (a == no_value || b == no_value || c == no_value) return std::nullopt;
         return values[a] * (1 - u - v) + values[b] * u + values[c] * v;
     }
+    /// How the value changes where u and v change by so much. Nothing if a corner has no value. O(1).
+    template <class T>
+    std::optional<V> difference(const TriangleMesh<T>& mesh, std::size_t i, float du, float dv) const {
+        if (empty()) return std::nullopt;
+        const auto [a, b, c] = at_corners(mesh, i);
+        if (a == no_value || b == no_value || c == no_value) return std::nullopt;
+        return (values[b] - values[a]) * du + (values[c] - values[a]) * dv;
+    }
 };
 
 /// What a mesh has at its corners. Each may be empty. Without values it allocates nothing, and the mesh

@@ -17,6 +17,11 @@ struct TextureTransform {
         const Vec3f point(c[0], c[1], 1);
         return {dot(u, point), dot(v, point)};
     }
+    /// The map of a difference of coordinates.
+    Vec2f of_difference(const Vec2f& d) const {
+        const Vec3f difference(d[0], d[1], 0);
+        return {dot(u, difference), dot(v, difference)};
+    }
     friend bool operator==(const TextureTransform&, const TextureTransform&) = default;
 };
 

@@ -1,6 +1,7 @@
 /// Images that vary a colour or a number over a surface.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -45,7 +46,10 @@ struct Texture {
     Rgba texel(int x, int y) const;
     /// The linear value at a texture coordinate. The filter `bilinear` interpolates linear values between
     /// the centres of four texels. A coordinate that is not finite counts as 0. O(1).
-    Rgba at(const Vec2f& coordinate) const;
+    Rgba at(const Vec2f& coordinate) const { return at(coordinate, {}); }
+    /// The mean of the filter `nearest` over a rectangle around a coordinate whose sides are at most 1, in
+    /// texels. Other filters interpolate, which is the mean over 1 by 1. O(1).
+    Rgba at(const Vec2f& coordinate, const Vec2f& sides) const;
 };
 
 namespace detail {
@@ -76,6 +80,25 @@ inline double in_texels(float coordinate, int size) {
     return x > 0x1p53 ? 0x1p53 : x < -0x1p53 ? -0x1p53 : x;
 }
 
+/// The mean of the texels around a place over a rectangle about it. All lengths are in texels, sides at most
+/// 1; longer ones count as 1. With sides of 1 it interpolates between the centres of four texels. The centre
+/// of texel i is i + 1/2. `texel(column, row)` returns a value for any whole numbers.
+template <class Texel>
+Rgba bilinear(double x, double y, const Vec2f& sides, const Texel& texel) {
+    const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
+    // The share of a side that lies beyond the border between two texels.
+    const auto beyond = [](double from_border, float side) {
+        const auto inside = static_cast<float>(from_border);
+        return side >= 1 ? inside + 0.5f : std::clamp(inside / std::max(side, 1e-6f) + 0.5f, 0.0f, 1.0f);
+    };
+    const float right_share = beyond(x - 1 - left, sides[0]), bottom_share = beyond(y - 1 - top, sides[1]);
+    const auto between = [](const Rgba& a, const Rgba& b, float share) {
+        return a * (1 - share) + b * share;
+    };
+    return between(between(texel(left, top), texel(left + 1, top), right_share),
+                   between(texel(left, top + 1), texel(left + 1, top + 1), right_share), bottom_share);
+}
+
 }  // namespace detail
 
 inline Rgba Texture::texel(int x, int y) const {
@@ -99,25 +122,17 @@ inline Rgba Texture::texel(int x, int y) const {
         pixels->samples);
 }
 
-inline Rgba Texture::at(const Vec2f& coordinate) const {
+inline Rgba Texture::at(const Vec2f& coordinate, const Vec2f& sides) const {
     if (!pixels || pixels->width <= 0 || pixels->height <= 0) return {Vec3f::all(1), 1};
     const int width = pixels->width, height = pixels->height;
     const double x = detail::in_texels(coordinate[0], width), y = detail::in_texels(coordinate[1], height);
-    const auto column = [&](double i) {
-        return detail::wrapped(static_cast<std::int64_t>(i), width, wrap_s);
+    const auto wrapped_texel = [&](double column, double row) {
+        return texel(detail::wrapped(static_cast<std::int64_t>(column), width, wrap_s),
+                     detail::wrapped(static_cast<std::int64_t>(row), height, wrap_t));
     };
-    const auto row = [&](double i) { return detail::wrapped(static_cast<std::int64_t>(i), height, wrap_t); };
-    if (filter == TextureFilter::nearest) return texel(column(std::floor(x)), row(std::floor(y)));
-    // Texel i is sampled at its centre, i + 1/2.
-    const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
-    const auto right_share = static_cast<float>(x - 0.5 - left);
-    const auto bottom_share = static_cast<float>(y - 0.5 - top);
-    const auto between = [](const Rgba& a, const Rgba& b, float share) {
-        return a * (1 - share) + b * share;
-    };
-    const int x0 = column(left), x1 = column(left + 1), y0 = row(top), y1 = row(top + 1);
-    return between(between(texel(x0, y0), texel(x1, y0), right_share),
-                   between(texel(x0, y1), texel(x1, y1), right_share), bottom_share);
+    const bool nearest = filter == TextureFilter::nearest;
+    if (nearest && sides == Vec2f()) return wrapped_texel(std::floor(x), std::floor(y));
+    return detail::bilinear(x, y, nearest ? sides : Vec2f(1, 1), wrapped_texel);
 }
 
 }  // namespace hedgerow

@@ -35,6 +35,9 @@ struct RenderOptions {
     /// Whether a cone sees each pixel as a whole (visibility/cones.h), in place of samples: edges are smooth.
     /// Layers are then those of its nearest surface.
     bool cones = false;
+    /// Whether the textures of the shading `colour` are averaged over what a sample's share of its pixel sees
+    /// of them, in place of a lookup at a point, so that fine patterns turn into their mean, not into noise.
+    bool footprints = false;
     /// The diameter of the distant light in degrees, less than 90. Shadows of a disc have soft edges, for
     /// which a cone goes to the light in place of a ray. 0 is a light without extent.
     float light_degrees = 0;
@@ -63,7 +66,7 @@ struct PictureParts {
 /// sees nothing, no pixels or samples, an opacity that is not 0 to 1, where the picture needs a tracer, cones
 /// or appearances and there are none, where it shows costs of rays but what is visible is found without them,
 /// or through transparent surfaces, and for cones of transparent surfaces, of more samples than one, or of a
-/// lens.
+/// lens, and for footprints in a panorama.
 template <std::floating_point T>
 Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
                const Progress& progress = {});

@@ -89,6 +89,16 @@ private:
     const I& index_;
 };
 
+/// The radius of the cone about a ray of a picture, at a distance along the ray, whose cross section has the
+/// area that a pixel has there. `direction` has length 1.
+inline float pixel_radius(const PicturePlane& plane, const Vec3f& direction, float distance) {
+    const float radius = plane.scale * std::sqrt(std::numbers::inv_pi_v<float>);
+    if (plane.parallel) return radius;
+    // A pixel that is seen at an angle to the plane has the solid angle scale²·cos³.
+    const float cosine = std::max(0.0f, dot(direction, plane.forward));
+    return radius * cosine * std::sqrt(cosine) * distance;
+}
+
 /// The cone about the ray through the middle of a pixel whose cross section has the pixel's area. Throws
 /// InputError for a lens and for a panorama, whose pixels have none.
 template <std::floating_point T>
@@ -98,11 +108,8 @@ ConeRays<T, 3> cone_of_pixel(const PictureSamples<T>& samples, int x, int y) {
             "cones see by perspective and by parallel rays, not through a lens or in a panorama");
     const PicturePlane plane = samples.plane();
     const Ray<T, 3> ray = samples.ray(x, y);
-    const float radius = plane.scale * std::sqrt(std::numbers::inv_pi_v<float>);
-    if (plane.parallel) return {ray, static_cast<T>(radius), T(0)};
-    // A pixel that is seen at an angle to the plane has the solid angle scale²·cos³.
-    const float cosine = std::max(0.0f, dot(Vec3f(ray.direction), plane.forward));
-    return {ray, T(0), static_cast<T>(radius * cosine * std::sqrt(cosine))};
+    const auto radius = static_cast<T>(pixel_radius(plane, Vec3f(ray.direction), 1));
+    return plane.parallel ? ConeRays<T, 3>{ray, radius, T(0)} : ConeRays<T, 3>{ray, T(0), radius};
 }
 
 }  // namespace hedgerow
