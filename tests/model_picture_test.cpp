@@ -69,7 +69,8 @@ Picture cast(const ModelScene<T>& scene, const RenderOptions& options) {
                   serial_executor());
 }
 Vec3f light_at(const Picture& picture, int x, int y) {
-    return picture.light[static_cast<std::size_t>(y * picture.image.width + x)];
+    return picture.light[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.image.width) +
+                         static_cast<std::size_t>(x)];
 }
 
 TYPED_TEST(ModelPictures, TexturesLieWhereTheirCoordinatesAre) {
