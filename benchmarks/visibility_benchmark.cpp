@@ -16,6 +16,7 @@
 #include <hedgerow/index.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/machine.h>
+#include <hedgerow/mesh_index.h>
 #include <hedgerow/render/shading/surfaces.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
@@ -83,6 +84,51 @@ void measure_shading(const TriangleMesh<float>& mesh, const PictureSamples<float
         1e3 * times[4].median, a_hit(forward[0]), more(0), a_hit(forward[1]), more(2));
 }
 
+/// A mirror in the plane of the triangle that most samples show, by beams from the eye's image, and by the
+/// rays of the samples that show that plane.
+void measure_mirror(const MeshIndex<float>& index, const PictureSamples<float>& samples,
+                    std::span<const Hit<float>> first) {
+    const auto mesh = index.primitives();
+    std::vector<std::size_t> shown(mesh.size());
+    for (const Hit<float>& hit : first)
+        if (hit) ++shown[hit.element];
+    const FlatMirror mirror = FlatMirror::through(
+        mesh.triangle(static_cast<std::size_t>(std::ranges::max_element(shown) - shown.begin())));
+    const auto reflected = samples.in_mirror(mirror);
+    const auto wanted = std::make_unique<bool[]>(samples.size());
+    std::vector<Ray<float, 3>> rays;
+    for (int y = 0; y < samples.height(); ++y)
+        for (int x = 0; x < samples.width(); ++x) {
+            const std::size_t i = samples.number(x, y);
+            const auto lies_in = [&](const Vec3f& p) {
+                return std::abs(mirror.above(Vec3d(p))) <= 1e-5 * mirror.reach;
+            };
+            const auto t = mesh.triangle(first[i] ? first[i].element : 0);
+            wanted[i] = first[i] && lies_in(t.a) && lies_in(t.b) && lies_in(t.c);
+            if (wanted[i]) rays.push_back(reflected.ray(x, y));
+        }
+    if (rays.size() < samples.size() / 20) return;
+    std::vector<Hit<float>> cast(rays.size()), beamed(samples.size());
+    const BeamOptions options{.wanted = {wanted.get(), samples.size()}};
+    Contest contest;
+    contest.add("rays", [&] {
+        closest_hits(index, rays, std::span(cast), serial_executor());
+        return rays.size();
+    });
+    contest.add("beams",
+                [&] { return beam_hits(index, reflected, beamed, serial_executor(), options).beams; });
+    const auto times =
+        measured_in_turn(rounds, contest, Clock::thread, [](const std::string&) { return true; });
+    std::size_t differ = 0, next = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (wanted[i]) differ += !(beamed[i] == cast[next++]);
+    std::printf(
+        "    a mirror in %.1f%% of the picture: rays %.2f ms, beams %.2f ms, %.2f times as fast; %zu "
+        "differ\n",
+        100 * double(rays.size()) / double(samples.size()), 1e3 * times[0].median, 1e3 * times[1].median,
+        times[0].median / times[1].median, differ);
+}
+
 Ratios measure_scene(const std::string& name, int size) {
     const PictureScene shown(name);
     const auto& mesh = shown.mesh;
@@ -142,6 +188,7 @@ Ratios measure_scene(const std::string& name, int size) {
         ratios.beams, 100 * ratios.visits, 100 * double(beams.filled) / double(rays.size()),
         static_cast<unsigned long long>(beams.packets), static_cast<unsigned long long>(beams.again));
     measure_shading(mesh, samples, rays);
+    measure_mirror(index, samples, cast);
     if (!peer) return ratios;
     std::vector<std::uint32_t> elements(rays.size());
     peer->read(elements);

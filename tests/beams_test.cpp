@@ -148,6 +148,99 @@ TEST(Beams, OfWallsAndCoplanarFaces) {
     EXPECT_GT(counts.beams, 0u);
 }
 
+/// A triangle of a mesh that has area, by number.
+FlatMirror mirror_in(const Mesh& mesh, std::uint64_t number) {
+    for (std::uint64_t i = number;; ++i) {
+        const auto triangle = mesh.view().triangle(i % mesh.size());
+        if (length2(triangle.normal()) > 0) return FlatMirror::through(triangle);
+    }
+}
+
+/// In mirrors that lie anywhere in a mesh, behind which there is as much as before them.
+TEST(Beams, GoOnFromFlatMirrors) {
+    const std::size_t views = in_long_runs(300, 3);
+    BeamCounts counts;
+    for (std::uint64_t i = 0; i < views; ++i) {
+        SCOPED_TRACE(i);
+        const auto expect = [&](const char* name, const Mesh& mesh) {
+            SCOPED_TRACE(name);
+            const FlatMirror mirror = mirror_in(mesh, 7919 * i);
+            for (const bool inside : {false, true}) {
+                const Camera camera = seen_from(mesh, i, inside);
+                if (std::abs(mirror.above(Vec3d(camera.eye))) < 1e-3) continue;
+                counts += expect_hits_of_rays(mesh, PictureSamples<float>(camera, 141, 83).in_mirror(mirror));
+                expect_hits_of_rays(mesh, PictureSamples<float>(camera, 50, 70, 5, 1, 4).in_mirror(mirror));
+            }
+        };
+        expect("soup", soup<float>(200));
+        expect("terrain", terrain<float>(1500));
+        expect("stadium", teapot_in_stadium<float>(1500));
+        expect("hairball", hairball<float>(800));
+        expect("cornell box", cornell_box<float>(0));
+    }
+    EXPECT_GT(counts.filled, 0u);
+    EXPECT_GT(counts.beams, 0u);
+}
+
+/// What an eye sees in a mirror is what rays see that are reflected where it is hit, and never the mirror.
+TEST(Beams, SeeInAMirrorWhatReflectedRaysSee) {
+    const auto mesh = cornell_box<float>(0);
+    const auto index = build<WideBvh>(mesh);
+    const Camera camera = *camera_for("cornell-box");
+    const PictureSamples<float> samples(camera, 200, 150);
+    std::vector<Hit<float>> first(samples.size()), seen(samples.size());
+    beam_hits(index, samples, first, default_executor());
+    // The mirror is what lies in the plane of the triangle in the middle: the back wall or a side of a block.
+    const auto middle = mesh.view().triangle(first[samples.number(100, 75)].element);
+    const FlatMirror mirror = FlatMirror::through(middle);
+    const auto is_mirror = [&](std::uint32_t element) {
+        const auto t = mesh.view().triangle(element);
+        return std::max({std::abs(mirror.above(Vec3d(t.a))), std::abs(mirror.above(Vec3d(t.b))),
+                         std::abs(mirror.above(Vec3d(t.c)))}) < 1e-3 * mirror.reach;
+    };
+    const auto wanted = std::make_unique<bool[]>(samples.size());
+    std::size_t on_mirror = 0, alike = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        on_mirror += wanted[i] = first[i] && is_mirror(first[i].element);
+    ASSERT_GT(on_mirror, 1000u);
+    const auto reflected = samples.in_mirror(mirror);
+    beam_hits(index, reflected, seen, default_executor(),
+              {.wanted = std::span<const bool>(wanted.get(), samples.size())});
+    std::vector<Hit<float>> all(samples.size());
+    beam_hits(index, reflected, all, default_executor());
+    const auto rays = samples.rays();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!wanted[i]) continue;
+        EXPECT_EQ(seen[i], all[i]) << i;
+        EXPECT_FALSE(seen[i] && is_mirror(seen[i].element)) << i;
+        Ray<float, 3> ray;
+        ray.origin = rays[i].origin + rays[i].direction * first[i].t;
+        ray.direction = Vec3f(mirror.image_of_direction(Vec3d(rays[i].direction)));
+        ray.t_min = 1e-3f * static_cast<float>(mirror.reach);
+        const auto hit = closest_hit(index, ray);
+        alike += hit ? seen[i] && hit.element == seen[i].element &&
+                           std::abs(hit.t + first[i].t - seen[i].t) < 1e-4f * seen[i].t
+                     : !seen[i];
+    }
+    EXPECT_GT(alike, on_mirror - on_mirror / 100) << "but for edges";
+}
+
+TEST(Beams, RefuseMirrorsThatCannotBeSeen) {
+    const PictureSamples<float> samples(*camera_for("cornell-box"), 20, 20);
+    const Vec3d eye(camera_for("cornell-box")->eye);
+    EXPECT_THROW(samples.in_mirror({{0, 0, 1}, eye[2], 1}), InputError);
+    EXPECT_THROW(FlatMirror::through(Triangle<float, 3>{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}), InputError);
+    Camera parallel = *camera_for("cornell-box"), lens = parallel;
+    parallel.projection = Projection::orthographic, lens.lens_radius = 1;
+    for (const Camera& camera : {parallel, lens})
+        EXPECT_THROW(PictureSamples<float>(camera, 20, 20).in_mirror({{0, 0, 1}, -1e4, 1}), InputError);
+    EXPECT_FALSE(samples.in_mirror({{0, 0, 1}, -1e4, 1}).has_plane()) << "no rasteriser begins at a mirror";
+    std::vector<Hit<float>> hits(samples.size());
+    const auto index = build<WideBvh>(cornell_box<float>(0));
+    const bool few[3] = {};
+    EXPECT_THROW(beam_hits(index, samples, hits, serial_executor(), {.wanted = few}), InputError);
+}
+
 TEST(Beams, OfCamerasThatSeeNothing) {
     const auto mesh = cornell_box<float>(0);
     const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -173,8 +173,10 @@ private:
             const auto row = [&](int r) __attribute__((always_inline)) {
                 return rows[r];
             };
+            auto is = hn::Eq(corner(0, 0), corner(0, 0));  // not NaN
+            if (tile_.plane.in_mirror()) [[unlikely]]
+                is = hn::And(is, after_begin(e, eye_, corner, rows));
             auto sides = beam.sides_of(e, row);
-            const auto is = hn::Eq(corner(0, 0), corner(0, 0));  // not NaN
             sides.meets = hn::And(sides.meets, is), sides.covers = hn::And(sides.covers, is);
             const auto places =
                 hn::Add(hn::Iota(u, 0), hn::Set(u, leaf * 8 + static_cast<std::uint32_t>(at)));

@@ -59,8 +59,12 @@ struct BeamEye {
     double slack;
     BeamNormal forward;
     float axes[3][3];  // dual to the camera's: right, up, forward
+    // In a mirror, what lies between the eye and where rays begin is not seen.
+    const PicturePlane& plane;
+    BeamNormal before;
 
-    BeamEye(const PixelBounds::Frame& f, const Box<float, 3>& scene) : frame(f), eye(f.eye) {
+    BeamEye(const PicturePlane& p, const PixelBounds::Frame& f, const Box<float, 3>& scene)
+        : frame(f), eye(f.eye), plane(p) {
         double reach = 0;
         for (int k = 0; k < 3; ++k)
             reach = std::max({reach, std::abs(static_cast<double>(scene.low[k]) - eye[k]),
@@ -71,6 +75,8 @@ struct BeamEye {
         const Vec3d dual[3] = {f.right, f.up, f.forward};
         for (int r = 0; r < 3; ++r)
             for (int k = 0; k < 3; ++k) axes[r][k] = static_cast<float>(dual[r][k]);
+        before = BeamNormal(-Vec3d(plane.begin_normal), eye, slack);
+        before.at_eye -= plane.begin;
     }
 };
 
@@ -101,6 +107,8 @@ struct Beam {
         depth = eye.forward.least(d, row);
         auto out = hn::Max(planes[0].least(d, row), planes[1].least(d, row));
         out = hn::Max(out, hn::Max(planes[2].least(d, row), planes[3].least(d, row)));
+        if (eye.plane.in_mirror()) [[unlikely]]
+            out = hn::Max(out, eye.before.least(d, row));
         return hn::And(hn::Le(out, hn::Zero(d)), hn::Le(depth, hn::Set(d, farthest)));
     }
 
@@ -186,6 +194,23 @@ HWY_INLINE void triangle_rows(D d, const BeamEye& eye, Corner corner, hn::Vec<D>
         hn::MulAdd(p[0][0], rows[0], hn::MulAdd(p[1][0], rows[1], hn::Mul(p[2][0], rows[2])));
     rows[BeamTriangles::nearest] =
         hn::NegMulAdd(largest, hn::Set(d, 0x1p-16f), hn::Min(p[2][0], hn::Min(p[2][1], p[2][2])));
+}
+
+// In a mirror: whether rays may hit triangles, which do not lie before all rays begin. `rows` of those that
+// lie before some do are changed, so that they cover no beam. Corners as above.
+template <class D, class Corner>
+HWY_INLINE hn::Mask<D> after_begin(D d, const BeamEye& eye, Corner corner, hn::Vec<D> (&rows)[12]) {
+    auto least = hn::Set(d, std::numeric_limits<float>::infinity()), most = hn::Neg(least);
+    for (int c = 0; c < 3; ++c) {
+        auto along = hn::Mul(corner(0, c), hn::Set(d, eye.plane.begin_normal[0]));
+        along = hn::MulAdd(corner(1, c), hn::Set(d, eye.plane.begin_normal[1]), along);
+        along = hn::MulAdd(corner(2, c), hn::Set(d, eye.plane.begin_normal[2]), along);
+        least = hn::Min(least, along), most = hn::Max(most, along);
+    }
+    const auto begin = hn::Set(d, eye.plane.begin), room = hn::Set(d, static_cast<float>(4 * eye.slack));
+    rows[BeamTriangles::depth_by_sum] =
+        hn::IfThenElseZero(hn::Gt(least, hn::Add(begin, room)), rows[BeamTriangles::depth_by_sum]);
+    return hn::Ge(most, hn::Sub(begin, room));
 }
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -42,7 +42,7 @@ public:
           tile_(tile),
           counts_(counts),
           widest_(tile.frame.sound ? tile.widest : 0),
-          eye_(tile.frame, scene.tree.bounds),
+          eye_(tile.plane, tile.frame, scene.tree.bounds),
           rays_(tile),
           fill_(scene, tile, eye_),
           opening_(scene, tile, eye_, counts),

@@ -55,6 +55,14 @@ public:
                 hn::IfThenElse(is, hn::Div(d.z, length), d.z)};
     }
 
+    // Where rays from the eye begin: what begin_of computes.
+    HWY_INLINE V begins(const Coordinates<F>& directions) const {
+        if (!plane_.in_mirror()) return hn::Zero(f);
+        const V along = product(all_lanes(f, plane_.begin_normal), directions);
+        return hn::IfThenElse(hn::Gt(along, hn::Zero(f)), hn::Div(hn::Set(f, plane_.begin), along),
+                              hn::Set(f, std::numeric_limits<float>::infinity()));
+    }
+
 private:
     const PicturePlane& plane_;
 };
@@ -86,12 +94,15 @@ public:
         return through_middles(hn::Add(hn::And(place, hn::Set(i32, side - 1)), hn::Set(i32, left)),
                                hn::Add(hn::ShiftRight<3>(place), hn::Set(i32, top)));
     }
+    HWY_INLINE V begins(const Coordinates<F>& directions) const {
+        return MiddleRays(tile_.plane).begins(directions);
+    }
     // What packets read of vector p of a block.
     HWY_INLINE void write(int left, int top, int p, float (&numbers)[8][lanes]) const {
         const auto d = in_block(left, top, p);
         for (int k = 0; k < 3; ++k) hn::Store(hn::Set(f, tile_.plane.eye[k]), f, numbers[k]);
         hn::Store(d.x, f, numbers[3]), hn::Store(d.y, f, numbers[4]), hn::Store(d.z, f, numbers[5]);
-        hn::Store(hn::Zero(f), f, numbers[6]);
+        hn::Store(begins(d), f, numbers[6]);
         hn::Store(hn::Set(f, std::numeric_limits<float>::infinity()), f, numbers[7]);
     }
     // Ray i of a block.
@@ -101,6 +112,7 @@ public:
         Ray<float, 3> r;
         for (int k = 0; k < 3; ++k)
             r.origin[k] = numbers[k][i % lanes], r.direction[k] = numbers[3 + k][i % lanes];
+        r.t_min = numbers[6][i % lanes];
         return r;
     }
 

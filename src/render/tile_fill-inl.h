@@ -107,6 +107,11 @@ private:
         HWY_INLINE LanesOfHits() {}
         HWY_INLINE LanesOfHits(V of_t, V of_u, V of_v) : t(of_t), u(of_u), v(of_v) {}
     };
+    // Between which hits count: the t where each ray begins, and a depth.
+    struct Bounds {
+        V begins;
+        float farthest;
+    };
     // Tests the triangle with a vector of rays, as WatertightRay does. True if all hit it.
     HWY_INLINE bool meet(const Coordinates<F>& given, float farthest, LanesOfHits& m) const {
         constexpr unsigned every = (1u << lanes) - 1;
@@ -120,16 +125,16 @@ private:
         // The first of the longest axes, mostly of all rays the same.
         const auto is_x = hn::Eq(length[0], longest), is_y = hn::AndNot(is_x, hn::Eq(length[1], longest));
         const unsigned x = bits_of(f, is_x), y = bits_of(f, is_y), z = every & ~(x | y);
-        if (x == every) return meet<0>(d, every, farthest, m);
-        if (y == every) return meet<1>(d, every, farthest, m);
-        if (z == every) return meet<2>(d, every, farthest, m);
-        return meet_in_parts(d, x, y, z, farthest, m);
+        const Bounds bounds{rays_.begins(given), farthest};
+        if (x == every) return meet<0>(d, every, bounds, m);
+        if (y == every) return meet<1>(d, every, bounds, m);
+        if (z == every) return meet<2>(d, every, bounds, m);
+        return meet_in_parts(d, x, y, z, bounds, m);
     }
-    HWY_NOINLINE bool meet_in_parts(const V (&d)[3], unsigned x, unsigned y, unsigned z, float farthest,
+    HWY_NOINLINE bool meet_in_parts(const V (&d)[3], unsigned x, unsigned y, unsigned z, const Bounds& bounds,
                                     LanesOfHits& m) const {
         LanesOfHits of[3];
-        if (!meet<0>(d, x, farthest, of[0]) || !meet<1>(d, y, farthest, of[1]) ||
-            !meet<2>(d, z, farthest, of[2]))
+        if (!meet<0>(d, x, bounds, of[0]) || !meet<1>(d, y, bounds, of[1]) || !meet<2>(d, z, bounds, of[2]))
             return false;
         const std::uint64_t of_x = x, of_y = y;
         const auto is_x = hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&of_x)),
@@ -143,7 +148,7 @@ private:
     }
     // Tests the rays of some lanes (a bit each), of which z is the longest axis.
     template <int z>
-    HWY_INLINE bool meet(const V (&d)[3], unsigned some, float farthest, LanesOfHits& m) const {
+    HWY_INLINE bool meet(const V (&d)[3], unsigned some, const Bounds& bounds, LanesOfHits& m) const {
         constexpr int axis[3] = {(z + 1) % 3, (z + 2) % 3, z};
         const V along = d[z];
         const auto from_origin = [&](int k, int c) __attribute__((always_inline)) {
@@ -156,8 +161,8 @@ private:
         forward = hn::MulAdd(d[1], hn::Set(f, eye_.axes[2][1]), forward);
         forward = hn::MulAdd(d[2], hn::Set(f, eye_.axes[2][2]), forward);
         const auto within =
-            hn::And(hn::Ge(m.t, hn::Zero(f)), hn::Le(m.t, hn::Set(f, std::numeric_limits<float>::max())));
-        const auto before = hn::Le(hn::Mul(m.t, forward), hn::Set(f, farthest * (1 - 0x1p-18f)));
+            hn::And(hn::Ge(m.t, bounds.begins), hn::Le(m.t, hn::Set(f, std::numeric_limits<float>::max())));
+        const auto before = hn::Le(hn::Mul(m.t, forward), hn::Set(f, bounds.farthest * (1 - 0x1p-18f)));
         return (some & ~bits_of(f, hn::And(within, before))) == 0;
     }
     // The exact test of all lanes, as packets make it.

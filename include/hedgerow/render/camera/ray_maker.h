@@ -3,22 +3,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/ray.h>
 #include <hedgerow/render/camera/camera.h>
+#include <hedgerow/render/camera/flat_mirror.h>
 
 namespace hedgerow {
 
 /// The plane of a picture: its axes, the size of a pixel on it, and the middle in pixels from the top left.
 /// A perspective's plane is at distance 1 forward of the eye, and rays start at the eye; that of parallel
-/// rays goes through the eye, and rays start on it.
+/// rays goes through the eye, and rays start on it. Of a picture in a mirror the axes are images, and rays
+/// begin, after their origin, where they come out of the mirror: at distance `begin` along a normal from the
+/// eye.
 struct PicturePlane {
     Vec3f eye, forward, right, up;
     float scale, middle_x, middle_y;
     bool parallel = false;
+    Vec3f begin_normal;
+    float begin = 0;
+
+    bool in_mirror() const { return begin > 0; }
 };
+
+/// The t at which a ray from the eye's image begins: at this distance along a normal from its origin.
+/// Infinity for a ray that does not come out of the mirror, 0 for a distance of 0.
+inline float begin_of(const Vec3f& normal, float distance, const Vec3f& direction) {
+    if (distance == 0) return 0;
+    const float along = dot(normal, direction);
+    return along > 0 ? distance / along : std::numeric_limits<float>::infinity();
+}
 
 /// A point of a thin lens, from its middle, in units of its radius: within 1.
 struct LensPoint {
@@ -68,12 +84,35 @@ public:
             scale_ = c.height > 0 ? c.height / static_cast<float>(height) : scale_ * length(c.target - c.eye);
     }
 
-    /// Whether all rays come from one eye, or go one way, through a plane: what can be projected.
-    bool has_plane() const { return projection_ != Projection::panorama && lens_radius_ == 0; }
+    /// What the eye sees in a mirror: rays from the image of the eye, which begin where they leave the
+    /// mirror. Only those that meet the mirror come from it, so the others of a picture say nothing. Throws
+    /// InputError for parallel rays and for a lens, whose rays have no common origin, and for an eye in the
+    /// mirror.
+    RayMaker in_mirror(const FlatMirror& mirror) const {
+        if (!from_one_eye()) throw InputError("what is seen in a mirror is found from one eye");
+        const double above = mirror.above(Vec3d(eye_));
+        const Vec3d image = mirror.image_of_point(Vec3d(eye_));
+        const double clear =
+            0x1p-17 * (mirror.reach + std::max(max_component(abs(Vec3d(eye_))), max_component(abs(image))));
+        if (!(std::abs(above) > clear)) throw InputError("the eye is in the plane of the mirror");
+        RayMaker seen = *this;
+        const auto turn = [&](Vec3f& axis) { axis = Vec3f(mirror.image_of_direction(Vec3d(axis))); };
+        turn(seen.forward_), turn(seen.right_), turn(seen.up_);
+        seen.eye_ = Vec3f(image);
+        seen.begin_normal_ = Vec3f(above > 0 ? mirror.normal : -mirror.normal);
+        seen.begin_ = static_cast<float>(std::abs(above) + clear);
+        return seen;
+    }
+
+    /// Whether all rays come from one eye, or go one way, through a plane, where they begin: what can be
+    /// projected.
+    bool has_plane() const { return projection_ != Projection::panorama && lens_radius_ == 0 && begin_ == 0; }
+    bool from_one_eye() const { return projection_ == Projection::perspective && lens_radius_ == 0; }
     bool has_lens() const { return lens_radius_ > 0; }
     PicturePlane plane() const {
-        return {eye_,   forward_,  right_,    up_,
-                scale_, middle_x_, middle_y_, projection_ == Projection::orthographic};
+        return {eye_,          forward_,  right_,    up_,
+                scale_,        middle_x_, middle_y_, projection_ == Projection::orthographic,
+                begin_normal_, begin_};
     }
     template <class T>
     Ray<T, 3> ray(float x, float y) const {
@@ -83,8 +122,10 @@ public:
                 return {Vec<T, 3>(eye_ + across + up), Vec<T, 3>(forward_)};
             case Projection::panorama:
                 return {Vec<T, 3>(eye_), Vec<T, 3>(in_panorama(x, y))};
-            default:
-                return {Vec<T, 3>(eye_), Vec<T, 3>(normalized(forward_ + across + up))};
+            default: {
+                const Vec3f direction = normalized(forward_ + across + up);
+                return {Vec<T, 3>(eye_), Vec<T, 3>(direction), T(begin_of(begin_normal_, begin_, direction))};
+            }
         }
     }
     /// The ray from a point of the lens to where the ray through its middle is in focus.
@@ -118,6 +159,8 @@ private:
     float scale_, middle_x_, middle_y_;
     Projection projection_;
     float lens_radius_, focus_;
+    Vec3f begin_normal_;
+    float begin_ = 0;
 };
 
 }  // namespace hedgerow

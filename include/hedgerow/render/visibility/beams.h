@@ -18,14 +18,17 @@ struct BeamOptions {
     /// The side of the largest tiles in pixels: 64, 32, 16 or 8. With 0 all rays go in packets, from the
     /// root; to measure what beams save.
     int widest = beam_side;
+    /// Which samples matter, by number; empty: all. Of the others some have their hits, and some are left as
+    /// they are. So a picture in a mirror takes the time of the part that the mirror covers.
+    std::span<const bool> wanted = {};
 };
 
 namespace detail {
 /// The tiles of a picture, over a kernel.
 class BeamPicture {
 public:
-    BeamPicture(const WideScene& scene, const PictureSamples<float>& samples, int widest)
-        : scene_(scene), samples_(samples), plane_(samples.plane()), bounds_(samples), widest_(widest) {}
+    BeamPicture(const WideScene& scene, const PictureSamples<float>& samples, const BeamOptions& options)
+        : scene_(scene), samples_(samples), plane_(samples.plane()), bounds_(samples), options_(options) {}
 
     int columns() const { return (samples_.width() + beam_side - 1) / beam_side; }
     std::size_t tiles() const {
@@ -37,47 +40,62 @@ public:
                BeamCounts& counts) const {
         const int left = static_cast<int>(number) % columns() * beam_side,
                   top = static_cast<int>(number) / columns() * beam_side;
-        const PixelBox pixels{left, top, std::min(left + beam_side, samples_.width()) - 1,
-                              std::min(top + beam_side, samples_.height()) - 1};
+        const PixelBox tile{left, top, std::min(left + beam_side, samples_.width()) - 1,
+                            std::min(top + beam_side, samples_.height()) - 1};
+        const PixelBox pixels = wanted_of(tile);
+        if (pixels.empty()) return;
         std::vector<Ray<float, 3>> rays;
         if (!samples_.in_the_middle()) {
             rays.resize(std::size_t(beam_side) * beam_side);
             for (int y = pixels.top; y <= pixels.bottom; ++y)
                 for (int x = pixels.left; x <= pixels.right; ++x)
-                    rays[static_cast<std::size_t>((y - top) * beam_side + x - left)] = samples_.ray(x, y);
+                    rays[static_cast<std::size_t>((y - pixels.top) * beam_side + x - pixels.left)] =
+                        samples_.ray(x, y);
         }
-        kernels.trace(
-            scene_,
-            {plane_, bounds_.frame(), rays.empty() ? nullptr : rays.data(), pixels,
-             &hits[samples_.number(left, top)], static_cast<std::size_t>(samples_.width()), widest_},
-            counts);
+        kernels.trace(scene_,
+                      {plane_, bounds_.frame(), rays.empty() ? nullptr : rays.data(), pixels,
+                       &hits[samples_.number(pixels.left, pixels.top)],
+                       static_cast<std::size_t>(samples_.width()), options_.widest},
+                      counts);
     }
 
 private:
+    /// The least box of a tile's pixels that holds all samples that matter.
+    PixelBox wanted_of(const PixelBox& tile) const {
+        if (options_.wanted.empty()) return tile;
+        PixelBox box{tile.right + 1, tile.bottom + 1, tile.left - 1, tile.top - 1};
+        for (int y = tile.top; y <= tile.bottom; ++y)
+            for (int x = tile.left; x <= tile.right; ++x)
+                if (options_.wanted[samples_.number(x, y)])
+                    box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x),
+                           std::max(box.bottom, y)};
+        return box;
+    }
+
     const WideScene scene_;
     const PictureSamples<float>& samples_;
     const PicturePlane plane_;
     const PixelBounds bounds_;
-    const int widest_;
+    const BeamOptions& options_;
 };
 }  // namespace detail
 
 /// Writes the closest hit of each sample of a picture to `hits`, by number: the bits that closest_hits writes
 /// for the samples' rays, for any executor and options. Beams go through a WideBvh of triangles of float, by
-/// kernels, if they come from one eye; any other index or camera, or a processor without kernels, is asked
-/// the rays, and then nothing is counted. Throws InputError for too few places, and UsageError for another
-/// width.
+/// kernels, if they come from one eye or its image in a mirror; any other index or camera, or a processor
+/// without kernels, is asked the rays, and then nothing is counted. Throws InputError for too few places, and
+/// UsageError for another width.
 template <class S, class P>
 BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samples,
                      std::span<Hit<float>> hits, Executor& executor, const BeamOptions& options = {}) {
     detail::expect_room("samples", samples.size(), hits.size());
+    if (!options.wanted.empty()) detail::expect_room("samples", samples.size(), options.wanted.size());
     if (const int w = options.widest; w != 0 && w != 8 && w != 16 && w != 32 && w != beam_side)
         throw UsageError("beams are 64, 32, 16 or 8 pixels wide, or 0 for none: not " + std::to_string(w));
     BeamCounts sum;
     if constexpr (detail::TrianglesForKernels<Index<S, P>>) {
-        const bool from_one_eye = samples.has_plane() && !samples.plane().parallel;
-        if (const BeamKernels* const kernels = beam_kernels(); kernels != nullptr && from_one_eye) {
-            const detail::BeamPicture picture(detail::kernel_scene(index), samples, options.widest);
+        if (const BeamKernels* const kernels = beam_kernels(); kernels != nullptr && samples.from_one_eye()) {
+            const detail::BeamPicture picture(detail::kernel_scene(index), samples, options);
             std::vector<BeamCounts> counts(picture.tiles());
             IeeeExecutor threads(executor);
             threads.for_each_piece(counts.size(), 1, [&](std::size_t begin, std::size_t end) {

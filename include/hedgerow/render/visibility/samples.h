@@ -51,7 +51,15 @@ public:
     }
     bool in_the_middle() const { return samples_ == 1; }
     Within within_pixel() const { return in_the_middle() ? Within{0.5f, 0.5f} : Within{0, 1}; }
-    /// Whether all rays come from one eye or go one way, through a plane.
+    /// The samples as they are seen in a mirror (RayMaker::in_mirror). Sample i is the reflection of sample
+    /// i.
+    PictureSamples in_mirror(const FlatMirror& mirror) const {
+        PictureSamples seen = *this;
+        seen.make_ = make_.in_mirror(mirror);
+        return seen;
+    }
+    bool from_one_eye() const { return make_.from_one_eye(); }
+    /// Whether all rays come from one eye or go one way, through a plane, where they begin.
     bool has_plane() const { return make_.has_plane(); }
     PicturePlane plane() const { return make_.plane(); }
     Ray<T, 3> ray(int x, int y) const {
