@@ -1,0 +1,80 @@
+/// The random numbers of a path: each a function of (seed, pixel, sample, dimension), so that a picture does
+/// not depend on the order in which its paths are followed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include <hedgerow/render/sampling/sobol.h>
+#include <hedgerow/scenes/random.h>
+
+namespace hedgerow {
+
+/// How the samples of a pixel are spread: evenly, with each pair of dimensions a scrambled Sobol sequence, or
+/// independently.
+enum class Sampler : std::uint8_t { sobol, independent };
+inline constexpr std::array<std::string_view, 2> sampler_names = {"sobol", "independent"};
+
+/// A point in the unit square, [0, 1)². Multiples of 2⁻²⁴.
+struct UnitPair {
+    float x, y;
+};
+
+/// The samples of one pixel. A pixel's sequence may be taken in parts by number of the sample, in any order.
+class PixelSequence {
+public:
+    /// `pixel` is its number in the picture. Sequences of one pixel with other `stream`s are independent.
+    PixelSequence(Sampler sampler, std::uint64_t seed, std::uint64_t pixel, std::uint32_t stream = 0)
+        : seed_(static_cast<std::uint32_t>(scattered(scattered(seed + 0x9E3779B97F4A7C15u) + pixel) >> 32) ^
+                scattered32(stream)),
+          sampler_(sampler) {}
+
+    /// Pair `dimension` of a sample. O(1): integers alone.
+    UnitPair pair(std::uint32_t sample, std::uint32_t dimension) const {
+        const std::uint32_t seed = scattered32(seed_ + scattered32(dimension));
+        if (sampler_ == Sampler::sobol) {
+            const FractionPair p = sobol_pair(sample, seed);
+            return {unit(p.x), unit(p.y)};
+        }
+        const std::uint32_t x = scattered32(seed + scattered32(sample));
+        return {unit(x), unit(scattered32(x + 0x9E3779B9u))};
+    }
+
+private:
+    static constexpr float unit(std::uint32_t fraction) {
+        return static_cast<float>(fraction >> 8) * 0x1p-24f;
+    }
+
+    std::uint32_t seed_;
+    Sampler sampler_;
+};
+
+/// The numbers of one path, in the order in which it takes them: two pairs of the camera, then `of_vertex`
+/// pairs of each vertex.
+class PathSamples {
+public:
+    static constexpr std::uint32_t of_camera = 2, of_vertex = 4;
+
+    PathSamples(const PixelSequence& pixel, std::uint32_t sample) : pixel_(pixel), sample_(sample) {}
+
+    UnitPair in_pixel() const { return pixel_.pair(sample_, 0); }
+    UnitPair on_lens() const { return pixel_.pair(sample_, 1); }
+    /// Vertex 0 is the first hit of the camera's ray.
+    UnitPair light_point(std::uint32_t vertex) const { return of(vertex, 0); }
+    UnitPair direction(std::uint32_t vertex) const { return of(vertex, 1); }
+    /// x chooses the light, y the lobe.
+    UnitPair choices(std::uint32_t vertex) const { return of(vertex, 2); }
+    /// x decides whether the path goes on.
+    UnitPair end(std::uint32_t vertex) const { return of(vertex, 3); }
+
+private:
+    UnitPair of(std::uint32_t vertex, std::uint32_t pair) const {
+        return pixel_.pair(sample_, of_camera + of_vertex * vertex + pair);
+    }
+
+    const PixelSequence& pixel_;
+    std::uint32_t sample_;
+};
+
+}  // namespace hedgerow
