@@ -175,6 +175,41 @@ TYPED_TEST(ModelPictures, NormalsOfCornersTurnTheLight) {
         EXPECT_NEAR(lit[k], 0.8f / PlainShading::grey * (shading.sky(normal) + shading.direct(1))[k], 1e-5f);
 }
 
+/// The green of a map of normals points up in its image, the red to the right, also on a mirrored instance
+/// and where texture coordinates run the other way.
+TYPED_TEST(ModelPictures, MapsOfNormalsTurnTheLight) {
+    using T = TypeParam;
+    const Vec3f in_map = normalized(Vec3f(0.3f, 0.5f, 1));
+    const auto light_of = [&](const Transform<3>& to_world, bool flipped, const Vec3f& expected) {
+        auto model = textured_square<T>();
+        model.materials[0] = Material();
+        model.materials[0].normal_texture.texture = 1;
+        if (flipped)
+            for (Vec2f& c : model.objects[0].attributes.texture_coordinates[0].values) c[0] = -c[0];
+        Texture map;
+        auto pixels = std::make_shared<Pixels>();
+        const Vec3f encoded = (in_map + Vec3f::all(1)) * 0.5f;
+        *pixels = {1, 1, 3, std::vector<float>{encoded[0], encoded[1], encoded[2]}};
+        map.pixels = pixels;
+        model.textures.push_back(map);
+        model.instances[0].to_world = to_world;
+        RenderOptions options = from_above();
+        options.camera.light = expected;
+        const ModelScene<T> scene(model, serial_executor());
+        const Vec3f lit = light_at(cast(scene, options), 8, 8);
+        const PlainShading shading(options.camera, 0);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(lit[k], 0.8f / PlainShading::grey * (shading.sky(expected) + shading.direct(1))[k],
+                        1e-5f);
+    };
+    const auto x = in_map[0], y = in_map[1], z = in_map[2];
+    light_of({}, false, {x, y, z});
+    light_of({}, true, {-x, y, z});
+    light_of(Transform<3>::rotation({0, 0, 1}, 3.14159265358979 / 2), false, {-y, x, z});
+    light_of(Transform<3>::scaling(Vec3d(-2, 2, 2)), false, {-x, y, z});
+    light_of(Transform<3>::scaling(Vec3d(2, -2, 2)), true, {-x, -y, z});
+}
+
 TYPED_TEST(ModelPictures, ByTrianglesAreThoseByRays) {
     using T = TypeParam;
     for (const char* name : {"cornell-box", "teapot-in-stadium"}) {

@@ -23,6 +23,11 @@ struct Rgba {
     friend constexpr Rgba operator*(const Rgba& a, float s) { return {a.colour * s, product(a.alpha, s)}; }
 };
 
+/// Light after a surface or a body of a colour: products by component.
+constexpr Vec3f tinted(const Vec3f& light, const Vec3f& colour) {
+    return {product(light[0], colour[0]), product(light[1], colour[1]), product(light[2], colour[2])};
+}
+
 /// The linear value of an encoded value from 0 to 1 (IEC 61966-2-1:1999).
 inline double srgb_to_linear(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);

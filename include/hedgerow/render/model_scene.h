@@ -26,7 +26,8 @@ public:
           index_(build<WideBvh>(instances_, executor)),
           tracer_(index_),
           surfaces_(instances_),
-          appearances_(model, std::move(numbers_)) {}
+          lookups_(model, std::move(numbers_)),
+          appearances_(lookups_) {}
     ModelScene(const ModelScene&) = delete;
     ModelScene& operator=(const ModelScene&) = delete;
 
@@ -35,6 +36,7 @@ public:
     const Tracer<T>& tracer() const { return tracer_; }
     const Surfaces<T>& surfaces() const { return surfaces_; }
     const Appearances<T>& appearances() const { return appearances_; }
+    const ModelLookups<T>& lookups() const { return lookups_; }
     /// Bytes of all indexes.
     std::size_t bytes() const {
         std::size_t sum = index_.bytes();
@@ -66,6 +68,7 @@ private:
     const IndexOf<WideBvh, Instances> index_;
     const IndexTracer<IndexOf<WideBvh, Instances>> tracer_;
     const SurfacesOf<Instances> surfaces_;
+    const ModelLookups<T> lookups_;
     const ModelAppearances<T> appearances_;
 };
 
