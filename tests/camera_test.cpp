@@ -90,8 +90,8 @@ TEST(Cameras, PointsOfALensFillItEvenly) {
             within += r < 0.5f;
             first_quadrant += p.right > 0 && p.up > 0;
         }
-    EXPECT_NEAR(within, side * side / 4, side);
-    EXPECT_NEAR(first_quadrant, side * side / 4, side);
+    EXPECT_NEAR(within, 0.25 * side * side, side);
+    EXPECT_NEAR(first_quadrant, 0.25 * side * side, side);
 }
 
 TEST(Cameras, ViewsShowTheWholeBoxUpright) {

@@ -108,8 +108,9 @@ TYPED_TEST(ConePictures, HaveTheShadowsOfManyRays) {
         const Vec3d right = normalized(cross(axis, beside)), up = cross(axis, right);
         std::vector<Ray<T, 3>> rays;
         for (int s = 0; s < 256; ++s) {
-            const LensPoint p = lens_point((static_cast<float>(s % 16) + 0.5f) / 16,
-                                           (static_cast<float>(s / 16) + 0.5f) / 16);
+            const int column = s % 16, row = s / 16;
+            const LensPoint p =
+                lens_point((static_cast<float>(column) + 0.5f) / 16, (static_cast<float>(row) + 0.5f) / 16);
             rays.push_back(
                 {Vec<T, 3>(from), Vec<T, 3>(axis + (right * double(p.right) + up * double(p.up)) * slope)});
         }

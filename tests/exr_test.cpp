@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 
+#include <hedgerow/any_index.h>
 #include <hedgerow/io/image.h>
 #include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/render.h>

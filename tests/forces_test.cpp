@@ -66,7 +66,7 @@ double error_of(const Scene& scene, const std::vector<PotentialAt<double>>& foun
 }
 
 TEST(Forces, KeepTheirAccuracy) {
-    const std::size_t n = in_long_runs(100000, 20000);
+    const std::size_t n = in_long_runs(100000, unless_sanitized(20000, 4000));
     const std::pair<const char*, Scene> scenes[] = {{"cube", cube(n)},
                                                     {"neutral", cube(n, true)},
                                                     {"plummer", stars(plummer(n))},

@@ -6,6 +6,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/measure/contest.h>
 #include <hedgerow/measure/costs.h>
+#include <hedgerow/mesh_index.h>
 #include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
