@@ -270,6 +270,30 @@ TEST_F(Cli, ConesSmoothEdgesAndShadows) {
     expect_bad(scene + file("x.png") + " --cones --projection panorama", "panorama");
 }
 
+TEST_F(Cli, PathsShowScatteredLight) {
+    const std::string scene = "render gen:cornell-box --shading path --size 24x20 -o ";
+    const auto made = run(scene + file("paths.png") + " --spp 4 --threads 1 --json");
+    ASSERT_EQ(made.code, 0);
+    const auto figures = nlohmann::json::parse(made.output);
+    EXPECT_EQ(figures["lights"].get<int>(), 2);
+    EXPECT_EQ(figures["samples"].get<int>(), 4);
+    EXPECT_TRUE(figures["finished"].get<bool>());
+    ASSERT_EQ(run(scene + file("threads.png") + " --spp 4 --threads 2").code, 0);
+    EXPECT_EQ(pixels_of(file("paths.png")), pixels_of(file("threads.png")));
+    for (const char* options : {"--seed 5", "--sampler independent", "--bounces 1", "--exposure 2"}) {
+        ASSERT_EQ(run(scene + file("other.png") + " --spp 4 " + options).code, 0) << options;
+        EXPECT_NE(pixels_of(file("paths.png")), pixels_of(file("other.png"))) << options;
+    }
+    const auto sky = run("render gen:teapot:1000 --shading path --spp 1 --size 16x16 -o " + file("sky.exr"));
+    ASSERT_EQ(sky.code, 0);
+    EXPECT_NE(sky.output.find("so it gets a sky"), std::string::npos);
+    for (const char* options : {"--sheet", "--counts", "--cones", "--light-size 5", "--footprints",
+                                "--opacity 0.5", "--visibility raster", "--structure bvh"})
+        expect_usage(scene + file("x.png") + " " + options, "leave out");
+    expect_usage(scene + file("x.png") + " --sampler random", "--sampler");
+    expect_usage(scene + file("x.png") + " --spp 0", "--spp");
+}
+
 TEST_F(Cli, ASheetShowsEveryShading) {
     const std::string scene = "render gen:cornell-box --quiet -o " + file("sheet.png") + " --sheet";
     ASSERT_EQ(run(scene + " --size 50x40 --structure kdtree").code, 0);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -30,7 +31,18 @@ TEST(Colours, SrgbIsWhatTheStandardSays) {
     for (int i = 0; i < 256; ++i) {
         const double linear = linear_of_srgb8(static_cast<std::uint8_t>(i));
         EXPECT_NEAR(linear_to_srgb(linear) * 255, i, 1e-3);
+        EXPECT_EQ(srgb8_of_linear(static_cast<float>(linear)), i);
     }
+}
+
+TEST(Colours, BytesAreTheNearestToTheEncodedValue) {
+    for (int i = -50; i <= 4150; ++i) {
+        const float linear = static_cast<float>(i) / 4096;
+        const double encoded = linear_to_srgb(std::clamp(double(linear), 0.0, 1.0));
+        EXPECT_EQ(srgb8_of_linear(linear), std::lround(encoded * 255)) << linear;
+    }
+    EXPECT_EQ(srgb8_of_linear(std::numeric_limits<float>::infinity()), 255);
+    EXPECT_EQ(srgb8_of_linear(std::numeric_limits<float>::quiet_NaN()), 0);
 }
 
 TEST(Textures, TexelsOfEveryKind) {

@@ -130,7 +130,9 @@ TEST(PathSamples, APathTakesEachPairOnce) {
     const auto take = [&](const UnitPair& p) { seen.insert(p.x), seen.insert(p.y), taken += 2; };
     take(path.in_pixel()), take(path.on_lens());
     for (std::uint32_t v = 0; v < 50; ++v)
-        take(path.light_point(v)), take(path.direction(v)), take(path.choices(v)), take(path.end(v));
+        take(path.light_point(v)), take(path.direction(v)),
+            take({static_cast<float>(path.light_choice(v)), path.lobe_choice(v)}),
+            take({path.end(v), -path.end(v)});
     EXPECT_EQ(seen.size(), taken);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/render/film/colour.h>
 #include <hedgerow/render/lettering.h>
 
@@ -18,9 +19,12 @@ std::vector<double> projected(const Particles& all, const DensityFrame& frame, i
     const double spacing = std::sqrt(static_cast<double>(mass.size()) /
                                      static_cast<double>(std::max<std::size_t>(1, all.size())));
     const int reach = static_cast<int>(std::clamp(spacing / 3, 0.0, 4.0));
+    const auto weight = [reach](int dx, int dy) {
+        return std::max(0.0, 1 - std::sqrt(static_cast<double>(dx * dx + dy * dy)) / (reach + 1));
+    };
     double whole = 0;
     for (int dy = -reach; dy <= reach; ++dy)
-        for (int dx = -reach; dx <= reach; ++dx) whole += std::max(0.0, 1 - std::hypot(dx, dy) / (reach + 1));
+        for (int dx = -reach; dx <= reach; ++dx) whole += weight(dx, dy);
     for (std::size_t i = 0; i < all.size(); ++i) {
         const double x = width / 2.0 + (all.places[i][0] - frame.middle[0]) * pixels,
                      y = height / 2.0 - (all.places[i][1] - frame.middle[1]) * pixels;
@@ -29,8 +33,7 @@ std::vector<double> projected(const Particles& all, const DensityFrame& frame, i
         for (int dy = std::max(-reach, -py); dy <= std::min(reach, height - 1 - py); ++dy)
             for (int dx = std::max(-reach, -px); dx <= std::min(reach, width - 1 - px); ++dx)
                 mass[static_cast<std::size_t>(py + dy) * static_cast<std::size_t>(width) +
-                     static_cast<std::size_t>(px + dx)] +=
-                    all.masses[i] * std::max(0.0, 1 - std::hypot(dx, dy) / (reach + 1)) / whole;
+                     static_cast<std::size_t>(px + dx)] += all.masses[i] * weight(dx, dy) / whole;
     }
     return mass;
 }
@@ -73,7 +76,7 @@ Image density_picture(const Particles& all, const DensityFrame& frame, int width
     constexpr double range = 2000;  // from the last colour to the first
     for (std::size_t i = 0; i < mass.size(); ++i) {
         if (!(mass[i] > 0)) continue;
-        const double x = std::log1p(mass[i] / frame.most * range) / std::log1p(range);
+        const double x = logarithm(1 + product(mass[i] / frame.most, range)) / logarithm(1 + range);
         const Image::Pixel colour = heat(static_cast<float>(x));
         // Fades into the dark where there is next to nothing.
         for (std::size_t k = 0; k < 3; ++k)

@@ -1,12 +1,12 @@
 /// Wireframes: the cells of a structure as lines over a view of the scene, as PNG.
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/any_index.h>
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/render/lettering.h>
 #include <hedgerow/render/render.h>
 #include <hedgerow/render/wireframe.h>
@@ -112,7 +112,7 @@ Image wireframe(std::vector<OutlineCell<3>> cells, const std::vector<std::string
     const float unit = static_cast<float>(image.height) / 768;
     for (const auto& c : cells)
         draw_edges(c, pixel_of(level_colour(c.level - 1, levels)),
-                   unit * std::max(1.1f, 2.8f * std::pow(0.85f, static_cast<float>(c.level - 1))), wires);
+                   unit * std::max(1.1f, static_cast<float>(2.8 * power(0.85, c.level - 1))), wires);
     draw_level_legend(image, title, levels);
     return image;
 }

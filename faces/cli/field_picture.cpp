@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/render/film/colour.h>
 #include <hedgerow/render/lettering.h>
 
@@ -106,7 +107,7 @@ public:
             const double turn = 2 * std::numbers::pi;
             const int sides = static_cast<int>(std::clamp(p.radius / field_.pixel() * turn / 2, 8.0, 4096.0));
             const auto on_circle = [&](int k) {
-                return p.points[0] + Vec2d(std::cos(turn * k / sides), std::sin(turn * k / sides)) * p.radius;
+                return p.points[0] + Vec2d(cosine(turn * k / sides), sine(turn * k / sides)) * p.radius;
             };
             for (int k = 0; k < sides; ++k) line(on_circle(k), on_circle(k + 1), colour);
         } else if (p.points.size() == 1) {

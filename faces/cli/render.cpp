@@ -151,6 +151,18 @@ void check_cones(const RenderArguments& a) {
         throw UsageError("--cones: leave out --shading steps and --counts, which show what rays cost");
 }
 
+/// Throws UsageError for options that are not of paths.
+void check_paths(const RenderArguments& a) {
+    const auto refuse = [](bool given, const char* option) {
+        if (given)
+            throw UsageError(std::string("--shading path: leave out ") + option + ", which is not of paths");
+    };
+    refuse(a.sheet, "--sheet"), refuse(a.counts, "--counts"), refuse(a.footprints, "--footprints");
+    refuse(a.uses_cones(), a.cones ? "--cones" : "--light-size");
+    refuse(a.transparent || a.opacity < 1, "--transparency and --opacity");
+    refuse(a.visibility != "cast", "--visibility");
+}
+
 }  // namespace
 
 Run add_render(CLI::App& verb) {
@@ -161,10 +173,12 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--structure", a->structure,
                     "NAME[:OPTION=VALUE,...]; of a .hedgerow file 'wide' is the index as it was saved")
         ->capture_default_str();
-    verb.add_option("--shading", a->shading,
-                    "normals, depth, diffuse (grey), colour (materials and textures of the scene) or steps")
+    verb.add_option(
+            "--shading", a->shading,
+            "normals, depth, diffuse (grey), colour (materials and textures of the scene), path (scattered "
+            "light) or steps")
         ->capture_default_str()
-        ->check(CLI::IsMember({"normals", "depth", "diffuse", "colour", "steps"}));
+        ->check(CLI::IsMember({"normals", "depth", "diffuse", "colour", "path", "steps"}));
     verb.add_option(
             "--visibility", a->visibility,
             "how hits are found: cast rays, raster triangles, or beams of rays; the picture is the same")
@@ -183,7 +197,16 @@ Run add_render(CLI::App& verb) {
                     "the light's diameter in degrees (the sun's is 0.53): shadows have soft edges")
         ->check(CLI::Range(0.0, 89.0));
     verb.add_flag("--sheet", a->sheet, "every shading side by side, on one .png of three times two pictures");
-    verb.add_option("--spp", a->spp, "samples a pixel")->check(CLI::Range(1, 4096));
+    const auto* const spp =
+        verb.add_option("--spp", a->spp, "samples a pixel; of --shading path 64 if not given")
+            ->check(CLI::Range(1, 1 << 20));
+    verb.add_option("--bounces", a->bounces, "of --shading path: how often light is scattered at most")
+        ->capture_default_str();
+    verb.add_option("--sampler", a->sampler, "of --shading path: sobol (spread evenly) or independent")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"sobol", "independent"}));
+    verb.add_option("--exposure", a->exposure, "of --shading path: brightness of a .png in powers of two")
+        ->check(CLI::Range(-30.0, 30.0));
     verb.add_flag("--counts", a->counts,
                   "count what rays visit, without the engine's kernels; layers and steps are counts already");
     verb.add_option("--threads", a->threads, "that build and render; 0: all cores")
@@ -191,10 +214,12 @@ Run add_render(CLI::App& verb) {
         ->check(CLI::Range(0, 1024));
     add_view(verb, a->view);
     add_projection(verb, a->view);
-    verb.add_option("--camera", a->camera, "of --shading colour: a camera of the file, counted from 0")
+    verb.add_option("--camera", a->camera,
+                    "of --shading colour and path: a camera of the file, counted from 0")
         ->check(CLI::NonNegativeNumber);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
-    return [a] {
+    return [a, spp] {
+        if (a->follows_paths() && spp->count() == 0) a->spp = 64;
         const bool saved = names_index_file(a->scene);
         a->layers = asks_for_layers(a->output);
         if (a->visibility != "cast" && counted(parse_shading(a->shading)))
@@ -204,11 +229,12 @@ Run add_render(CLI::App& verb) {
         if (a->sheet) check_sheet(*a);
         check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
-        const bool by_looks = a->sheet || parse_shading(a->shading) == Shading::colour;
+        if (a->follows_paths()) check_paths(*a);
+        const bool by_looks = a->sheet || a->follows_paths() || parse_shading(a->shading) == Shading::colour;
         if (by_looks && a->uses_beams())
             throw UsageError("beams go through one mesh without looks: leave out --visibility beams");
         if (by_looks && !a->sheet && a->structure != "wide")
-            throw UsageError("--shading colour casts rays at 'wide' or rasters: leave out --structure");
+            throw UsageError("--shading " + a->shading + " casts rays at 'wide': leave out --structure");
         if (a->transparent && a->opacity == 1 && !by_looks)
             throw UsageError(
                 "--transparency: --shading " + a->shading +
@@ -223,8 +249,9 @@ Run add_render(CLI::App& verb) {
                              " shows no textures; give --shading colour");
         if (a->uses_cones()) check_cones(*a);
         if (a->camera >= 0 && !by_looks)
-            throw UsageError("--camera is of files with looks: it needs --shading colour");
+            throw UsageError("--camera is of files with looks: it needs --shading colour or path");
         return in_precision(*a, [&]<class T>(T) {
+            if (a->follows_paths()) return render_paths<T>(*a);
             if (by_looks) return render_looks<T>(*a);
             if (saved && a->structure == "wide" && !a->uses_beams() && !a->uses_cones() &&
                 !index_file_info(a->scene).holds_points)

@@ -102,21 +102,28 @@ void check_sheet(const RenderArguments& a) {
 }
 
 template <class T>
+ShownModel<T>::ShownModel(const RenderArguments& a)
+    : model(load_looks<T>(a)), started(now()), scene(model, interruptible_executor()) {
+    outcome.build_seconds = now() - started;
+    outcome.indexed = true, outcome.bytes = scene.bytes(), outcome.primitives = model.triangles();
+    outcome.upright = model.objects.size() == 1 || a.scene.starts_with("gen:")
+                          ? upright_of(a.view, a, model.objects[0].mesh)
+                      : a.view.up != "auto" ? Upright{a.view.up[0] - 'x', ""}
+                                            : upright_by_format(a.scene, {});
+    const auto& box = scene.bounds();
+    options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, outcome.upright);
+    options.camera = camera_of(a, model, options.camera);
+}
+template struct ShownModel<float>;
+template struct ShownModel<double>;
+
+template <class T>
 int render_looks(const RenderArguments& a) {
     const ThreadLimit limit(a.threads);
-    Outcome o;
-    const Model<T> model = load_looks<T>(a);
-    const double start = now();
-    const ModelScene<T> scene(model, interruptible_executor());
-    o.build_seconds = now() - start;
-    o.indexed = true, o.bytes = scene.bytes(), o.primitives = model.triangles();
-    o.upright = model.objects.size() == 1 || a.scene.starts_with("gen:")
-                    ? upright_of(a.view, a, model.objects[0].mesh)
-                : a.view.up != "auto" ? Upright{a.view.up[0] - 'x', ""}
-                                      : upright_by_format(a.scene, {});
-    const auto& box = scene.bounds();
-    RenderOptions options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, o.upright);
-    options.camera = camera_of(a, model, options.camera);
+    const ShownModel<T> shown(a);
+    const ModelScene<T>& scene = shown.scene;
+    const RenderOptions& options = shown.options;
+    Outcome o = shown.outcome;
     const auto& looks = scene.appearances();
     RayCasting<T> casting(scene.tracer(), looks.has_masks()
                                               ? [&](const Hit<T>& hit) { return looks.is_there(hit); }
@@ -126,10 +133,10 @@ int render_looks(const RenderArguments& a) {
         throw InputError(a.scene + ": has masks of opacity, which only rays see; use --visibility cast");
     Visibility<T>& visibility = a.rasterises() ? static_cast<Visibility<T>&>(rasterising) : casting;
     std::optional<ModelCones<T>> cones;
-    if (a.uses_cones()) cones.emplace(model, interruptible_executor()), o.bytes += cones->bytes();
+    if (a.uses_cones()) cones.emplace(shown.model, interruptible_executor()), o.bytes += cones->bytes();
     const PictureParts<T> parts{visibility, scene.surfaces(), &scene.tracer(), &looks,
                                 cones ? &*cones : nullptr};
-    if (a.sheet) return finish_sheet(a, parts, model, options, std::move(o));
+    if (a.sheet) return finish_sheet(a, parts, shown.model, options, std::move(o));
     ProgressLine line("rendering", a.quiet, "rows");
     return finish(a, parts, options, std::move(o), line.progress());
 }

@@ -18,12 +18,16 @@ struct RenderArguments : Common {
     int camera = -1;    // of the file
     float opacity = 1;  // of all surfaces, times that of their looks
     bool transparent = false, sheet = false;
+    std::uint32_t bounces = 64;           // of paths
+    std::string sampler = "sobol";        // of paths
+    float exposure = 0;                   // of paths, in powers of two
     bool footprints = false;              // of textures
     bool cones = false;                   // in place of samples
     float light_degrees = 0;              // the diameter of the light
     bool counts = false, layers = false;  // layers: whether the output is .exr
 
     bool rasterises() const { return visibility == "raster"; }
+    bool follows_paths() const { return shading == "path"; }
     bool uses_beams() const { return visibility == "beams"; }
     bool uses_cones() const { return cones || light_degrees > 0; }
     /// Whether the picture needs an index: for its rays from the eye, through surfaces, or to the light.

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/sphere_set.h>
 #include <hedgerow/render/render.h>
@@ -79,7 +80,8 @@ SphereSet<T, 3> spheres_at(const PointCloud<T, 3>& cloud, double wanted_radius) 
     for (const auto& p : cloud.points) box.expand(p);
     T radius = static_cast<T>(wanted_radius);
     if (radius == 0 && cloud.size() > 0)
-        radius = length(box.extent()) / (10 * std::cbrt(static_cast<T>(cloud.size())));
+        radius =
+            length(box.extent()) / static_cast<T>(10 * power(static_cast<double>(cloud.size()), 1.0 / 3));
     SphereSet<T, 3> spheres;
     for (const auto& p : cloud.points) spheres.spheres.push_back({p, radius > 0 ? radius : T(1)});
     return spheres;

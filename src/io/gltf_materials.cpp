@@ -2,10 +2,11 @@
 #include "gltf_materials.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <string>
+
+#include <hedgerow/geometry/elementary.h>
 
 #include "text.h"
 
@@ -33,7 +34,7 @@ TextureTransform texture_transform_of(const GltfFile& file, const GltfFile::Json
     using Numbers = std::vector<double>;
     const Numbers offset = file.numbers(json, "offset", 2).value_or(Numbers{0, 0});
     const Numbers scale = file.numbers(json, "scale", 2).value_or(Numbers{1, 1});
-    const double angle = file.real_or(json, "rotation", 0), c = std::cos(angle), s = std::sin(angle);
+    const double angle = file.real_or(json, "rotation", 0), c = cosine(angle), s = sine(angle);
     return {{rounded<float>(c * scale[0]), rounded<float>(s * scale[1]), rounded<float>(offset[0])},
             {rounded<float>(-s * scale[0]), rounded<float>(c * scale[1]), rounded<float>(offset[1])}};
 }

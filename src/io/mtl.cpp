@@ -77,7 +77,7 @@ Material material_of(const MtlEntry& e) {
     if (m.ior < 1.01f && !is_glass(e.illumination)) m.ior = 1.5f;
     // An exponent of Phong's lobe is nearly GGX with α = √(2 / (Ns + 2)) (Walter et al. 2007).
     const float exponent = std::max(e.exponent.value_or(0), 0.f);
-    m.roughness = std::clamp(e.roughness.value_or(std::pow(2 / (exponent + 2), 0.25f)), 0.f, 1.f);
+    m.roughness = std::clamp(e.roughness.value_or(std::sqrt(std::sqrt(2 / (exponent + 2)))), 0.f, 1.f);
     m.roughness_texture = e.roughness_map;
     m.metallic = std::clamp(e.metallic.value_or(e.metallic_map ? 1.f : 0.f), 0.f, 1.f);
     m.metallic_texture = e.metallic_map;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/render/shading/transparency.h>
 
 namespace hedgerow {
@@ -352,8 +353,7 @@ private:
     OfTile<float> let_through(std::span<const Ray<T, 3>> rays, PictureCosts& costs) {
         OfTile<float> open;
         if (o_.light_degrees > 0) {
-            const auto slope =
-                static_cast<T>(std::tan(double(o_.light_degrees) / 2 * std::numbers::pi / 180));
+            const auto slope = static_cast<T>(tangent(double(o_.light_degrees) / 2 * std::numbers::pi / 180));
             for (std::size_t i = 0; i < rays.size(); ++i)
                 open[i] = parts_.cones->open({rays[i], T(0), slope});
             costs.cones += rays.size();

@@ -46,6 +46,7 @@ struct Looks {
 Looks looks_of_cornell_box(std::uint64_t size) {
     Material light = matte("light", cornell::light_reflectance);
     light.emission = cornell::radiance;
+    light.double_sided = false;  // it shines down
     const auto [floor, ceiling, back, right, left, lamp] = detail::parts_of_cornell_box(size);
     return {
         {matte("white", cornell::white), matte("green", cornell::green), matte("red", cornell::red), light},

@@ -11,8 +11,10 @@
 #include <hedgerow/ask/families.h>
 #include <hedgerow/engine/wide_bvh.h>
 #include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/integrators/path_picture.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
+#include <hedgerow/scenes/looks.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/random.h>
 #include <hedgerow/scenes/sets.h>
@@ -148,6 +150,35 @@ bool pairs_agree(std::size_t count) {
     return true;
 }
 
+/// Prints the hash of the linear light of a path-traced picture. Returns false if it is another with an
+/// instruction set.
+bool traces_paths(const char* name) {
+    const auto model = generate_model<float>(parse_scene_spec(std::string("gen:") + name));
+    const ModelScene<float> scene(model, serial_executor());
+    const SceneLights<float> lights(scene);
+    PathPictureOptions options;
+    options.camera = camera_for(parse_scene_spec(std::string("gen:") + name).name)
+                         .value_or(automatic_camera(scene.bounds()));
+    options.width = options.height = 32, options.samples = 4;
+    std::uint64_t first = 0;
+    for (const auto set : instruction_sets()) {
+        use_instruction_set(set);
+        const auto picture =
+            trace_paths(PathScene<float>{scene, lights, scene.tracer()}, options, serial_executor());
+        std::uint64_t sum = 0xCBF29CE484222325u;
+        for (std::size_t i = 0; i < picture.light.size(); ++i)
+            for (const float x : picture.light.mean(i).data) add(sum, std::bit_cast<std::uint32_t>(x));
+        if (first == 0) {
+            first = sum;
+            std::printf("%-10s paths, sum %016llx\n", name, static_cast<unsigned long long>(sum));
+        }
+        if (sum == first) continue;
+        std::printf("%s: paths differ with %s\n", name, std::string(set).c_str());
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 int main() {
@@ -159,6 +190,6 @@ int main() {
         agrees("hairball", hairball<float>(1000), 3200) && agrees("terrain", terrain<float>(1000), 3200) &&
         draws("soup", soup<float>(300)) && draws("hairball", hairball<float>(1000)) &&
         lists_agree("soup", soup<float>(300), 600) && lists_agree("hairball", hairball<float>(1000), 300) &&
-        pairs_agree(2000);
+        pairs_agree(2000) && traces_paths("cornell-box") && traces_paths("grass:1000");
     return good ? 0 : 1;
 }

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
+#include <hedgerow/geometry/elementary.h>
+#include <hedgerow/geometry/rounding.h>
 #include <hedgerow/geometry/vec.h>
 
 namespace hedgerow {
@@ -30,11 +31,11 @@ constexpr Vec3f tinted(const Vec3f& light, const Vec3f& colour) {
 
 /// The linear value of an encoded value from 0 to 1 (IEC 61966-2-1:1999).
 inline double srgb_to_linear(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    return encoded <= 0.04045 ? encoded / 12.92 : power((encoded + 0.055) / 1.055, 2.4);
 }
 /// The encoded value of a linear value from 0 to 1, the inverse of `srgb_to_linear`.
 inline double linear_to_srgb(double linear) {
-    return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return linear <= 0.0031308 ? linear * 12.92 : product(1.055, power(linear, 1 / 2.4)) - 0.055;
 }
 
 /// The linear value of an encoded value of 8 bits: `srgb_to_linear(value / 255)`, from a table.
@@ -46,6 +47,22 @@ inline float linear_of_srgb8(std::uint8_t value) {
         return linear;
     }();
     return table[value];
+}
+
+/// The encoded value of 8 bits that is nearest to a linear value, which is clamped to 0..1. 0 for NaN. Costs
+/// eight steps of a binary search in a table.
+inline std::uint8_t srgb8_of_linear(float linear) {
+    // The least linear values whose encoded values round to 1, 2 and so on.
+    static const auto least = [] {
+        std::array<float, 255> table{};
+        for (std::size_t i = 0; i < table.size(); ++i)
+            table[i] = rounded_up<float>(srgb_to_linear((static_cast<double>(i) + 0.5) / 255));
+        return table;
+    }();
+    std::size_t encoded = 0;
+    for (std::size_t step = 128; step > 0; step /= 2)
+        encoded += least[encoded + step - 1] <= linear ? step : 0;
+    return static_cast<std::uint8_t>(encoded);
 }
 
 }  // namespace hedgerow

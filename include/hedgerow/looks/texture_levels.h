@@ -64,6 +64,11 @@ public:
         return sum * (1 / static_cast<float>(along * across));
     }
 
+    /// The mean of all texels of a texture, which is that of the constructor.
+    Rgba mean(const Texture& texture) const {
+        return levels_.empty() ? texture.at({0.5f, 0.5f}) : levels_.back().texels[0];
+    }
+
 private:
     static constexpr int most_lookups = 16;
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <hedgerow/instances/instance_set.h>
@@ -25,6 +26,7 @@ public:
         : instances_(placed(model, executor)),
           index_(build<WideBvh>(instances_, executor)),
           tracer_(index_),
+          of_object_(tracer_of_object()),
           surfaces_(instances_),
           lookups_(model, std::move(numbers_)),
           appearances_(lookups_) {}
@@ -33,7 +35,10 @@ public:
 
     const Instances& instances() const { return instances_; }
     const Box<T, 3>& bounds() const { return index_.bounds(); }
-    const Tracer<T>& tracer() const { return tracer_; }
+    /// Of one object that stands where it is, its own index answers: one level, and the same hits.
+    const Tracer<T>& tracer() const {
+        return of_object_ ? static_cast<const Tracer<T>&>(*of_object_) : tracer_;
+    }
     const Surfaces<T>& surfaces() const { return surfaces_; }
     const Appearances<T>& appearances() const { return appearances_; }
     const ModelLookups<T>& lookups() const { return lookups_; }
@@ -62,11 +67,18 @@ private:
         return Instances(all);
     }
 
+    std::optional<IndexTracer<MeshIndex<T>>> tracer_of_object() const {
+        if (instances_.size() != 1 || !(instances_.view()[0].transform() == Transform<3>()))
+            return std::nullopt;
+        return std::make_optional<IndexTracer<MeshIndex<T>>>(instances_.view()[0].index());
+    }
+
     std::vector<std::unique_ptr<const MeshIndex<T>>> objects_;
     std::vector<std::uint32_t> numbers_;  // of the instances, in the model
     const Instances instances_;
     const IndexOf<WideBvh, Instances> index_;
     const IndexTracer<IndexOf<WideBvh, Instances>> tracer_;
+    const std::optional<IndexTracer<MeshIndex<T>>> of_object_;
     const SurfacesOf<Instances> surfaces_;
     const ModelLookups<T> lookups_;
     const ModelAppearances<T> appearances_;

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/geometry/ray.h>
 #include <hedgerow/render/camera/camera.h>
 #include <hedgerow/render/camera/flat_mirror.h>
+#include <hedgerow/render/sampling/warps.h>
 
 namespace hedgerow {
 
@@ -40,15 +43,10 @@ inline float begin_of(const Vec3f& normal, float distance, const Vec3f& directio
 struct LensPoint {
     float right = 0, up = 0;
 };
-/// Maps a square to a disc so that equal areas stay equal and near points stay near (Shirley & Chiu 1997).
-/// u and v are in [0, 1).
+/// Maps a square to the lens, with equal areas to equal areas. u and v are in [0, 1).
 inline LensPoint lens_point(float u, float v) {
-    const float a = 2 * u - 1, b = 2 * v - 1;
-    if (a == 0 && b == 0) return {};
-    constexpr float quarter = 0.78539816f;
-    const bool wide = std::abs(a) > std::abs(b);
-    const float r = wide ? a : b, angle = wide ? quarter * (b / a) : 2 * quarter - quarter * (a / b);
-    return {r * std::cos(angle), r * std::sin(angle)};
+    const Vec2f p = disc_point(u, v);
+    return {p[0], p[1]};
 }
 
 /// Throws InputError for a camera that sees nothing or whose numbers make no sense: an angle of view that is
@@ -147,12 +145,14 @@ public:
     float forward_of(const Vec3f& direction) const { return dot(direction, forward_); }
 
 private:
-    static float tangent(float degrees) { return std::tan(degrees * 3.14159265f / 180); }
+    static float tangent(float degrees) {
+        return static_cast<float>(hedgerow::tangent(double(degrees) * std::numbers::pi / 180));
+    }
     Vec3f in_panorama(float x, float y) const {
-        const float longitude = (x - middle_x_) / middle_x_ * 3.14159265f,
-                    latitude = (middle_y_ - y) / middle_y_ * 1.57079633f;
-        const Vec3f level = forward_ * std::cos(longitude) + right_ * std::sin(longitude);
-        return normalized(level * std::cos(latitude) + up_ * std::sin(latitude));
+        const auto longitude = sine_cosine_of_turns((x - middle_x_) / middle_x_ / 2),
+                   latitude = sine_cosine_of_turns((middle_y_ - y) / middle_y_ / 4);
+        const Vec3f level = forward_ * longitude.cosine + right_ * longitude.sine;
+        return normalized(level * latitude.cosine + up_ * latitude.sine);
     }
 
     Vec3f eye_, forward_, right_, up_;

@@ -7,19 +7,17 @@
 #include <string>
 #include <vector>
 
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/geometry/vec.h>
 #include <hedgerow/io/image.h>
+#include <hedgerow/looks/colour.h>
 
 namespace hedgerow {
 
 /// Converts linear light to sRGB bytes. Components are clamped to 0..1.
 inline Image::Pixel srgb(const Vec3f& linear) {
     Image::Pixel p;
-    for (int k = 0; k < 3; ++k) {
-        const float x = std::clamp(linear[k], 0.f, 1.f);
-        const float s = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-        p[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(s * 255));
-    }
+    for (int k = 0; k < 3; ++k) p[static_cast<std::size_t>(k)] = srgb8_of_linear(linear[k]);
     return p;
 }
 
@@ -34,7 +32,7 @@ inline Image::Pixel heat(float x) {
     Image::Pixel p;
     for (int k = 0; k < 3; ++k)
         p[static_cast<std::size_t>(k)] =
-            static_cast<std::uint8_t>(std::lround(stops[i][k] * (1 - f) + stops[i + 1][k] * f));
+            static_cast<std::uint8_t>(std::lround(product(stops[i][k], 1 - f) + product(stops[i + 1][k], f)));
     return p;
 }
 
@@ -67,7 +65,8 @@ struct ColourScale {
     float at(float number) const {
         const float end = static_cast<float>(most);
         if (!(end > 0)) return 0;
-        return logarithmic ? std::log1p(number) / std::log1p(end) : number / end;
+        if (!logarithmic) return number / end;
+        return static_cast<float>(logarithm(1 + double(number)) / logarithm(1 + double(end)));
     }
     /// The numbers to label the scale with: its quarters, or both ends and the powers of ten between. Powers
     /// close to the end are left out.

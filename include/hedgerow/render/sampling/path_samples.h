@@ -32,20 +32,22 @@ public:
 
     /// Pair `dimension` of a sample. O(1): integers alone.
     UnitPair pair(std::uint32_t sample, std::uint32_t dimension) const {
-        const std::uint32_t seed = scattered32(seed_ + scattered32(dimension));
-        if (sampler_ == Sampler::sobol) {
-            const FractionPair p = sobol_pair(sample, seed);
-            return {unit(p.x), unit(p.y)};
-        }
-        const std::uint32_t x = scattered32(seed + scattered32(sample));
-        return {unit(x), unit(scattered32(x + 0x9E3779B9u))};
+        const FractionPair p = fractions(sample, dimension);
+        return {unit(p.x), unit(p.y)};
     }
-
-private:
+    /// The pair with all its bits.
+    FractionPair fractions(std::uint32_t sample, std::uint32_t dimension) const {
+        const std::uint32_t seed = scattered32(seed_ + scattered32(dimension));
+        if (sampler_ == Sampler::sobol) return sobol_pair(sample, seed);
+        const std::uint32_t x = scattered32(seed + scattered32(sample));
+        return {x, scattered32(x + 0x9E3779B9u)};
+    }
+    /// The first 24 bits of a fraction.
     static constexpr float unit(std::uint32_t fraction) {
         return static_cast<float>(fraction >> 8) * 0x1p-24f;
     }
 
+private:
     std::uint32_t seed_;
     Sampler sampler_;
 };
@@ -63,17 +65,30 @@ public:
     /// Vertex 0 is the first hit of the camera's ray.
     UnitPair light_point(std::uint32_t vertex) const { return of(vertex, 0); }
     UnitPair direction(std::uint32_t vertex) const { return of(vertex, 1); }
-    /// x chooses the light, y the lobe.
-    UnitPair choices(std::uint32_t vertex) const { return of(vertex, 2); }
-    /// x decides whether the path goes on.
-    UnitPair end(std::uint32_t vertex) const { return of(vertex, 3); }
+    /// The number that chooses a light, with 32 bits, since there may be many; and one that chooses a lobe.
+    double light_choice(std::uint32_t vertex) const {
+        return static_cast<double>(choices(vertex).x) * 0x1p-32;
+    }
+    float lobe_choice(std::uint32_t vertex) const { return PixelSequence::unit(choices(vertex).y); }
+    /// The number that decides whether the path goes on.
+    float end(std::uint32_t vertex) const { return of(vertex, 3).x; }
+    /// 32 random bits for the ray to a vertex and for the one to the light there.
+    std::uint32_t ray_key(std::uint32_t vertex) const {
+        return pixel_.fractions(sample_, of_camera + of_vertex * vertex + 3).y;
+    }
+    std::uint32_t shadow_key(std::uint32_t vertex) const {
+        return scattered32(ray_key(vertex) + 0x9E3779B9u);
+    }
 
 private:
+    FractionPair choices(std::uint32_t vertex) const {
+        return pixel_.fractions(sample_, of_camera + of_vertex * vertex + 2);
+    }
     UnitPair of(std::uint32_t vertex, std::uint32_t pair) const {
         return pixel_.pair(sample_, of_camera + of_vertex * vertex + pair);
     }
 
-    const PixelSequence& pixel_;
+    PixelSequence pixel_;
     std::uint32_t sample_;
 };
 

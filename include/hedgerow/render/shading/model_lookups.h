@@ -76,6 +76,10 @@ public:
         const Rgba value = texel(slot, hit, part);
         return slot.channel < 3 ? value.colour[slot.channel] : value.alpha;
     }
+    /// The mean colour of a texture.
+    Vec3f mean_of(const TextureSlot& slot) const {
+        return levels_of(slot.texture).mean(model_.textures[slot.texture]).colour;
+    }
     /// The surface's own normal, that of its corners and its map of normals, of length 1, in the world, on
     /// either side. 0 where it has none.
     Vec3f own_normal(const Hit<T>& hit, const Extent& part) const {

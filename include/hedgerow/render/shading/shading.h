@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <string_view>
 
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/geometry/vec.h>
 #include <hedgerow/render/camera/camera.h>
 
@@ -49,11 +49,11 @@ public:
 
     Vec3f background() const { return {0.28f, 0.36f, 0.48f}; }
     /// `t` is a distance: directions have length 1.
-    Vec3f depth(float t) const { return Vec3f::all(std::exp(-1.5f * t / (diagonal_ + 1e-30f))); }
+    Vec3f depth(float t) const { return Vec3f::all(exponential(-1.5f * t / (diagonal_ + 1e-30f))); }
     Vec3f normal(const Vec3f& n) const { return (n + Vec3f(1, 1, 1)) * 0.5f; }
     /// The light of the sky on a surface with this normal.
     Vec3f sky(const Vec3f& n) const {
-        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + 0.4f * dot(n, up_)) * grey;
+        return Vec3f(0.20f, 0.24f, 0.32f) * (0.6f + product(0.4f, dot(n, up_))) * grey;
     }
     /// The direction towards the distant light, and its light on a surface that faces it by this cosine and
     /// is not in shadow.

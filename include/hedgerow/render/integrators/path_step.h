@@ -1,0 +1,186 @@
+/// The steps of a path: it arrives at a surface, looks for light there, and leaves. Whoever follows paths,
+/// one by one or many at once, takes these steps in this order, and gets the same bits.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include <hedgerow/render/integrators/path_options.h>
+#include <hedgerow/render/integrators/path_vertex.h>
+#include <hedgerow/render/lighting/scene_lights.h>
+
+namespace hedgerow {
+
+/// A path between two vertices. Directions have length 1.
+template <std::floating_point T>
+struct PathState {
+    Ray<T, 3> ray;
+    Vec3f throughput = Vec3f::all(1);  ///< the share of light that gets to the eye
+    Vec3f light;                       ///< that has been found
+    Vec3f absorption;                  ///< of the body that the ray is in
+    /// The density of the ray's direction where it left a surface; 0 for the camera and for directions that a
+    /// surface has a single one of. Light that it meets is then found in no other way.
+    float density = 0;
+    Vec3f left_at, left_normal;  ///< where that was, for the density of light sampling
+    float spread = 1;          ///< of radiance by refraction: the product of η² over the path's boundaries
+    std::uint32_t vertex = 0;  ///< the number of the next vertex
+};
+
+/// A ray that brings light to the eye, unless something is in its way.
+template <std::floating_point T>
+struct ShadowRay {
+    Ray<T, 3> ray;
+    Vec3f light;
+};
+
+/// What paths go through, and how.
+template <std::floating_point T>
+struct PathWorld {
+    const PathSurfaces<T>& surfaces;
+    const SceneLights<T>& lights;
+    const PathOptions& options;
+    const Compensation* compensation;  ///< null: none
+};
+
+template <std::floating_point T>
+class PathSteps {
+public:
+    explicit PathSteps(const PathWorld<T>& world) : world_(world) {}
+
+    /// Adds the light that a ray meets: of the environment, or of the surface that it hits. Returns the
+    /// vertex if the path may go on from there.
+    std::optional<PathVertex<T>> arrive(PathState<T>& path, const Hit<T>& hit) const {
+        const Vec3f direction(path.ray.direction);
+        if (!hit) {
+            if (const EnvironmentMap* const sky = world_.lights.environment())
+                add(path, sky->radiance(direction),
+                    weight_of_hit(path,
+                                  world_.lights.density_of_sky(path.left_at, path.left_normal, direction)));
+            return std::nullopt;
+        }
+        absorb(path, static_cast<float>(hit.t));
+        PathVertex<T> vertex = world_.surfaces.at(path.ray, hit);
+        if (max_component(vertex.emission) > 0)
+            add(path, vertex.emission, weight_of_hit(path, density_of_light(path, hit)));
+        if (vertex.unlit) add(path, vertex.material.base_colour, 1);
+        if (vertex.unlit || path.vertex >= world_.options.bounces) return std::nullopt;
+        return vertex;
+    }
+
+    Scattering scattering_at(const PathVertex<T>& at) const {
+        return {at.material, Frame(at.shading).to_local(at.toward_origin), !at.front, world_.compensation};
+    }
+
+    /// A ray to a light, with what it brings; nothing if no light may come from there.
+    std::optional<ShadowRay<T>> look_for_light(const PathState<T>& path, const PathVertex<T>& at,
+                                               const Scattering& scattering,
+                                               const PathSamples& samples) const {
+        if (!world_.options.light_sampling || scattering.only_specular()) return std::nullopt;
+        const Vec3f point(at.before);
+        const SampledLight sampled = world_.lights.sample(
+            point, side_of_light(at), samples.light_choice(path.vertex), samples.light_point(path.vertex));
+        if (!sampled) return std::nullopt;
+        const LightSample& light = sampled.light;
+        const Vec3f i = Frame(at.shading).to_local(light.direction);
+        if (!same_side(at, light.direction, i)) return std::nullopt;
+        const Vec3f value = scattering.value(i);
+        if (!(max_component(value) > 0)) return std::nullopt;
+        const float density = product(light.density, sampled.probability);
+        float share = 1 / sampled.probability;
+        if (!light.single) {
+            share = 1 / density;
+            if (world_.options.material_sampling) share *= power_heuristic(density, scattering.density(i));
+        }
+        ShadowRay<T> shadow;
+        shadow.light = tinted(tinted(path.throughput, value), light.radiance) * share;
+        const bool beyond = dot(light.direction, at.geometric) < 0;
+        shadow.ray = {beyond ? at.beyond : at.before, Vec<T, 3>(light.direction), T(0),
+                      static_cast<T>(light.distance) * (1 - shadow_gap)};
+        return shadow;
+    }
+    void add_light(PathState<T>& path, const ShadowRay<T>& shadow) const {
+        path.light = path.light + limited(path, shadow.light, 1);
+    }
+
+    /// Chooses where the path goes on. False: it ends.
+    bool leave(PathState<T>& path, const PathVertex<T>& at, const Scattering& scattering,
+               const PathSamples& samples) const {
+        const UnitPair p = samples.direction(path.vertex);
+        const auto next = scattering.sample(samples.lobe_choice(path.vertex), p.x, p.y);
+        if (!next) return false;
+        const Vec3f direction = normalized(Frame(at.shading).to_world(next->direction));
+        if (!same_side(at, direction, next->direction)) return false;
+        path.throughput = tinted(path.throughput, next->weight);
+        if (next->transmitted && !at.material.thin) {
+            const float eta = at.front ? at.material.ior : 1 / at.material.ior;
+            path.spread *= eta * eta;
+            path.absorption = at.front ? at.absorption : Vec3f();
+        }
+        const bool beyond = dot(direction, at.geometric) < 0;
+        path.ray = {beyond ? at.beyond : at.before, Vec<T, 3>(direction)};
+        path.density = next->specular ? 0 : next->density;
+        path.left_at = Vec3f(at.before), path.left_normal = side_of_light(at);
+        return goes_on(path, samples);
+    }
+
+private:
+    /// The part of the way to a light before it, which nothing may block; the light itself lies there.
+    static constexpr T shadow_gap = T(1e-4);
+
+    /// Veach's heuristic for two ways to find light, with squares: the weight of the first.
+    static float power_heuristic(float first, float second) {
+        // By the ratio, whose square may be infinite.
+        const float ratio = second / first;
+        return 1 / (1 + product(ratio, ratio));
+    }
+    /// The normal on whose side the light is that a surface scatters; 0: on both.
+    static Vec3f side_of_light(const PathVertex<T>& at) {
+        return at.material.transmission > 0 ? Vec3f() : at.geometric;
+    }
+    /// Whether a direction lies on the same side of the surface as of the plane across the shading normal.
+    /// Others would let light through walls, or are reflections into the surface.
+    static bool same_side(const PathVertex<T>& at, const Vec3f& direction, const Vec3f& local) {
+        return (dot(direction, at.geometric) > 0) == (local[2] > 0) && local[2] != 0;
+    }
+    float density_of_light(const PathState<T>& path, const Hit<T>& hit) const {
+        if (path.density == 0) return 0;
+        return world_.lights.density_of_hit(path.left_at, path.left_normal, Vec3f(path.ray.direction), hit);
+    }
+    /// The weight of light that a ray meets, which light sampling finds with this density.
+    float weight_of_hit(const PathState<T>& path, float density) const {
+        const PathOptions& o = world_.options;
+        if (path.density == 0 || !o.light_sampling || density == 0) return 1;
+        return o.material_sampling ? power_heuristic(path.density, density) : 0;
+    }
+    void add(PathState<T>& path, const Vec3f& radiance, float weight) const {
+        if (weight > 0)
+            path.light = path.light + limited(path, tinted(path.throughput, radiance) * weight, 0);
+    }
+    /// Light that has been scattered more than once counts up to a limit. `more`: how often it is scattered
+    /// at the vertex where the path is.
+    Vec3f limited(const PathState<T>& path, const Vec3f& light, std::uint32_t more) const {
+        const float brightest = max_component(light), limit = world_.options.brightest_indirect;
+        return path.vertex + more > 1 && brightest > limit ? light * (limit / brightest) : light;
+    }
+    static void absorb(PathState<T>& path, float distance) {
+        for (int k = 0; k < 3; ++k)
+            if (path.absorption[k] > 0) path.throughput[k] *= exponential(-(path.absorption[k] * distance));
+    }
+    /// Roulette and cut, after the vertex; counts it.
+    bool goes_on(PathState<T>& path, const PathSamples& samples) const {
+        const PathOptions& o = world_.options;
+        const float left = max_component(path.throughput);
+        const std::uint32_t vertex = path.vertex++;
+        if (!(left > o.least_throughput)) return false;
+        const float stays = left * path.spread;
+        if (vertex < o.roulette_from || stays >= 1) return true;
+        if (!(samples.end(vertex) < stays)) return false;
+        path.throughput = path.throughput / stays;
+        return true;
+    }
+
+    PathWorld<T> world_;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,109 @@
+/// Where a path meets a surface.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <hedgerow/geometry/elementary.h>
+#include <hedgerow/render/model_scene.h>
+#include <hedgerow/render/sampling/path_samples.h>
+#include <hedgerow/render/scattering/frame.h>
+#include <hedgerow/render/scattering/scattering.h>
+#include <hedgerow/surface.h>
+
+namespace hedgerow {
+
+/// A point of a surface as a path sees it. Directions have length 1.
+template <std::floating_point T>
+struct PathVertex {
+    Vec3f toward_origin;  ///< back along the ray
+    Vec3f geometric;      ///< the normal of the surface, on the side of the ray's origin
+    Vec3f shading;        ///< the normal by which it scatters, on the same side
+    bool front = true;    ///< whether the ray came to the front
+    bool unlit = false;   ///< shows its colour, and ends the path
+    SurfaceMaterial material;
+    Vec3f emission;  ///< toward the ray's origin
+    /// What light loses in the body beyond the front: exp(−absorption · distance) is left. 0 of none.
+    Vec3f absorption;
+    Vec<T, 3> before, beyond;  ///< where rays begin that leave the surface on this side, and on the other
+};
+
+/// Finds the vertices of paths through a model. Borrows all.
+template <std::floating_point T>
+class PathSurfaces {
+public:
+    explicit PathSurfaces(const ModelScene<T>& scene) : scene_(scene) {
+        for (const Material& m : scene.lookups().model().materials) {
+            absorptions_.push_back(absorption_of(m));
+            has_holes_ |= m.alpha_mode != AlphaMode::opaque;
+        }
+    }
+
+    /// Whether rays may go through parts of surfaces that are masked or blended; and whether a ray meets the
+    /// surface at a hit. A surface of opacity α is there for that share of the keys.
+    bool has_holes() const { return has_holes_; }
+    bool is_there(const Hit<T>& hit, std::uint32_t key) const {
+        const float alpha = scene_.lookups().alpha(hit, {});
+        const std::uint32_t own = scattered32(scattered32(key + hit.element) + hit.instance);
+        return alpha >= 1 || PixelSequence::unit(own) < alpha;
+    }
+
+    /// The vertex at a hit of a ray whose direction has length 1. O(1).
+    PathVertex<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const {
+        const ModelLookups<T>& looks = scene_.lookups();
+        const Material& m = looks.material(hit);
+        PathVertex<T> v;
+        const Vec3f direction(ray.direction);
+        v.toward_origin = -direction;
+        const Vec<T, 3> front = normal(scene_.instances(), ray, hit);
+        v.front = !(dot(front, ray.direction) > 0);
+        const Vec<T, 3> geometric = v.front ? front : -front;
+        v.geometric = Vec3f(geometric);
+        v.shading = shading_normal(hit, v);
+        v.unlit = m.unlit;
+        v.material.base_colour = within_unit(looks.base_colour(hit, {}));
+        v.material.metallic = within_unit(m.metallic * looks.number(m.metallic_texture, hit, {}));
+        v.material.roughness = within_unit(m.roughness * looks.number(m.roughness_texture, hit, {}));
+        v.material.ior = m.ior, v.material.specular = m.specular;
+        v.material.specular_colour = m.specular_colour;
+        v.material.transmission = within_unit(m.transmission * looks.number(m.transmission_texture, hit, {}));
+        v.material.thin = m.thin;
+        if (v.front || m.double_sided) v.emission = looks.emission(hit, {});
+        v.absorption = absorptions_[looks.object(hit).material_of(hit.element)];
+        v.before = scene_.surfaces().origin(ray, hit, geometric);
+        v.beyond = scene_.surfaces().origin(ray, hit, -geometric);
+        return v;
+    }
+
+private:
+    static float within_unit(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }
+    static Vec3f within_unit(const Vec3f& c) {
+        return {within_unit(c[0]), within_unit(c[1]), within_unit(c[2])};
+    }
+    Vec3f shading_normal(const Hit<T>& hit, const PathVertex<T>& v) const {
+        Vec3f own = scene_.lookups().own_normal(hit, {});
+        if (length2(own) == 0) return v.geometric;
+        if (!v.front) own = -own;
+        return usable_normal(dot(own, v.geometric) < 0 ? v.geometric : own, v.geometric, v.toward_origin);
+    }
+    /// Light has the colour of attenuation after its distance (KHR_materials_volume).
+    static Vec3f absorption_of(const Material& m) {
+        Vec3f absorption;
+        if (m.thin || !(m.attenuation_distance > 0) ||
+            !(m.attenuation_distance < std::numeric_limits<float>::max()))
+            return absorption;
+        for (int k = 0; k < 3; ++k) {
+            const double colour = std::clamp(static_cast<double>(m.attenuation_colour[k]), 1e-30, 1.0);
+            absorption[k] =
+                static_cast<float>(-logarithm(colour) / static_cast<double>(m.attenuation_distance));
+        }
+        return absorption;
+    }
+
+    const ModelScene<T>& scene_;
+    std::vector<Vec3f> absorptions_;  // by material
+    bool has_holes_ = false;
+};
+
+}  // namespace hedgerow

@@ -1,0 +1,161 @@
+#include <hedgerow/render/integrators/path_picture.h>
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/render/camera/ray_maker.h>
+#include <hedgerow/render/visibility/samples.h>
+
+namespace hedgerow {
+
+namespace {
+
+/// The side of blocks of pixels whose rays go together.
+constexpr int block_side = 8;
+/// Paths of a tile: many beside those in flight, so that few rounds of a tile are short.
+constexpr std::size_t paths_of_tile = std::size_t{1} << 16;
+
+/// Pixel i of a tile, block by block.
+std::pair<int, int> place(const PixelBox& tile, std::size_t i) {
+    const auto columns = static_cast<std::size_t>(tile.width());
+    // All rows of blocks but the last have block_side rows of pixels, likewise columns.
+    const std::size_t of_row = columns * block_side, row = i / of_row, in_row = i % of_row;
+    const std::size_t rows =
+        std::min<std::size_t>(block_side, static_cast<std::size_t>(tile.height()) - row * block_side);
+    const std::size_t column = in_row / (rows * block_side), in_block = in_row % (rows * block_side);
+    const std::size_t wide = std::min<std::size_t>(block_side, columns - column * block_side);
+    return {tile.left + static_cast<int>(column * block_side + in_block % wide),
+            tile.top + static_cast<int>(row * block_side + in_block / wide)};
+}
+
+/// The tiles of a picture: squares of whole blocks, which have about as many paths as a tile should.
+class Grid {
+public:
+    Grid(const PathPictureOptions& o, std::uint32_t samples) : width_(o.width), height_(o.height) {
+        while (side_ < 256 &&
+               std::size_t(4) * std::size_t(side_) * std::size_t(side_) * samples <= paths_of_tile)
+            side_ *= 2;
+        columns_ = (o.width + side_ - 1) / side_;
+    }
+    std::size_t size() const {
+        return static_cast<std::size_t>(columns_) * static_cast<std::size_t>((height_ + side_ - 1) / side_);
+    }
+    PixelBox operator[](std::size_t i) const {
+        const int left = static_cast<int>(i) % columns_ * side_, top = static_cast<int>(i) / columns_ * side_;
+        return {left, top, std::min(left + side_, width_) - 1, std::min(top + side_, height_) - 1};
+    }
+
+private:
+    int width_, height_, side_ = block_side, columns_;
+};
+
+void check(const PathPictureOptions& o) {
+    check_camera(o.camera);
+    check_paths(o.paths);
+    if (o.width < 1 || o.height < 1) throw InputError("a picture needs at least one pixel");
+    if (o.samples < 1) throw InputError("a picture needs at least one sample a pixel");
+}
+
+/// The tables of compensation, which are the same for all pictures. Computed at the first use.
+const Compensation& compensation() {
+    static const Compensation tables;
+    return tables;
+}
+
+template <class T>
+class PathTracing {
+public:
+    PathTracing(const PathScene<T>& scene, const PathPictureOptions& o)
+        : o_(o),
+          surfaces_(scene.model),
+          world_{surfaces_, scene.lights, o.paths, o.paths.compensation ? &compensation() : nullptr},
+          tracer_(scene.tracer),
+          make_(o.camera, o.width, o.height) {
+        picture_.width = o.width, picture_.height = o.height;
+        picture_.light = LightSums(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
+    }
+
+    /// Goes over the picture again and again, with twice as many samples as before, so that an end at any
+    /// time leaves all pixels about as many samples.
+    PathPicture run(Executor& executor, const Progress& progress) {
+        const std::uint64_t all = std::uint64_t{picture_.light.size()} * o_.samples;
+        std::atomic<std::uint64_t> done{0};
+        for (std::uint32_t first = 0; first < o_.samples && !progress.cancelled();) {
+            const std::uint32_t last = std::min(o_.samples, std::max<std::uint32_t>(1, 2 * first));
+            const Grid tiles(o_, last - first);
+            executor.for_each_piece(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i) {
+                    add(tiles[i], first, last);
+                    progress(done += tiles[i].size() * (last - first), all);
+                }
+            });
+            first = last;
+        }
+        picture_.whole = done == all;
+        for (std::size_t i = 0; i < picture_.light.size(); ++i) picture_.dropped += picture_.light.dropped(i);
+        return std::move(picture_);
+    }
+
+private:
+    /// Adds some samples to the pixels of a tile, in their order.
+    void add(const PixelBox& tile, std::uint32_t first, std::uint32_t last) {
+        const std::size_t samples = last - first;
+        std::vector<Vec3f> light(tile.size() * samples);
+        follow(
+            light.size(),
+            [&](std::size_t i) {
+                const auto [x, y] = place(tile, i / samples);
+                return start(x, y, first + static_cast<std::uint32_t>(i % samples));
+            },
+            [&](std::size_t i, const Vec3f& found) { light[i] = found; });
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            const auto [x, y] = place(tile, i / samples);
+            picture_.light.add(number(x, y), light[i]);
+        }
+    }
+    template <class OfNumber, class Finish>
+    void follow(std::size_t count, const OfNumber& start, const Finish& finish) const {
+        if (o_.in_flight > 0)
+            return PathWavefront<T>(world_, tracer_, o_.in_flight).follow(count, start, finish);
+        const PathReference<T> reference(world_, tracer_);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto path = start(i);
+            finish(i, reference.light(path.ray, path.samples));
+        }
+    }
+    typename PathWavefront<T>::Start start(int x, int y, std::uint32_t sample) const {
+        const PathSamples samples(PixelSequence(o_.paths.sampler, o_.paths.seed, number(x, y)), sample);
+        const UnitPair at = samples.in_pixel();
+        const float across = static_cast<float>(x) + at.x, down = static_cast<float>(y) + at.y;
+        if (!make_.has_lens()) return {make_.template ray<T>(across, down), samples};
+        const UnitPair lens = samples.on_lens();
+        return {make_.template ray<T>(across, down, lens_point(lens.x, lens.y)), samples};
+    }
+    std::size_t number(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) + static_cast<std::size_t>(x);
+    }
+
+    const PathPictureOptions& o_;
+    const PathSurfaces<T> surfaces_;
+    const PathWorld<T> world_;
+    const Tracer<T>& tracer_;
+    const RayMaker make_;
+    PathPicture picture_;
+};
+
+}  // namespace
+
+template <std::floating_point T>
+PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& options, Executor& executor,
+                        const Progress& progress) {
+    check(options);
+    return PathTracing<T>(scene, options).run(executor, progress);
+}
+template PathPicture trace_paths(const PathScene<float>&, const PathPictureOptions&, Executor&,
+                                 const Progress&);
+template PathPicture trace_paths(const PathScene<double>&, const PathPictureOptions&, Executor&,
+                                 const Progress&);
+
+}  // namespace hedgerow
