@@ -87,8 +87,8 @@ TEST(Lighting, DensitiesOfTrianglesIntegrateToOne) {
         constexpr int side = 64;
         double sum = 0;
         for (int i = 0; i < side * side; ++i) {
-            const LightSample s =
-                t.sample(point, (float(i % side) + 0.5f) / side, (float(i / side) + 0.5f) / side);
+            const int column = i % side, row = i / side;
+            const LightSample s = t.sample(point, (float(column) + 0.5f) / side, (float(row) + 0.5f) / side);
             sum += 1 / double(s.density);
         }
         const double exact = solid_angle(t, point);

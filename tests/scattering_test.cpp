@@ -45,8 +45,9 @@ struct Histogram {
             const auto row = static_cast<double>(c / columns % rows),
                        column = static_cast<double>(c % columns);
             for (int k = 0; k < fine * fine; ++k) {
-                const double t = (row + (k / fine + 0.5) / fine) / rows,
-                             turn = (column + (k % fine + 0.5) / fine) / columns;
+                const int down = k / fine, across = k % fine;
+                const double t = (row + (down + 0.5) / fine) / rows,
+                             turn = (column + (across + 0.5) / fine) / columns;
                 const Vec3f i = charts[side].at(t, turn);
                 if ((i[2] > 0) != (side == 0)) continue;
                 expected[c] +=
@@ -141,8 +142,9 @@ TEST_P(Surfaces, ValuesIntegrateToTheAlbedo) {
     constexpr int n = 200;
     for (std::size_t side = 0; side < 2; ++side)
         for (int k = 0; k < n * n; ++k) {
-            const double t = (k / n + 0.5) / n;
-            const Vec3f i = both[side].at(t, (k % n + 0.5) / n);
+            const int down = k / n, across = k % n;
+            const double t = (down + 0.5) / n;
+            const Vec3f i = both[side].at(t, (across + 0.5) / n);
             if ((i[2] > 0) == (side == 0))
                 sum += static_cast<double>(scattering.value(i)[1]) * both[side].area(t) / (n * n);
         }

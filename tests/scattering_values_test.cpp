@@ -172,9 +172,11 @@ template <class F>
 double mean_of_square(F f) {
     constexpr int n = 256;
     double sum = 0;
-    for (int k = 0; k < n * n; ++k)
+    for (int k = 0; k < n * n; ++k) {
+        const int row = k / n, column = k % n;
         sum += static_cast<double>(
-            f((static_cast<float>(k / n) + 0.5f) / n, (static_cast<float>(k % n) + 0.5f) / n));
+            f((static_cast<float>(row) + 0.5f) / n, (static_cast<float>(column) + 0.5f) / n));
+    }
     return sum / (n * n);
 }
 

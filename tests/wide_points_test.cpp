@@ -202,6 +202,7 @@ TEST(WidePoints, BatchesOfEverySizeAndStride) {
         double after;
     };
     std::vector<Padded> padded;
+    padded.reserve(points.size());
     for (const Vec3f& p : points) padded.push_back({-1, p, -1});
     for (std::size_t count = 0; count <= points.size(); ++count) {
         Found found(count);

@@ -39,7 +39,7 @@ inline Environment default_sky(const Vec3f& up = {0, 1, 0}) {
     constexpr int width = 64, height = 32;
     Pixels pixels{width, height, 3, {}};
     std::vector<float> samples;
-    samples.reserve(static_cast<std::size_t>(width * height * 3));
+    samples.reserve(std::size_t{3} * width * height);
     for (int y = 0; y < height; ++y) {
         const auto [sin_theta, cos_theta] =
             sine_cosine_of_turns((static_cast<float>(y) + 0.5f) / static_cast<float>(2 * height));
