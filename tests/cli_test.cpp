@@ -294,6 +294,35 @@ TEST_F(Cli, PathsShowScatteredLight) {
     expect_usage(scene + file("x.png") + " --spp 0", "--spp");
 }
 
+TEST_F(Cli, PathsGoOnAfterAnInterruption) {
+    const std::string scene = "render gen:cornell-box --shading path --size 64x48 --spp 400 --threads 1 -o ";
+    ASSERT_EQ(run(scene + file("at_once.png")).code, 0);
+    const std::vector<std::string> words = {"render",    "gen:cornell-box",
+                                            "--shading", "path",
+                                            "--size",    "64x48",
+                                            "--spp",     "400",
+                                            "--threads", "1",
+                                            "-o",        file("resumed.png"),
+                                            "--resume",  file("state"),
+                                            "--quiet"};
+    EXPECT_EQ(run_interrupted(words, 700), 130);
+    ASSERT_TRUE(std::filesystem::exists(file("state")));
+    const auto resumed = run(scene + file("resumed.png") + " --json --resume " + file("state"));
+    ASSERT_EQ(resumed.code, 0);
+    EXPECT_EQ(nlohmann::json::parse(resumed.output)["samples"].get<int>(), 400);
+    EXPECT_EQ(pixels_of(file("at_once.png")), pixels_of(file("resumed.png")));
+    expect_bad(scene + file("x.png") + " --seed 3 --resume " + file("state"), "another seed: 0, not 3");
+    expect_bad("render gen:cornell-box:500 --shading path --size 64x48 -o " + file("x.png") + " --resume " +
+                   file("state"),
+               "another scene");
+    const auto timed =
+        run("render gen:cornell-box --shading path --size 64x48 --time 0.5s --json -o " + file("timed.png"));
+    ASSERT_EQ(timed.code, 0);
+    EXPECT_LT(nlohmann::json::parse(timed.output)["samples"].get<int>(), 16384);
+    expect_usage("render gen:cornell-box --time 5s -o " + file("x.png"), "--shading path");
+    expect_usage(scene + file("x.png") + " --time -5s", "--time");
+}
+
 TEST_F(Cli, ASheetShowsEveryShading) {
     const std::string scene = "render gen:cornell-box --quiet -o " + file("sheet.png") + " --sheet";
     ASSERT_EQ(run(scene + " --size 50x40 --structure kdtree").code, 0);

@@ -2,6 +2,7 @@
 /// whoever finds the hits.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -322,6 +323,36 @@ TEST(PathPictures, HaveTheseBitsEverywhere) {
     expect("gen:grass:3000", 17898102663082475837u, as_it_is);
     expect("gen:hairball:3000", 4965994997278206487u, as_it_is);
     expect("gen:soup:100", 7654664720023267110u, of_glass);
+}
+
+/// Interrupted at any moment and continued, by other threads and in other steps.
+TYPED_TEST(Paths, GoOnWithTheSameBits) {
+    using T = TypeParam;
+    const auto model = generate_model<T>(parse_scene_spec("gen:cornell-box"));
+    const ModelScene<T> scene(model, serial_executor());
+    const SceneLights<T> lights(scene);
+    const PathScene<T> parts{scene, lights, scene.tracer()};
+    PathPictureOptions options = few_pixels(*camera_for("cornell-box"), 23);
+    options.width = 330, options.height = 20;
+    const PathPicture at_once = trace_paths(parts, options, default_executor());
+    PathPicture in_steps(options.width, options.height);
+    for (const std::uint32_t until : {1u, 2u, 2u, 7u, 20u})
+        add_samples(in_steps, until, parts, options, default_executor());
+    EXPECT_EQ(in_steps.samples(), 20u);
+    std::size_t stops = 0;
+    while (in_steps.samples() < 23) {
+        // Stop after a tile.
+        std::atomic<bool> stop{false};
+        add_samples(in_steps, 23, parts, options, serial_executor(),
+                    {[&](std::uint64_t done, std::uint64_t) { stop = done > 0; }, &stop});
+        ++stops;
+    }
+    EXPECT_GT(stops, 1u);
+    expect_same<T>(at_once, in_steps);
+    for (std::size_t i = 0; i < at_once.light.size(); ++i)
+        ASSERT_EQ(at_once.light.standard_error(i), in_steps.light.standard_error(i));
+    options.width = 8;
+    EXPECT_THROW(add_samples(in_steps, 30, parts, options, serial_executor()), InputError);
 }
 
 TYPED_TEST(Paths, RefuseOptionsWithoutAMeaning) {

@@ -205,6 +205,17 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--sampler", a->sampler, "of --shading path: sobol (spread evenly) or independent")
         ->capture_default_str()
         ->check(CLI::IsMember({"sobol", "independent"}));
+    verb.add_option("--time", a->seconds,
+                    "of --shading path: follow paths for so long, as 90s, 5min or 2h, at most to --spp, "
+                    "which then is "
+                    "16384 if not given")
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
+                                          CLI::AsNumberWithUnit::CASE_SENSITIVE))
+        ->check(CLI::PositiveNumber);
+    verb.add_option(
+        "--resume", a->resume,
+        "of --shading path: a file in which the work is kept every few seconds; if it is there, the work "
+        "goes on from it");
     verb.add_option("--exposure", a->exposure, "of --shading path: brightness of a .png in powers of two")
         ->check(CLI::Range(-30.0, 30.0));
     verb.add_flag("--counts", a->counts,
@@ -219,7 +230,10 @@ Run add_render(CLI::App& verb) {
         ->check(CLI::NonNegativeNumber);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
     return [a, spp] {
-        if (a->follows_paths() && spp->count() == 0) a->spp = 64;
+        if (a->follows_paths() && spp->count() == 0) a->spp = a->seconds > 0 ? 16384 : 64;
+        if (!a->follows_paths() && (a->seconds > 0 || !a->resume.empty()))
+            throw UsageError("--time and --resume are of paths: they need --shading path");
+        if (!a->resume.empty()) check_writable(a->resume);
         const bool saved = names_index_file(a->scene);
         a->layers = asks_for_layers(a->output);
         if (a->visibility != "cast" && counted(parse_shading(a->shading)))

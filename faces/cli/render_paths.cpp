@@ -1,10 +1,19 @@
 /// hedgerow render --shading path: pictures of light that is scattered, by path tracing.
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <filesystem>
+#include <span>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/io/exr.h>
+#include <hedgerow/io/state_file.h>
+#include <hedgerow/looks/fingerprint.h>
 #include <hedgerow/render/film/colour.h>
 #include <hedgerow/render/integrators/path_picture.h>
+#include <hedgerow/version.h>
 
 #include "picture_notes.h"
 #include "render_looks.h"
@@ -44,15 +53,75 @@ void save_layers(const std::string& output, const PathPicture& picture, const No
         {"samples", Strided<std::uint32_t>(samples.data(), samples.size(), sizeof(std::uint32_t))});
     save_exr(output, layers, {}, notes);
 }
-/// The mean of the standard errors of all pixels, as a share of the mean light.
-double relative_error(const PathPicture& picture) {
-    double errors = 0, light = 0;
-    for (std::size_t i = 0; i < picture.light.size(); ++i) {
-        const Vec3f mean = picture.light.mean(i);
-        errors += double(picture.light.standard_error(i));
-        light += double(mean[0] + mean[1] + mean[2]) / 3;
+void save_picture(const RenderArguments& a, const PathPicture& picture) {
+    const Notes notes = picture_notes(a.seed);
+    if (a.layers)
+        save_layers(a.output, picture, notes);
+    else
+        save_png(a.output, image_of(picture, a.exposure), {}, notes);
+}
+
+/// All that the light of a picture depends on, but for the number of samples.
+using Lines = std::vector<std::pair<std::string, std::string>>;
+template <class T>
+Lines what_it_is_of(const RenderArguments& a, const ShownModel<T>& shown) {
+    const Camera& c = shown.options.camera;
+    const auto vector = [](const Vec3f& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); };
+    return {{"version", std::string(version)},
+            {"scene", fmt::format("{:016x}", fingerprint(shown.model))},
+            {"precision", sizeof(T) == sizeof(float) ? "float" : "double"},
+            {"camera",
+             fmt::format(
+                 "eye {}, target {}, up {}, projection {}, field of view {}, height {}, lens {}, focus {}",
+                 vector(c.eye), vector(c.target), vector(c.up), static_cast<int>(c.projection),
+                 c.field_of_view, c.height, c.lens_radius, c.focus)},
+            {"size", fmt::format("{}x{}", shown.options.width, shown.options.height)},
+            {"seed", std::to_string(a.seed)},
+            {"sampler", a.sampler},
+            {"bounces", std::to_string(a.bounces)}};
+}
+constexpr std::uint32_t state_version = 1;
+
+void save_paths(const std::string& file, const Lines& lines, const PathPicture& picture) {
+    const auto bytes = std::as_bytes(std::span(picture.light.pixels()));
+    save_state(file, "paths", state_version, {lines, {bytes.begin(), bytes.end()}});
+}
+void load_paths(const std::string& file, const Lines& lines, PathPicture& picture) {
+    const WorkState state = load_state(file, "paths", state_version, lines);
+    std::vector<LightSums::Pixel> pixels(picture.light.size());
+    if (state.bytes.size() != pixels.size() * sizeof(LightSums::Pixel))
+        throw InputError(file + ": has another number of pixels than its size says");
+    std::memcpy(pixels.data(), state.bytes.data(), state.bytes.size());
+    picture.light = LightSums(std::move(pixels));
+}
+
+/// Follows paths until the picture has all samples, the time is over, or Ctrl-C. Every few seconds the
+/// picture is saved, and the state, if there is a file for it. Returns whether it was not interrupted.
+template <class T>
+bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictureOptions& options,
+            const Lines& lines, PathPicture& picture) {
+    ProgressLine line("following paths", a.quiet, "samples");
+    const Progress shown = line.progress();
+    std::atomic<bool> stops{false};
+    const double start = now();
+    double pause = 10, until = start + pause;  // in seconds, between saves
+    const auto over = [&] { return shown.cancelled() || (a.seconds > 0 && now() - start > a.seconds); };
+    const Progress watched{[&](std::uint64_t done, std::uint64_t total) {
+                               shown(done, total);
+                               if (over() || now() > until) stops = true;
+                           },
+                           &stops};
+    while (picture.samples() < options.samples && !over()) {
+        stops = false;
+        add_samples(picture, options.samples, scene, options, default_executor(), watched);
+        if (picture.samples() == options.samples) break;
+        const double began = now();
+        if (picture.samples() > 0) save_picture(a, picture);
+        if (!a.resume.empty()) save_paths(a.resume, lines, picture);
+        // Saving takes at most a fiftieth of the time, and no more than half a minute can be lost.
+        pause = std::clamp(50 * (now() - began), 10.0, 25.0), until = now() + pause;
     }
-    return light > 0 ? errors / light : 0;
+    return !shown.cancelled();
 }
 
 }  // namespace
@@ -67,45 +136,47 @@ int render_paths(const RenderArguments& a) {
     if (lights.has_default_sky() && !a.quiet)
         fmt::print(stderr, "hedgerow: {}: has no lights, so it gets a sky\n", a.scene);
     const PathPictureOptions options = path_options(a, shown.options);
+    const Lines lines = a.resume.empty() ? Lines() : what_it_is_of(a, shown);
+    PathPicture picture(options.width, options.height);
+    if (!a.resume.empty() && std::filesystem::exists(a.resume)) load_paths(a.resume, lines, picture);
+    const std::uint32_t before = picture.samples();
     const double start = now();
-    const PathPicture picture = [&] {
-        ProgressLine line("following paths", a.quiet, "tiles");
-        return trace_paths(PathScene<T>{shown.scene, lights, shown.scene.tracer()}, options,
-                           default_executor(), line.progress());
-    }();
+    const bool finished =
+        follow(a, PathScene<T>{shown.scene, lights, shown.scene.tracer()}, options, lines, picture);
     const double seconds = now() - start;
-    const FinishedPicture finished = finish_picture(a.output, picture.light.samples(0) > 0, picture.whole);
-    const Notes notes = picture_notes(a.seed);
-    if (a.layers)
-        save_layers(finished.output, picture, notes);
-    else
-        save_png(finished.output, image_of(picture, a.exposure), {}, notes);
-    if (picture.dropped > 0)
+    if (!a.resume.empty()) save_paths(a.resume, lines, picture);
+    if (picture.light.samples(0) == 0) throw Cancelled("no pixel has a sample");
+    save_picture(a, picture);
+    if (const std::uint64_t dropped = picture.dropped(); dropped > 0)
         fmt::print(stderr, "hedgerow: warning: {} samples were no finite light, and count as black\n",
-                   picture.dropped);
-    const double samples = double(picture.light.size()) * double(a.spp), error = relative_error(picture);
+                   dropped);
+    const std::uint32_t samples = picture.samples();
+    const double rate = double(picture.light.size()) * double(samples - before) / seconds;
     if (a.json)
-        print_json(nlohmann::ordered_json{{"output", finished.output},
+        print_json(nlohmann::ordered_json{{"output", a.output},
                                           {"width", picture.width},
                                           {"height", picture.height},
                                           {"primitives", shown.outcome.primitives},
                                           {"bytes", shown.outcome.bytes},
                                           {"build_seconds", shown.outcome.build_seconds},
                                           {"lights", lights.emitters().size()},
-                                          {"samples", a.spp},
+                                          {"samples", samples},
+                                          {"samples_before", before},
                                           {"seconds", seconds},
-                                          {"samples_per_second", samples / seconds},
-                                          {"relative_error", error},
-                                          {"dropped", picture.dropped},
-                                          {"finished", picture.whole}});
+                                          {"samples_per_second", rate},
+                                          {"relative_error", picture.relative_error()},
+                                          {"dropped", picture.dropped()},
+                                          {"finished", finished}});
     else if (!a.quiet)
         fmt::print(
             "{}: {}x{}, {} primitives, {} lights\n{} samples a pixel in {:.1f} s: {:.3f} million a second; "
             "standard error {:.2g}% of the light\n{}",
-            finished.output, picture.width, picture.height, shown.outcome.primitives,
-            lights.emitters().size(), a.spp, seconds, samples / seconds * 1e-6, 100 * error,
+            a.output, picture.width, picture.height, shown.outcome.primitives, lights.emitters().size(),
+            samples, seconds, rate * 1e-6, 100 * picture.relative_error(),
             up_text(a.view, a, shown.outcome.upright));
-    return finished.exit_code();
+    if (finished) return 0;
+    fmt::print(stderr, "hedgerow: interrupted; {} has {} samples a pixel\n", a.output, samples);
+    return 130;
 }
 template int render_paths<float>(const RenderArguments&);
 template int render_paths<double>(const RenderArguments&);

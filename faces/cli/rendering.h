@@ -21,6 +21,8 @@ struct RenderArguments : Common {
     std::uint32_t bounces = 64;           // of paths
     std::string sampler = "sobol";        // of paths
     float exposure = 0;                   // of paths, in powers of two
+    double seconds = 0;                   // that paths are followed; 0: until all samples are there
+    std::string resume;                   // the file of a state of paths
     bool footprints = false;              // of textures
     bool cones = false;                   // in place of samples
     float light_degrees = 0;              // the diameter of the light

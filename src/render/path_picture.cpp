@@ -51,11 +51,12 @@ private:
     int width_, height_, side_ = block_side, columns_;
 };
 
-void check(const PathPictureOptions& o) {
+void check(const PathPicture& picture, std::uint32_t samples, const PathPictureOptions& o) {
     check_camera(o.camera);
     check_paths(o.paths);
-    if (o.width < 1 || o.height < 1) throw InputError("a picture needs at least one pixel");
-    if (o.samples < 1) throw InputError("a picture needs at least one sample a pixel");
+    if (picture.width != o.width || picture.height != o.height)
+        throw InputError("the picture has another size than its options");
+    if (samples < 1) throw InputError("a picture needs at least one sample a pixel");
 }
 
 /// The tables of compensation, which are the same for all pictures. Computed at the first use.
@@ -67,53 +68,58 @@ const Compensation& compensation() {
 template <class T>
 class PathTracing {
 public:
-    PathTracing(const PathScene<T>& scene, const PathPictureOptions& o)
-        : o_(o),
+    PathTracing(PathPicture& picture, const PathScene<T>& scene, const PathPictureOptions& o)
+        : picture_(picture),
+          o_(o),
           surfaces_(scene.model),
           world_{surfaces_, scene.lights, o.paths, o.paths.compensation ? &compensation() : nullptr},
           tracer_(scene.tracer),
-          make_(o.camera, o.width, o.height) {
-        picture_.width = o.width, picture_.height = o.height;
-        picture_.light = LightSums(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
-    }
+          make_(o.camera, o.width, o.height) {}
 
     /// Goes over the picture again and again, with twice as many samples as before, so that an end at any
-    /// time leaves all pixels about as many samples.
-    PathPicture run(Executor& executor, const Progress& progress) {
-        const std::uint64_t all = std::uint64_t{picture_.light.size()} * o_.samples;
+    /// time leaves all pixels about as many.
+    void run(std::uint32_t samples, Executor& executor, const Progress& progress) {
+        std::uint64_t all = 0;
+        for (const LightSums::Pixel& p : picture_.light.pixels())
+            all += samples - std::min(samples, p.samples);
         std::atomic<std::uint64_t> done{0};
-        for (std::uint32_t first = 0; first < o_.samples && !progress.cancelled();) {
-            const std::uint32_t last = std::min(o_.samples, std::max<std::uint32_t>(1, 2 * first));
-            const Grid tiles(o_, last - first);
+        for (std::uint32_t least = picture_.samples(); least < samples && !progress.cancelled();) {
+            const std::uint32_t until = std::min(samples, std::max<std::uint32_t>(1, 2 * least));
+            const Grid tiles(o_, until - least);
             executor.for_each_piece(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i) {
-                    add(tiles[i], first, last);
-                    progress(done += tiles[i].size() * (last - first), all);
-                }
+                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i)
+                    progress(done += add(tiles[i], until), all);
             });
-            first = last;
+            least = until;
         }
-        picture_.whole = done == all;
-        for (std::size_t i = 0; i < picture_.light.size(); ++i) picture_.dropped += picture_.light.dropped(i);
-        return std::move(picture_);
     }
 
 private:
-    /// Adds some samples to the pixels of a tile, in their order.
-    void add(const PixelBox& tile, std::uint32_t first, std::uint32_t last) {
-        const std::size_t samples = last - first;
-        std::vector<Vec3f> light(tile.size() * samples);
+    /// Adds samples to the pixels of a tile until each has so many, in their order. Returns how many were
+    /// added.
+    std::size_t add(const PixelBox& tile, std::uint32_t until) {
+        // The paths of pixel i of the tile begin at firsts[i].
+        std::vector<std::size_t> firsts(tile.size() + 1);
+        for (std::size_t i = 0; i < tile.size(); ++i) {
+            const auto [x, y] = place(tile, i);
+            firsts[i + 1] = firsts[i] + until - std::min(until, picture_.light.samples(number(x, y)));
+        }
+        std::vector<Vec3f> light(firsts.back());
+        std::size_t pixel = 0;  // paths are started in order
         follow(
             light.size(),
             [&](std::size_t i) {
-                const auto [x, y] = place(tile, i / samples);
-                return start(x, y, first + static_cast<std::uint32_t>(i % samples));
+                while (i >= firsts[pixel + 1]) ++pixel;
+                const auto [x, y] = place(tile, pixel);
+                return start(x, y, until - static_cast<std::uint32_t>(firsts[pixel + 1] - i));
             },
             [&](std::size_t i, const Vec3f& found) { light[i] = found; });
-        for (std::size_t i = 0; i < light.size(); ++i) {
-            const auto [x, y] = place(tile, i / samples);
-            picture_.light.add(number(x, y), light[i]);
+        for (std::size_t i = 0; i < tile.size(); ++i) {
+            const auto [x, y] = place(tile, i);
+            for (std::size_t k = firsts[i]; k < firsts[i + 1]; ++k)
+                picture_.light.add(number(x, y), light[k]);
         }
+        return light.size();
     }
     template <class OfNumber, class Finish>
     void follow(std::size_t count, const OfNumber& start, const Finish& finish) const {
@@ -137,25 +143,25 @@ private:
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) + static_cast<std::size_t>(x);
     }
 
+    PathPicture& picture_;
     const PathPictureOptions& o_;
     const PathSurfaces<T> surfaces_;
     const PathWorld<T> world_;
     const Tracer<T>& tracer_;
     const RayMaker make_;
-    PathPicture picture_;
 };
 
 }  // namespace
 
 template <std::floating_point T>
-PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& options, Executor& executor,
-                        const Progress& progress) {
-    check(options);
-    return PathTracing<T>(scene, options).run(executor, progress);
+void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,
+                 const PathPictureOptions& options, Executor& executor, const Progress& progress) {
+    check(picture, samples, options);
+    PathTracing<T>(picture, scene, options).run(samples, executor, progress);
 }
-template PathPicture trace_paths(const PathScene<float>&, const PathPictureOptions&, Executor&,
-                                 const Progress&);
-template PathPicture trace_paths(const PathScene<double>&, const PathPictureOptions&, Executor&,
-                                 const Progress&);
+template void add_samples(PathPicture&, std::uint32_t, const PathScene<float>&, const PathPictureOptions&,
+                          Executor&, const Progress&);
+template void add_samples(PathPicture&, std::uint32_t, const PathScene<double>&, const PathPictureOptions&,
+                          Executor&, const Progress&);
 
 }  // namespace hedgerow

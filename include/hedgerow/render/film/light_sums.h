@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <hedgerow/geometry/vec.h>
@@ -14,7 +15,17 @@ namespace hedgerow {
 /// have the same bits whatever the threads do.
 class LightSums {
 public:
+    struct Pixel {
+        Vec3d sum;
+        double squares = 0;  ///< of the mean of the colours
+        std::uint32_t samples = 0, dropped = 0;
+    };
+    static_assert(sizeof(Pixel) == 40, "without gaps, so that sums can be stored byte by byte");
+
     explicit LightSums(std::size_t pixels) : pixels_(pixels) {}
+    /// Goes on from sums that were stored.
+    explicit LightSums(std::vector<Pixel> pixels) : pixels_(std::move(pixels)) {}
+    const std::vector<Pixel>& pixels() const { return pixels_; }
 
     /// Adds a sample. One that is not finite counts as black, and as dropped.
     void add(std::size_t pixel, const Vec3f& light) {
@@ -50,11 +61,6 @@ public:
     }
 
 private:
-    struct Pixel {
-        Vec3d sum;
-        double squares = 0;  // of the mean of the colours
-        std::uint32_t samples = 0, dropped = 0;
-    };
     std::vector<Pixel> pixels_;
 };
 

@@ -1,9 +1,11 @@
 /// Pictures by path tracing. The component `render` has it compiled.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include <hedgerow/base/error.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/render/camera/camera.h>
 #include <hedgerow/render/film/light_sums.h>
@@ -31,32 +33,66 @@ struct PathScene {
     const Tracer<T>& tracer;
 };
 
-/// A picture as sums of light, and how much of it is finished.
+/// A picture as sums of light, by rows from the top left.
 struct PathPicture {
     int width = 0, height = 0;
-    LightSums light{0};         ///< by rows from the top left
-    bool whole = true;          ///< whether each pixel has all its samples
-    std::uint64_t dropped = 0;  ///< samples that were not finite
+    LightSums light{0};
 
+    PathPicture(int w, int h)
+        : width(w), height(h), light(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
     /// Linear light by pixel.
     std::vector<Vec3f> means() const {
         std::vector<Vec3f> all;
         for (std::size_t i = 0; i < light.size(); ++i) all.push_back(light.mean(i));
         return all;
     }
+    /// The samples that every pixel has.
+    std::uint32_t samples() const {
+        std::uint32_t least = light.samples(0);
+        for (std::size_t i = 0; i < light.size(); ++i) least = std::min(least, light.samples(i));
+        return least;
+    }
+    /// The samples of all pixels that were not finite.
+    std::uint64_t dropped() const {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < light.size(); ++i) sum += light.dropped(i);
+        return sum;
+    }
+    /// The mean of the pixels' standard errors, as a share of the mean light. Too large for samples that are
+    /// spread evenly.
+    double relative_error() const {
+        double errors = 0, sum = 0;
+        for (std::size_t i = 0; i < light.size(); ++i) {
+            const Vec3d mean(light.mean(i));
+            errors += static_cast<double>(light.standard_error(i)), sum += (mean[0] + mean[1] + mean[2]) / 3;
+        }
+        return sum > 0 ? errors / sum : 0;
+    }
 };
 
-/// Follows paths through the pixels of a picture: `samples` for each, at places that are spread evenly over
-/// the pixel. The picture depends on the scene, the camera, the size, the samples and the options alone, to
-/// the last bit: never on the executor, the structure behind the tracer, or the processor. If it is
-/// cancelled, pixels have the samples that were finished. Throws InputError for options without a meaning, a
-/// camera that sees nothing, and pictures without pixels or samples.
+/// Follows paths until each pixel of a picture has `samples` samples, which its options name only for those
+/// who start anew. A picture that has some goes on with the next, at places that are spread evenly over the
+/// pixel together with those before. What a sample is depends on the scene, the camera, the size, its number
+/// and the options alone, to the last bit: never on the executor, the structure behind the tracer, the
+/// processor, or how often the work was interrupted. If it is cancelled, pixels have the samples that were
+/// finished. Throws InputError for options without a meaning, a camera that sees nothing, pictures without
+/// pixels or samples, and a picture of another size.
+template <std::floating_point T>
+void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,
+                 const PathPictureOptions& options, Executor& executor, const Progress& progress = {});
+extern template void add_samples(PathPicture&, std::uint32_t, const PathScene<float>&,
+                                 const PathPictureOptions&, Executor&, const Progress&);
+extern template void add_samples(PathPicture&, std::uint32_t, const PathScene<double>&,
+                                 const PathPictureOptions&, Executor&, const Progress&);
+
+/// A whole picture, as add_samples makes it.
 template <std::floating_point T>
 PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& options, Executor& executor,
-                        const Progress& progress = {});
-extern template PathPicture trace_paths(const PathScene<float>&, const PathPictureOptions&, Executor&,
-                                        const Progress&);
-extern template PathPicture trace_paths(const PathScene<double>&, const PathPictureOptions&, Executor&,
-                                        const Progress&);
+                        const Progress& progress = {}) {
+    if (options.width < 1 || options.height < 1) throw InputError("a picture needs at least one pixel");
+    PathPicture picture(options.width, options.height);
+    add_samples(picture, options.samples, scene, options, executor, progress);
+    return picture;
+}
 
 }  // namespace hedgerow

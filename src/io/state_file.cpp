@@ -1,0 +1,101 @@
+/// A state file is a line "hedgerow state KIND VERSION BYTE-ORDER LINES BYTES", the lines "NAME=VALUE", an
+/// empty line, the bytes, and the checksum of all before it in eight bytes.
+#include <hedgerow/io/state_file.h>
+
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include <hedgerow/base/error.h>
+
+#include "checksum.h"
+#include "output_file.h"
+
+namespace hedgerow {
+
+namespace {
+
+constexpr const char* byte_order = std::endian::native == std::endian::little ? "little" : "big";
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+    throw InputError(path.string() + ": " + what + "; name another file, or remove this one and start anew");
+}
+std::string head_of(const std::string& kind, std::uint32_t version, const WorkState& state) {
+    std::string head = "hedgerow state " + kind + " " + std::to_string(version) + " " + byte_order + " " +
+                       std::to_string(state.of.size()) + " " + std::to_string(state.bytes.size()) + "\n";
+    for (const auto& [name, value] : state.of) head += name + "=" + value + "\n";
+    return head + "\n";
+}
+std::string whole_file(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw InputError(path.string() + ": cannot be read");
+    std::ostringstream all;
+    all << file.rdbuf();
+    return std::move(all).str();
+}
+/// The text up to the next line break, which is passed over. Nothing if there is none.
+std::string_view next_line(std::string_view& rest) {
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos) return rest = {}, std::string_view();
+    const std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(end + 1);
+    return line;
+}
+
+}  // namespace
+
+void save_state(const std::filesystem::path& path, const std::string& kind, std::uint32_t version,
+                const WorkState& state) {
+    for (const auto& [name, value] : state.of)
+        if ((name + value).find('\n') != std::string::npos || name.find('=') != std::string::npos)
+            throw InputError("a line of a state has no line breaks, and its name no =");
+    std::string all = head_of(kind, version, state);
+    all.append(reinterpret_cast<const char*>(state.bytes.data()), state.bytes.size());
+    detail::OutputFile file(path);
+    file.write(all);
+    file.little(detail::checksum(all.data(), all.size()));
+    file.commit();
+}
+
+WorkState load_state(const std::filesystem::path& path, const std::string& kind, std::uint32_t version,
+                     std::span<const std::pair<std::string, std::string>> expected) {
+    const std::string all = whole_file(path);
+    std::string_view rest(all);
+    std::istringstream head{std::string(next_line(rest))};
+    std::string words[2], of_kind, order;
+    std::uint64_t of_version = 0, lines = 0, bytes = 0;
+    head >> words[0] >> words[1] >> of_kind >> of_version >> order >> lines >> bytes;
+    if (!head || words[0] != "hedgerow" || words[1] != "state")
+        refuse(path, "is no state of interrupted work");
+    if (of_kind != kind) refuse(path, "is a state of other work: " + of_kind + ", not " + kind);
+    if (of_version != version) refuse(path, "was written by another version of this program");
+    if (order != byte_order) refuse(path, "was written by a processor with another byte order");
+    WorkState state;
+    for (std::uint64_t i = 0; i < lines && !rest.empty(); ++i) {
+        const std::string_view line = next_line(rest);
+        const std::size_t equals = std::min(line.find('='), line.size());
+        state.of.emplace_back(line.substr(0, equals), line.substr(std::min(equals + 1, line.size())));
+    }
+    if (!next_line(rest).empty() || rest.size() < 8 || rest.size() - 8 != bytes)
+        refuse(path, "is cut short or damaged");
+    std::uint64_t stored = 0;
+    for (std::size_t i = 0; i < 8; ++i)
+        stored |= static_cast<std::uint64_t>(static_cast<unsigned char>(rest[rest.size() - 8 + i]))
+                  << (8 * i);
+    if (detail::checksum(all.data(), all.size() - 8) != stored)
+        refuse(path, "is damaged: its checksum differs");
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const auto& [name, value] = expected[i];
+        const bool there = i < state.of.size() && state.of[i].first == name;
+        if (!there) refuse(path, "does not say what its " + name + " is");
+        if (state.of[i].second != value)
+            refuse(path, "has another " + name + ": " + state.of[i].second + ", not " + value);
+    }
+    state.bytes.resize(bytes);
+    std::memcpy(state.bytes.data(), rest.data(), bytes);
+    return state;
+}
+
+}  // namespace hedgerow
