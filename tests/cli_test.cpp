@@ -280,7 +280,8 @@ TEST_F(Cli, PathsShowScatteredLight) {
     EXPECT_TRUE(figures["finished"].get<bool>());
     ASSERT_EQ(run(scene + file("threads.png") + " --spp 4 --threads 2").code, 0);
     EXPECT_EQ(pixels_of(file("paths.png")), pixels_of(file("threads.png")));
-    for (const char* options : {"--seed 5", "--sampler independent", "--bounces 1", "--exposure 2"}) {
+    for (const char* options : {"--seed 5", "--sampler independent", "--bounces 1", "--exposure 2",
+                                "--filter gaussian", "--tone neutral"}) {
         ASSERT_EQ(run(scene + file("other.png") + " --spp 4 " + options).code, 0) << options;
         EXPECT_NE(pixels_of(file("paths.png")), pixels_of(file("other.png"))) << options;
     }

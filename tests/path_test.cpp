@@ -8,6 +8,7 @@
 
 #include <hedgerow/all.h>
 #include <hedgerow/render/camera/presets.h>
+#include <hedgerow/render/film/tone.h>
 #include <hedgerow/render/integrators/path_picture.h>
 #include <hedgerow/scenes/looks.h>
 #include <hedgerow/scenes/meshes.h>
@@ -278,6 +279,44 @@ TYPED_TEST(Paths, HaveTheSameBitsHoweverManyAreFollowedAtOnce) {
             expect_same<T>(one_by_one, trace_paths(parts, options, default_executor()));
         }
     }
+}
+
+/// The Gaussian's samples have its deviation within three of them, and blur an edge of the picture by as
+/// much.
+TEST(PixelFilters, HaveTheirShape) {
+    const PixelSequence sequence(Sampler::sobol, 3, 0);
+    double mean = 0, squares = 0;
+    constexpr int n = 1 << 14;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const UnitPair p = sequence.pair(i, 0);
+        EXPECT_EQ(place_in_pixel(PixelFilter::box, p.x, p.y), Vec2f(p.x, p.y));
+        const Vec2f at = place_in_pixel(PixelFilter::gaussian, p.x, p.y) - Vec2f(0.5f, 0.5f);
+        EXPECT_LE(length(at), 1.5001f);
+        mean += double(at[0] + at[1]), squares += double(length2(at));
+    }
+    EXPECT_NEAR(mean / n, 0, 2e-3);
+    // The mean of r² of a Gaussian that ends at r = R is 2σ² less the part beyond.
+    const double beyond = std::exp(-4.5), expected = 2 * 0.25 - 2.25 * beyond / (1 - beyond);
+    EXPECT_NEAR(squares / n, expected, 2e-3);
+}
+TEST(Tones, KeepColoursAndBendHighlights) {
+    EXPECT_EQ(toned(Tone::linear, {-1, 0.5f, 7}), Vec3f(0, 0.5f, 1));
+    // Colours that reflect at least 4% everywhere lose just that.
+    const Vec3f grey = toned(Tone::neutral, {0.2f, 0.3f, 0.5f});
+    EXPECT_NEAR(grey[0], 0.16f, 1e-6f);
+    EXPECT_NEAR(grey[2], 0.46f, 1e-6f);
+    float before = 0;
+    for (float light = 0; light < 100; light = light * 1.1f + 0.01f) {
+        const Vec3f c = toned(Tone::neutral, Vec3f::all(light));
+        EXPECT_GE(c[0], before) << light;
+        EXPECT_LE(c[0], 1) << light;
+        before = c[0];
+        const Vec3f red = toned(Tone::neutral, {light, light / 4, light / 8});
+        EXPECT_TRUE(red[0] >= red[1] && red[1] >= red[2] && red[2] >= 0 && red[0] <= 1) << light;
+    }
+    EXPECT_GT(before, 0.99f);
+    const Vec3f bright = toned(Tone::neutral, {1000, 1, 1});
+    EXPECT_GT(bright[1], 0.9f) << "very bright colours turn white";
 }
 
 /// A hash of the linear light of a picture, bit by bit.

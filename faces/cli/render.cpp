@@ -205,6 +205,15 @@ Run add_render(CLI::App& verb) {
     verb.add_option("--sampler", a->sampler, "of --shading path: sobol (spread evenly) or independent")
         ->capture_default_str()
         ->check(CLI::IsMember({"sobol", "independent"}));
+    verb.add_option("--filter", a->filter, "of --shading path: where a pixel's samples lie, box or gaussian")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"box", "gaussian"}));
+    verb.add_option(
+            "--tone", a->tone,
+            "of --shading path: how a .png shows what is brighter than white, linear (cut off) or neutral "
+            "(bent)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"linear", "neutral"}));
     verb.add_option("--time", a->seconds,
                     "of --shading path: follow paths for so long, as 90s, 5min or 2h, at most to --spp, "
                     "which then is "

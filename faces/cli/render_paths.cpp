@@ -12,6 +12,7 @@
 #include <hedgerow/io/state_file.h>
 #include <hedgerow/looks/fingerprint.h>
 #include <hedgerow/render/film/colour.h>
+#include <hedgerow/render/film/tone.h>
 #include <hedgerow/render/integrators/path_picture.h>
 #include <hedgerow/version.h>
 
@@ -27,14 +28,16 @@ PathPictureOptions path_options(const RenderArguments& a, const RenderOptions& s
     o.camera = shown.camera, o.width = shown.width, o.height = shown.height;
     o.samples = static_cast<std::uint32_t>(a.spp);
     o.paths.seed = a.seed, o.paths.bounces = a.bounces;
+    o.filter = a.filter == "gaussian" ? PixelFilter::gaussian : PixelFilter::box;
     o.paths.sampler = a.sampler == "independent" ? Sampler::independent : Sampler::sobol;
     return o;
 }
-Image image_of(const PathPicture& picture, float exposure) {
+Image image_of(const RenderArguments& a, const PathPicture& picture) {
     Image image(picture.width, picture.height);
-    const auto brightness = static_cast<float>(power(2, static_cast<double>(exposure)));
+    const auto brightness = static_cast<float>(power(2, static_cast<double>(a.exposure)));
+    const Tone tone = a.tone == "neutral" ? Tone::neutral : Tone::linear;
     for (std::size_t i = 0; i < picture.light.size(); ++i)
-        image.pixels[i] = srgb(picture.light.mean(i) * brightness);
+        image.pixels[i] = srgb(toned(tone, picture.light.mean(i) * brightness));
     return image;
 }
 /// Linear light, its standard error, and the number of samples.
@@ -58,7 +61,7 @@ void save_picture(const RenderArguments& a, const PathPicture& picture) {
     if (a.layers)
         save_layers(a.output, picture, notes);
     else
-        save_png(a.output, image_of(picture, a.exposure), {}, notes);
+        save_png(a.output, image_of(a, picture), {}, notes);
 }
 
 /// All that the light of a picture depends on, but for the number of samples.
@@ -78,6 +81,7 @@ Lines what_it_is_of(const RenderArguments& a, const ShownModel<T>& shown) {
             {"size", fmt::format("{}x{}", shown.options.width, shown.options.height)},
             {"seed", std::to_string(a.seed)},
             {"sampler", a.sampler},
+            {"filter", a.filter},
             {"bounces", std::to_string(a.bounces)}};
 }
 constexpr std::uint32_t state_version = 1;

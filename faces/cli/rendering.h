@@ -18,9 +18,9 @@ struct RenderArguments : Common {
     int camera = -1;    // of the file
     float opacity = 1;  // of all surfaces, times that of their looks
     bool transparent = false, sheet = false;
-    std::uint32_t bounces = 64;           // of paths
-    std::string sampler = "sobol";        // of paths
-    float exposure = 0;                   // of paths, in powers of two
+    std::uint32_t bounces = 64;                                      // of paths
+    std::string sampler = "sobol", filter = "box", tone = "linear";  // of paths
+    float exposure = 0;                                              // of paths, in powers of two
     double seconds = 0;                   // that paths are followed; 0: until all samples are there
     std::string resume;                   // the file of a state of paths
     bool footprints = false;              // of textures

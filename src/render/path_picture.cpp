@@ -133,8 +133,9 @@ private:
     }
     typename PathWavefront<T>::Start start(int x, int y, std::uint32_t sample) const {
         const PathSamples samples(PixelSequence(o_.paths.sampler, o_.paths.seed, number(x, y)), sample);
-        const UnitPair at = samples.in_pixel();
-        const float across = static_cast<float>(x) + at.x, down = static_cast<float>(y) + at.y;
+        const UnitPair numbers = samples.in_pixel();
+        const Vec2f at = place_in_pixel(o_.filter, numbers.x, numbers.y);
+        const float across = static_cast<float>(x) + at[0], down = static_cast<float>(y) + at[1];
         if (!make_.has_lens()) return {make_.template ray<T>(across, down), samples};
         const UnitPair lens = samples.on_lens();
         return {make_.template ray<T>(across, down, lens_point(lens.x, lens.y)), samples};

@@ -11,6 +11,7 @@
 #include <hedgerow/render/film/light_sums.h>
 #include <hedgerow/render/integrators/path.h>
 #include <hedgerow/render/integrators/path_reference.h>
+#include <hedgerow/render/sampling/pixel_filter.h>
 
 namespace hedgerow {
 
@@ -19,6 +20,7 @@ struct PathPictureOptions {
     int width = 1024, height = 768;
     std::uint32_t samples = 64;  ///< of each pixel
     PathOptions paths;
+    PixelFilter filter = PixelFilter::box;
     /// Paths that each thread follows at once (integrators/path.h); 0: one by one, as PathReference does. The
     /// picture is the same.
     std::size_t in_flight = PathWavefront<float>::default_in_flight;

@@ -69,7 +69,7 @@ public:
     }
 
     Scattering scattering_at(const PathVertex<T>& at) const {
-        return {at.material, Frame(at.shading).to_local(at.toward_origin), !at.front, world_.compensation};
+        return {at.material, at.shading.to_local(at.toward_origin), !at.front, world_.compensation};
     }
 
     /// A ray to a light, with what it brings; nothing if no light may come from there.
@@ -82,7 +82,7 @@ public:
             point, side_of_light(at), samples.light_choice(path.vertex), samples.light_point(path.vertex));
         if (!sampled) return std::nullopt;
         const LightSample& light = sampled.light;
-        const Vec3f i = Frame(at.shading).to_local(light.direction);
+        const Vec3f i = at.shading.to_local(light.direction);
         if (!same_side(at, light.direction, i)) return std::nullopt;
         const Vec3f value = scattering.value(i);
         if (!(max_component(value) > 0)) return std::nullopt;
@@ -109,7 +109,7 @@ public:
         const UnitPair p = samples.direction(path.vertex);
         const auto next = scattering.sample(samples.lobe_choice(path.vertex), p.x, p.y);
         if (!next) return false;
-        const Vec3f direction = normalized(Frame(at.shading).to_world(next->direction));
+        const Vec3f direction = normalized(at.shading.to_world(next->direction));
         if (!same_side(at, direction, next->direction)) return false;
         path.throughput = tinted(path.throughput, next->weight);
         if (next->transmitted && !at.material.thin) {

@@ -17,16 +17,17 @@ namespace hedgerow {
 /// A point of a surface as a path sees it. Directions have length 1.
 template <std::floating_point T>
 struct PathVertex {
-    Vec3f toward_origin;  ///< back along the ray
-    Vec3f geometric;      ///< the normal of the surface, on the side of the ray's origin
-    Vec3f shading;        ///< the normal by which it scatters, on the same side
-    bool front = true;    ///< whether the ray came to the front
-    bool unlit = false;   ///< shows its colour, and ends the path
+    Vec3f toward_origin;            ///< back along the ray
+    Vec3f geometric;                ///< the normal of the surface, on the side of the ray's origin
+    Frame shading{Vec3f(0, 0, 1)};  ///< around the normal by which it scatters, on the same side
+    bool front = true;              ///< whether the ray came to the front
+    bool unlit = false;             ///< shows its colour, and ends the path
     SurfaceMaterial material;
     Vec3f emission;  ///< toward the ray's origin
     /// What light loses in the body beyond the front: exp(−absorption · distance) is left. 0 of none.
     Vec3f absorption;
-    Vec<T, 3> before, beyond;  ///< where rays begin that leave the surface on this side, and on the other
+    Vec<T, 3> before;  ///< where rays begin that leave the surface on this side
+    Vec<T, 3> beyond;  ///< and on the other side, if the surface lets light through
 };
 
 /// Finds the vertices of paths through a model. Borrows all.
@@ -60,7 +61,7 @@ public:
         v.front = !(dot(front, ray.direction) > 0);
         const Vec<T, 3> geometric = v.front ? front : -front;
         v.geometric = Vec3f(geometric);
-        v.shading = shading_normal(hit, v);
+        v.shading = Frame(shading_normal(hit, v));
         v.unlit = m.unlit;
         v.material.base_colour = within_unit(looks.base_colour(hit, {}));
         v.material.metallic = within_unit(m.metallic * looks.number(m.metallic_texture, hit, {}));
@@ -72,7 +73,7 @@ public:
         if (v.front || m.double_sided) v.emission = looks.emission(hit, {});
         v.absorption = absorptions_[looks.object(hit).material_of(hit.element)];
         v.before = scene_.surfaces().origin(ray, hit, geometric);
-        v.beyond = scene_.surfaces().origin(ray, hit, -geometric);
+        if (v.material.transmission > 0) v.beyond = scene_.surfaces().origin(ray, hit, -geometric);
         return v;
     }
 
