@@ -240,6 +240,30 @@ TEST_F(ExrTool, LayersAreWhatTheLibraryAnswers) {
     }
 }
 
+TEST_F(ExrTool, PathsHaveTheLayersOfDenoisers) {
+    const std::string render = "render gen:cornell-box --shading path --spp 8 --size 24x20";
+    const Read read = written(render);
+    ASSERT_EQ(run(render + " --quiet -o " + file("a.png")).code, 0);
+    const Image image = load_png(file("a.png"));
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        ASSERT_EQ(srgb(read.vector("R", "G", "B", i)), image.pixels[i]) << i;
+        EXPECT_EQ(read.words.at("samples")[i], 8u);
+        EXPECT_GE(read.value("error", i), 0);
+        const Vec3f albedo = read.vector("albedo.R", "albedo.G", "albedo.B", i),
+                    normal = read.vector("normal.X", "normal.Y", "normal.Z", i);
+        EXPECT_LE(max_component(albedo), 1);
+        EXPECT_LE(length(normal), 1.00001f);
+        if (read.words.at("id")[i] == Hit<float>::none) continue;
+        ++seen;
+        EXPECT_LT(read.words.at("id")[i], 32u);
+        EXPECT_EQ(read.words.at("instance")[i], 0u);
+        EXPECT_GT(read.value("depth.Z", i), 0);
+        EXPECT_GT(max_component(albedo), 0);
+    }
+    EXPECT_GT(seen, 300u);
+}
+
 TEST_F(ExrTool, ColoursAreTheLightOfThePng) {
     for (const char* shading : {"normals", "depth", "diffuse"}) {
         const std::string render =

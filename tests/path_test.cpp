@@ -394,6 +394,35 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
     EXPECT_THROW(add_samples(in_steps, 30, parts, options, serial_executor()), InputError);
 }
 
+/// Colour and normal of what scatters first, straight ahead and in a mirror, and nothing where the sky is.
+TYPED_TEST(Paths, FirstSurfacesAreThoseThatScatter) {
+    using T = TypeParam;
+    Material mirror = matte({0.5f, 1, 1});
+    mirror.metallic = 1, mirror.roughness = 0;
+    TriangleMesh<T> above = square<T>(50, 8);
+    for (auto& t : above.triangles) std::swap(t[1], t[2]);
+    const auto model = model_of<T>({{square<T>(1, 0), mirror}, {above, matte({0.8f, 0.4f, 0.2f})}});
+    const ModelScene<T> scene(model, serial_executor());
+    const SceneLights<T> lights(scene);
+    const PathScene<T> parts{scene, lights, scene.tracer()};
+    PathPictureOptions options = few_pixels(camera_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}), 4);
+    options.width = options.height = 3;
+    options.camera.field_of_view = 70;
+    const auto down = first_surfaces(parts, options, 4, default_executor());
+    EXPECT_LT(length(down[4].albedo - Vec3f(0.4f, 0.4f, 0.2f)), 1e-6f)
+        << "what the mirror shows, in its colour";
+    EXPECT_LT(length(down[4].normal - Vec3f(0, 0, -1)), 1e-6f);
+    EXPECT_NEAR(down[4].depth, 4, 0.5);
+    EXPECT_EQ(down[4].instance, 0u);
+    EXPECT_EQ(down[0].albedo, Vec3f()) << "beside the mirror";
+    EXPECT_EQ(down[0].normal, Vec3f());
+    EXPECT_EQ(down[0].depth, std::numeric_limits<float>::infinity());
+    options.camera.target = {0, 0, 8};
+    const auto up = first_surfaces(parts, options, 1, serial_executor());
+    EXPECT_LT(length(up[4].albedo - Vec3f(0.8f, 0.4f, 0.2f)), 1e-6f);
+    EXPECT_EQ(up[4].instance, 1u);
+}
+
 TYPED_TEST(Paths, RefuseOptionsWithoutAMeaning) {
     using T = TypeParam;
     const auto model = model_of<T>({{square<T>(1, 0), matte(Vec3f::all(0.5f))}});

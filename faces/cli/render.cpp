@@ -19,7 +19,11 @@ constexpr const char* layers_help =
     "  depth.Z                  distance along the first ray; infinity where nothing is hit\n"
     "  normal.X .Y .Z           there, on the eye's side; 0 where nothing is hit\n"
     "  id                       the primitive's number there; 4294967295 where nothing is hit\n"
-    "  nodes leaves primitives  looked at to find the hit; mean\n\n";
+    "  nodes leaves primitives  looked at to find the hit; mean\n"
+    "Of --shading path, in place of these counts:\n"
+    "  error samples            the standard error of the light, and how many samples there are\n"
+    "  albedo.R .G .B           colour of the first surface that scatters, and its normal in normal; means\n"
+    "  instance                 the object's number at the first hit\n\n";
 
 /// What finds the hits of the samples.
 template <class T, class P>

@@ -1,5 +1,6 @@
 /// hedgerow render --shading path: pictures of light that is scattered, by path tracing.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <filesystem>
@@ -40,26 +41,49 @@ Image image_of(const RenderArguments& a, const PathPicture& picture) {
         image.pixels[i] = srgb(toned(tone, picture.light.mean(i) * brightness));
     return image;
 }
-/// Linear light, its standard error, and the number of samples.
-void save_layers(const std::string& output, const PathPicture& picture, const Notes& notes) {
-    const std::vector<Vec3f> light = picture.means();
+/// The channels of an .exr: linear light, its standard error and the number of samples, and what is seen
+/// first.
+struct PathLayers {
+    explicit PathLayers(const PathPicture& picture, const std::vector<FirstSurface>& first_surfaces)
+        : light(picture.means()), layers{picture.width, picture.height, {}} {
+        for (std::size_t i = 0; i < light.size(); ++i)
+            errors.push_back(picture.light.standard_error(i)), samples.push_back(picture.light.samples(i));
+        add({"R", "G", "B"}, light, light[0]);
+        layers.channels.push_back({"error", Strided<float>(errors.data(), errors.size(), sizeof(float))});
+        add_ids("samples", samples, samples[0]);
+        const FirstSurface& first = first_surfaces[0];
+        add({"albedo.R", "albedo.G", "albedo.B"}, first_surfaces, first.albedo);
+        add({"normal.X", "normal.Y", "normal.Z"}, first_surfaces, first.normal);
+        layers.channels.push_back(
+            {"depth.Z", Strided<float>(&first.depth, first_surfaces.size(), sizeof(FirstSurface))});
+        add_ids("id", first_surfaces, first.primitive);
+        add_ids("instance", first_surfaces, first.instance);
+    }
+    PathLayers(const PathLayers&) = delete;
+
+    std::vector<Vec3f> light;
     std::vector<float> errors;
     std::vector<std::uint32_t> samples;
-    for (std::size_t i = 0; i < light.size(); ++i)
-        errors.push_back(picture.light.standard_error(i)), samples.push_back(picture.light.samples(i));
-    Layers layers{picture.width, picture.height, {}};
-    const char* const names[] = {"R", "G", "B"};
-    for (int k = 0; k < 3; ++k)
-        layers.channels.push_back({names[k], Strided<float>(&light[0].data[k], light.size(), sizeof(Vec3f))});
-    layers.channels.push_back({"error", Strided<float>(errors.data(), errors.size(), sizeof(float))});
-    layers.channels.push_back(
-        {"samples", Strided<std::uint32_t>(samples.data(), samples.size(), sizeof(std::uint32_t))});
-    save_exr(output, layers, {}, notes);
-}
-void save_picture(const RenderArguments& a, const PathPicture& picture) {
+    Layers layers;  // of these and of the first surfaces
+
+private:
+    template <class Pixel>
+    void add(std::array<const char*, 3> names, const std::vector<Pixel>& pixels, const Vec3f& first) {
+        for (std::size_t k = 0; k < 3; ++k)
+            layers.channels.push_back(
+                {names[k], Strided<float>(&first.data[k], pixels.size(), sizeof(Pixel))});
+    }
+    template <class Pixel>
+    void add_ids(const char* name, const std::vector<Pixel>& pixels, const std::uint32_t& first) {
+        layers.channels.push_back({name, Strided<std::uint32_t>(&first, pixels.size(), sizeof(Pixel))});
+    }
+};
+/// Saves a picture; what is seen first is for an .exr alone.
+void save_picture(const RenderArguments& a, const PathPicture& picture,
+                  const std::vector<FirstSurface>& first_surfaces) {
     const Notes notes = picture_notes(a.seed);
     if (a.layers)
-        save_layers(a.output, picture, notes);
+        save_exr(a.output, PathLayers(picture, first_surfaces).layers, {}, notes);
     else
         save_png(a.output, image_of(a, picture), {}, notes);
 }
@@ -103,7 +127,7 @@ void load_paths(const std::string& file, const Lines& lines, PathPicture& pictur
 /// picture is saved, and the state, if there is a file for it. Returns whether it was not interrupted.
 template <class T>
 bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictureOptions& options,
-            const Lines& lines, PathPicture& picture) {
+            const Lines& lines, const std::vector<FirstSurface>& first, PathPicture& picture) {
     ProgressLine line("following paths", a.quiet, "samples");
     const Progress shown = line.progress();
     std::atomic<bool> stops{false};
@@ -120,7 +144,7 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
         add_samples(picture, options.samples, scene, options, default_executor(), watched);
         if (picture.samples() == options.samples) break;
         const double began = now();
-        if (picture.samples() > 0) save_picture(a, picture);
+        if (picture.samples() > 0) save_picture(a, picture, first);
         if (!a.resume.empty()) save_paths(a.resume, lines, picture);
         // Saving takes at most a fiftieth of the time, and no more than half a minute can be lost.
         pause = std::clamp(50 * (now() - began), 10.0, 25.0), until = now() + pause;
@@ -143,14 +167,16 @@ int render_paths(const RenderArguments& a) {
     const Lines lines = a.resume.empty() ? Lines() : what_it_is_of(a, shown);
     PathPicture picture(options.width, options.height);
     if (!a.resume.empty() && std::filesystem::exists(a.resume)) load_paths(a.resume, lines, picture);
+    const PathScene<T> scene{shown.scene, lights, shown.scene.tracer()};
+    std::vector<FirstSurface> first;
+    if (a.layers) first = first_surfaces(scene, options, std::min(options.samples, 16u), default_executor());
     const std::uint32_t before = picture.samples();
     const double start = now();
-    const bool finished =
-        follow(a, PathScene<T>{shown.scene, lights, shown.scene.tracer()}, options, lines, picture);
+    const bool finished = follow(a, scene, options, lines, first, picture);
     const double seconds = now() - start;
     if (!a.resume.empty()) save_paths(a.resume, lines, picture);
     if (picture.light.samples(0) == 0) throw Cancelled("no pixel has a sample");
-    save_picture(a, picture);
+    save_picture(a, picture, first);
     if (const std::uint64_t dropped = picture.dropped(); dropped > 0)
         fmt::print(stderr, "hedgerow: warning: {} samples were no finite light, and count as black\n",
                    dropped);

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <hedgerow/base/error.h>
-#include <hedgerow/render/camera/ray_maker.h>
 #include <hedgerow/render/visibility/samples.h>
 
 namespace hedgerow {
@@ -74,7 +73,7 @@ public:
           surfaces_(scene.model),
           world_{surfaces_, scene.lights, o.paths, o.paths.compensation ? &compensation() : nullptr},
           tracer_(scene.tracer),
-          make_(o.camera, o.width, o.height) {}
+          camera_(o.camera, o.width, o.height, o.filter, o.paths.sampler, o.paths.seed) {}
 
     /// Goes over the picture again and again, with twice as many samples as before, so that an end at any
     /// time leaves all pixels about as many.
@@ -102,7 +101,7 @@ private:
         std::vector<std::size_t> firsts(tile.size() + 1);
         for (std::size_t i = 0; i < tile.size(); ++i) {
             const auto [x, y] = place(tile, i);
-            firsts[i + 1] = firsts[i] + until - std::min(until, picture_.light.samples(number(x, y)));
+            firsts[i + 1] = firsts[i] + until - std::min(until, picture_.light.samples(camera_.number(x, y)));
         }
         std::vector<Vec3f> light(firsts.back());
         std::size_t pixel = 0;  // paths are started in order
@@ -111,13 +110,13 @@ private:
             [&](std::size_t i) {
                 while (i >= firsts[pixel + 1]) ++pixel;
                 const auto [x, y] = place(tile, pixel);
-                return start(x, y, until - static_cast<std::uint32_t>(firsts[pixel + 1] - i));
+                return camera_.start<T>(x, y, until - static_cast<std::uint32_t>(firsts[pixel + 1] - i));
             },
             [&](std::size_t i, const Vec3f& found) { light[i] = found; });
         for (std::size_t i = 0; i < tile.size(); ++i) {
             const auto [x, y] = place(tile, i);
             for (std::size_t k = firsts[i]; k < firsts[i + 1]; ++k)
-                picture_.light.add(number(x, y), light[k]);
+                picture_.light.add(camera_.number(x, y), light[k]);
         }
         return light.size();
     }
@@ -131,28 +130,75 @@ private:
             finish(i, reference.light(path.ray, path.samples));
         }
     }
-    typename PathWavefront<T>::Start start(int x, int y, std::uint32_t sample) const {
-        const PathSamples samples(PixelSequence(o_.paths.sampler, o_.paths.seed, number(x, y)), sample);
-        const UnitPair numbers = samples.in_pixel();
-        const Vec2f at = place_in_pixel(o_.filter, numbers.x, numbers.y);
-        const float across = static_cast<float>(x) + at[0], down = static_cast<float>(y) + at[1];
-        if (!make_.has_lens()) return {make_.template ray<T>(across, down), samples};
-        const UnitPair lens = samples.on_lens();
-        return {make_.template ray<T>(across, down, lens_point(lens.x, lens.y)), samples};
-    }
-    std::size_t number(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(o_.width) + static_cast<std::size_t>(x);
-    }
-
     PathPicture& picture_;
     const PathPictureOptions& o_;
     const PathSurfaces<T> surfaces_;
     const PathWorld<T> world_;
     const Tracer<T>& tracer_;
-    const RayMaker make_;
+    const PathCamera camera_;
 };
 
+/// Follows a path through mirrors and smooth glass up to the first surface that scatters.
+template <class T>
+FirstSurface first_surface(const PathWorld<T>& world, const Tracer<T>& tracer, const PathStart<T>& start) {
+    const PathSteps<T> steps(world);
+    PathState<T> path;
+    path.ray = start.ray;
+    FirstSurface found;
+    while (path.vertex <= world.options.bounces) {
+        const std::uint32_t key = start.samples.ray_key(path.vertex);
+        Hit<T> hit;
+        tracer.closest_hits(
+            RayArray<T, 3>(&path.ray, 1), {&hit, 1}, {},
+            world.surfaces.has_holes()
+                ? [&](std::size_t, const Hit<T>& h) { return world.surfaces.is_there(h, key); }
+                : typename Tracer<T>::Filter());
+        if (!hit) return found;
+        if (path.vertex == 0)
+            found.depth = static_cast<float>(hit.t), found.primitive = hit.primitive,
+            found.instance = hit.instance;
+        const PathVertex<T> vertex = world.surfaces.at(path.ray, hit);
+        const Scattering scattering = steps.scattering_at(vertex);
+        if (!scattering.only_specular() || vertex.unlit) {
+            found.albedo = min(tinted(path.throughput, vertex.material.base_colour), Vec3f::all(1));
+            found.normal = vertex.shading.normal();
+            return found;
+        }
+        if (!steps.leave(path, vertex, scattering, start.samples)) return found;
+    }
+    return found;
+}
+
 }  // namespace
+
+template <std::floating_point T>
+std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPictureOptions& o,
+                                         std::uint32_t samples, Executor& executor) {
+    check(PathPicture(o.width, o.height), samples, o);
+    const PathSurfaces<T> surfaces(scene.model);
+    const PathWorld<T> world{surfaces, scene.lights, o.paths, nullptr};
+    const PathCamera camera(o.camera, o.width, o.height, o.filter, o.paths.sampler, o.paths.seed);
+    std::vector<FirstSurface> all(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
+    executor.for_each_piece(static_cast<std::size_t>(o.height), 1, [&](std::size_t begin, std::size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+            for (int x = 0; x < o.width; ++x) {
+                FirstSurface& mean = all[camera.number(x, y)];
+                Vec3d albedo, normal;
+                for (std::uint32_t k = 0; k < samples; ++k) {
+                    const FirstSurface one = first_surface(world, scene.tracer, camera.start<T>(x, y, k));
+                    if (k == 0) mean = one;
+                    albedo = albedo + Vec3d(one.albedo), normal = normal + Vec3d(one.normal);
+                }
+                mean.albedo = Vec3f(albedo / static_cast<double>(samples));
+                mean.normal = Vec3f(normal / static_cast<double>(samples));
+            }
+    });
+    return all;
+}
+template std::vector<FirstSurface> first_surfaces(const PathScene<float>&, const PathPictureOptions&,
+                                                  std::uint32_t, Executor&);
+template std::vector<FirstSurface> first_surfaces(const PathScene<double>&, const PathPictureOptions&,
+                                                  std::uint32_t, Executor&);
 
 template <std::floating_point T>
 void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,

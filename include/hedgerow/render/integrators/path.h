@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include <hedgerow/render/integrators/path_camera.h>
 #include <hedgerow/render/integrators/path_step.h>
 #include <hedgerow/render/tracer.h>
 
@@ -27,11 +28,6 @@ public:
                   std::size_t in_flight = default_in_flight)
         : world_(world), tracer_(tracer), steps_(world), in_flight_(in_flight) {}
 
-    /// A path from the camera: its ray, whose direction has length 1, and its numbers.
-    struct Start {
-        Ray<T, 3> ray;
-        PathSamples samples;
-    };
     /// Follows paths 0 to count − 1. `start(i)` returns path i, and `finish(i, light)` takes the light that
     /// comes along its ray; paths are started in order and finish in any. Neighbours in order should have
     /// neighbouring rays.
@@ -43,7 +39,7 @@ public:
             const std::size_t old = flight.size;
             for (; flight.size < in_flight_ && next < count; ++next) {
                 Path& path = flight.paths[flight.size++];
-                const Start s = start(next);
+                const PathStart<T> s = start(next);
                 path = {{}, s.samples, next};
                 path.state.ray = s.ray;
             }

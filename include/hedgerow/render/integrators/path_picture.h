@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <hedgerow/base/error.h>
@@ -96,5 +97,25 @@ PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& opt
     add_samples(picture, options.samples, scene, options, executor, progress);
     return picture;
 }
+
+/// What a pixel shows first, for denoisers: colour and normal of the first surface that scatters, which
+/// mirrors and smooth glass may show. Both are 0 where there is none.
+struct FirstSurface {
+    Vec3f albedo;  ///< its base colour, from 0 to 1, tinted by what shows it
+    Vec3f normal;  ///< by which it scatters, towards the eye
+    /// The hit of the camera's ray: its distance, and what it hits.
+    float depth = std::numeric_limits<float>::infinity();
+    std::uint32_t primitive = Hit<float>::none, instance = Hit<float>::none;
+};
+
+/// The first surfaces of each pixel, by rows from the top left: the mean colours and normals of its first
+/// samples, whose paths are those of `add_samples`, and the hit of its first. Throws as `add_samples` does.
+template <std::floating_point T>
+std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPictureOptions& options,
+                                         std::uint32_t samples, Executor& executor);
+extern template std::vector<FirstSurface> first_surfaces(const PathScene<float>&, const PathPictureOptions&,
+                                                         std::uint32_t, Executor&);
+extern template std::vector<FirstSurface> first_surfaces(const PathScene<double>&, const PathPictureOptions&,
+                                                         std::uint32_t, Executor&);
 
 }  // namespace hedgerow
