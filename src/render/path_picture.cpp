@@ -30,9 +30,9 @@ std::pair<int, int> place(const PixelBox& tile, std::size_t i) {
 }
 
 /// The tiles of a picture: squares of whole blocks, which have about as many paths as a tile should.
-class Grid {
+class Tiles {
 public:
-    Grid(const PathPictureOptions& o, std::uint32_t samples) : width_(o.width), height_(o.height) {
+    Tiles(const PathPictureOptions& o, std::uint32_t samples) : width_(o.width), height_(o.height) {
         while (side_ < 256 &&
                std::size_t(4) * std::size_t(side_) * std::size_t(side_) * samples <= paths_of_tile)
             side_ *= 2;
@@ -84,7 +84,7 @@ public:
         std::atomic<std::uint64_t> done{0};
         for (std::uint32_t least = picture_.samples(); least < samples && !progress.cancelled();) {
             const std::uint32_t until = std::min(samples, std::max<std::uint32_t>(1, 2 * least));
-            const Grid tiles(o_, until - least);
+            const Tiles tiles(o_, until - least);
             executor.for_each_piece(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end && !progress.cancelled(); ++i)
                     progress(done += add(tiles[i], until), all);
@@ -142,17 +142,12 @@ private:
 template <class T>
 FirstSurface first_surface(const PathWorld<T>& world, const Tracer<T>& tracer, const PathStart<T>& start) {
     const PathSteps<T> steps(world);
+    const PathRays<T> rays(world.surfaces, tracer);
     PathState<T> path;
     path.ray = start.ray;
     FirstSurface found;
     while (path.vertex <= world.options.bounces) {
-        const std::uint32_t key = start.samples.ray_key(path.vertex);
-        Hit<T> hit;
-        tracer.closest_hits(
-            RayArray<T, 3>(&path.ray, 1), {&hit, 1}, {},
-            world.surfaces.has_holes()
-                ? [&](std::size_t, const Hit<T>& h) { return world.surfaces.is_there(h, key); }
-                : typename Tracer<T>::Filter());
+        const Hit<T> hit = rays.closest_hit(path.ray, start.samples.ray_key(path.vertex));
         if (!hit) return found;
         if (path.vertex == 0)
             found.depth = static_cast<float>(hit.t), found.primitive = hit.primitive,

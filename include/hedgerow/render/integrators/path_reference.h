@@ -9,32 +9,15 @@
 
 namespace hedgerow {
 
+/// Rays of paths, one by one.
 template <std::floating_point T>
-class PathReference {
+class PathRays {
 public:
-    /// Borrows all.
-    PathReference(const PathWorld<T>& world, const Tracer<T>& tracer)
-        : world_(world), tracer_(tracer), steps_(world) {}
+    /// Borrows both.
+    PathRays(const PathSurfaces<T>& surfaces, const Tracer<T>& tracer)
+        : surfaces_(surfaces), tracer_(tracer) {}
 
-    /// The light that comes along a ray from the camera, whose direction has length 1.
-    Vec3f light(const Ray<T, 3>& ray, const PathSamples& samples) const {
-        PathState<T> path;
-        path.ray = ray;
-        for (;;) {
-            const Hit<T> hit = closest_hit(path.ray, samples.ray_key(path.vertex));
-            const auto vertex = steps_.arrive(path, hit);
-            if (!vertex) return path.light;
-            const Scattering scattering = steps_.scattering_at(*vertex);
-            if (const auto shadow = steps_.look_for_light(path, *vertex, scattering, samples))
-                if (!is_blocked(shadow->ray, samples.shadow_key(path.vertex)))
-                    steps_.add_light(path, *shadow);
-            if (!steps_.leave(path, *vertex, scattering, samples)) return path.light;
-        }
-    }
-
-private:
-    using Filter = typename Tracer<T>::Filter;
-
+    /// The keys decide at which hits surfaces are there that are not opaque (PathSurfaces::is_there).
     Hit<T> closest_hit(const Ray<T, 3>& ray, std::uint32_t key) const {
         Hit<T> hit;
         tracer_.closest_hits(RayArray<T, 3>(&ray, 1), {&hit, 1}, {}, filter(key));
@@ -45,13 +28,42 @@ private:
         tracer_.any_hits(RayArray<T, 3>(&ray, 1), {&is, 1}, {}, filter(key));
         return is;
     }
-    Filter filter(std::uint32_t key) const {
-        if (!world_.surfaces.has_holes()) return {};
-        return [this, key](std::size_t, const Hit<T>& hit) { return world_.surfaces.is_there(hit, key); };
+
+private:
+    typename Tracer<T>::Filter filter(std::uint32_t key) const {
+        if (!surfaces_.has_holes()) return {};
+        return [this, key](std::size_t, const Hit<T>& hit) { return surfaces_.is_there(hit, key); };
     }
 
-    const PathWorld<T> world_;
+    const PathSurfaces<T>& surfaces_;
     const Tracer<T>& tracer_;
+};
+
+template <std::floating_point T>
+class PathReference {
+public:
+    /// Borrows all.
+    PathReference(const PathWorld<T>& world, const Tracer<T>& tracer)
+        : rays_(world.surfaces, tracer), steps_(world) {}
+
+    /// The light that comes along a ray from the camera, whose direction has length 1.
+    Vec3f light(const Ray<T, 3>& ray, const PathSamples& samples) const {
+        PathState<T> path;
+        path.ray = ray;
+        for (;;) {
+            const Hit<T> hit = rays_.closest_hit(path.ray, samples.ray_key(path.vertex));
+            const auto vertex = steps_.arrive(path, hit);
+            if (!vertex) return path.light;
+            const Scattering scattering = steps_.scattering_at(*vertex);
+            if (const auto shadow = steps_.look_for_light(path, *vertex, scattering, samples))
+                if (!rays_.is_blocked(shadow->ray, samples.shadow_key(path.vertex)))
+                    steps_.add_light(path, *shadow);
+            if (!steps_.leave(path, *vertex, scattering, samples)) return path.light;
+        }
+    }
+
+private:
+    const PathRays<T> rays_;
     const PathSteps<T> steps_;
 };
 

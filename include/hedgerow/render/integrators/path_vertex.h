@@ -63,12 +63,12 @@ public:
         v.geometric = Vec3f(geometric);
         v.shading = Frame(shading_normal(hit, v));
         v.unlit = m.unlit;
-        v.material.base_colour = within_unit(looks.base_colour(hit, {}));
-        v.material.metallic = within_unit(m.metallic * looks.number(m.metallic_texture, hit, {}));
-        v.material.roughness = within_unit(m.roughness * looks.number(m.roughness_texture, hit, {}));
+        v.material.base_colour = min(looks.base_colour(hit, {}), Vec3f::all(1));
+        v.material.metallic = m.metallic * looks.number(m.metallic_texture, hit, {});
+        v.material.roughness = m.roughness * looks.number(m.roughness_texture, hit, {});
         v.material.ior = m.ior, v.material.specular = m.specular;
         v.material.specular_colour = m.specular_colour;
-        v.material.transmission = within_unit(m.transmission * looks.number(m.transmission_texture, hit, {}));
+        v.material.transmission = m.transmission * looks.number(m.transmission_texture, hit, {});
         v.material.thin = m.thin;
         if (v.front || m.double_sided) v.emission = looks.emission(hit, {});
         v.absorption = absorptions_[looks.object(hit).material_of(hit.element)];
@@ -78,10 +78,6 @@ public:
     }
 
 private:
-    static float within_unit(float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; }
-    static Vec3f within_unit(const Vec3f& c) {
-        return {within_unit(c[0]), within_unit(c[1]), within_unit(c[2])};
-    }
     Vec3f shading_normal(const Hit<T>& hit, const PathVertex<T>& v) const {
         Vec3f own = scene_.lookups().own_normal(hit, {});
         if (length2(own) == 0) return v.geometric;
