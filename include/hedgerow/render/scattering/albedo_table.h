@@ -1,5 +1,5 @@
 /// The directional albedo of rough surfaces, by quadrature: what share of light from one direction leaves at
-/// all, if light between the small mirrors is lost that would meet a second one.
+/// all, if light between the microfacets is lost that would meet a second one.
 #pragma once
 
 #include <algorithm>
@@ -79,7 +79,7 @@ private:
     std::array<float, roughnesses> average_{};
 };
 
-/// A quadrature over the small mirrors that a direction sees. Each is there for an equal share of what is
+/// A quadrature over the microfacets that a direction sees. Each is there for an equal share of what is
 /// seen, but for a weight. The surface is symmetric, so that half a turn suffices.
 class VisibleMirrors {
 public:

@@ -1,4 +1,4 @@
-/// Light that leaves a surface in all directions: from matter below it, and from between its small mirrors
+/// Light that leaves a surface in all directions: from matter below it, and from between its microfacets
 /// after it met several.
 #pragma once
 
@@ -45,7 +45,7 @@ public:
         return light * product(cosine, inverse_pi_f);
     }
     /// Estimates of what becomes of white light from everywhere: the light that the base reflects, and that
-    /// which small mirrors send up and down after several reflections, without the factor of radiance. A
+    /// which microfacets send up and down after several reflections, without the factor of radiance. A
     /// light of 0 means that there is none.
     Vec3f matte_albedo() const { return matte_ * let_in_average_; }
     Vec3f again_albedo_up() const {

@@ -1,4 +1,4 @@
-/// Gives back the light that a rough surface loses between its small mirrors, by a lobe that is added (Kulla
+/// Gives back the light that a rough surface loses between its microfacets, by a lobe that is added (Kulla
 /// and Conty, Revisiting physically based shading at Imageworks, SIGGRAPH 2017). The lobe is a product of
 /// what is lost at both directions, so that it is reciprocal.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace hedgerow {
 
-/// What leaves a rough surface after one reflection, for two reflectances of the small mirrors.
+/// What leaves a rough surface after one reflection, for two reflectances of the microfacets.
 struct GgxAlbedo {
     float white = 1;    ///< for 1
     float grazing = 0;  ///< for (1 − cos)⁵

@@ -1,4 +1,4 @@
-/// A rough surface of many small mirrors, whose normals have the distribution GGX (Walter et al., Microfacet
+/// A rough surface of many microfacets, whose normals have the distribution GGX (Walter et al., Microfacet
 /// models for refraction through rough surfaces, EGSR 2007). Directions are in local space, with the mean
 /// normal along z.
 #pragma once
@@ -19,7 +19,7 @@ class Ggx {
 public:
     explicit Ggx(float alpha) : alpha_(alpha), alpha2_(product(alpha, alpha)) {}
 
-    /// The area of small mirrors with normal h, a direction of length 1, per area of surface and solid angle.
+    /// The area of microfacets with normal h, a direction of length 1, per area of surface and solid angle.
     float distribution(const Vec3f& h) const {
         if (!(h[2] > 0)) return 0;
         const float flat = product(h[0], h[0]) + product(h[1], h[1]);
@@ -42,11 +42,11 @@ public:
     }
 
     /// The density of visible_normal, per solid angle of the normal, over 4 dot(o, h). It is the density of
-    /// the direction to which the small mirror reflects o.
+    /// the direction to which the microfacet reflects o.
     float reflected_density(const Vec3f& o, const Vec3f& h) const {
         return distribution(h) / (2 * (o[2] + slant(o[2])));
     }
-    /// The normal of a small mirror that o sees, with density 4 dot(o, h)·reflected_density (Dupuy and
+    /// The normal of a microfacet that o sees, with density 4 dot(o, h)·reflected_density (Dupuy and
     /// Benyoub, Sampling visible GGX normals with spherical caps, HPG 2023). o[2] ≥ 0. Always above the plane
     /// z = 0, short of rounding.
     Vec3f visible_normal(const Vec3f& o, float u, float v) const {

@@ -1,4 +1,4 @@
-/// Light that meets one small mirror of a rough surface: it is reflected, refracted, or goes straight on.
+/// Light that meets one microfacet of a rough surface: it is reflected, refracted, or goes straight on.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct ScatteredDirection {
     bool transmitted = false;  ///< to the other side of the surface
 };
 
-/// The reflection and transmission by small mirrors, of all shares of a surface together: they have one
+/// The reflection and transmission by microfacets, of all shares of a surface together: they have one
 /// roughness. Refraction is that of Walter et al. 2007, in terms of radiance: where light comes from a medium
 /// of index η_i to an eye in one of index η_o, it has the factor (η_o/η_i)². On a thin surface what goes
 /// through is the reflection, mirrored to the other side (KHR_materials_transmission).
@@ -52,7 +52,7 @@ public:
         const float reflects = chance_of_reflection(half.cosine);
         return product(half.density, i[2] > 0 ? reflects : 1 - reflects);
     }
-    /// Chooses a small mirror that o sees by (u, v), and whether it reflects by `choice`, in proportion to
+    /// Chooses a microfacet that o sees by (u, v), and whether it reflects by `choice`, in proportion to
     /// the luminance of both. The weight and density of the result are set only if it is specular. Returns
     /// nothing where the mirror is black, or sends light into the surface.
     std::optional<ScatteredDirection> sample(const Vec3f& o, float choice, float u, float v) const {
@@ -72,7 +72,7 @@ public:
     }
 
 private:
-    /// The small mirror that sends o to i: the density of i if that mirror's kind of scattering is sure, and
+    /// The microfacet that sends o to i: the density of i if that mirror's kind of scattering is sure, and
     /// the cosine of o to its normal. The density is 0 where there is none.
     struct Half {
         float density = 0, cosine = 0;

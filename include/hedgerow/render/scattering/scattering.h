@@ -21,7 +21,7 @@ namespace hedgerow {
 class Scattering {
 public:
     /// `inside`: o is within a body that is not thin. Without tables, rough surfaces lose the light that
-    /// their small mirrors send to each other.
+    /// their microfacets send to each other.
     Scattering(const SurfaceMaterial& material, const Vec3f& o, bool inside, const Compensation* tables)
         : Scattering(SurfaceParts(material, inside), o, tables) {}
 
@@ -62,7 +62,7 @@ private:
         const float matte = luminance(broad_.matte_albedo()), up = luminance(broad_.again_albedo_up()),
                     down = luminance(broad_.again_albedo_down()), broad = matte + up + down;
         float facets = luminance(parts.reflected_colour(c) + parts.transmitted_colour(c));
-        // The small mirrors can be brighter elsewhere than at the cosine of o, where they may even be black.
+        // The microfacets can be brighter elsewhere than at the cosine of o, where they may even be black.
         if (facets_.exists()) facets = std::max(facets, broad / 32);
         if (facets_.exists() && !(broad + facets > 0)) facets = 1;
         const float sum = broad + facets;

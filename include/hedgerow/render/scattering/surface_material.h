@@ -32,7 +32,7 @@ struct SurfaceParts {
     /// The index of refraction beyond the surface over that on the side of the eye. 1 for thin surfaces, and
     /// for bodies that refract so little that floats cannot tell it from going straight on.
     float eta = 1;
-    /// The small mirrors of a surface with α below 10⁻³ act as one.
+    /// The microfacets of a surface with α below 10⁻³ act as one.
     bool mirror = false;
 
     /// `inside`: the eye's side is within the body, which matters only if the material is not thin.
@@ -61,12 +61,12 @@ struct SurfaceParts {
     /// Whether light goes straight on through the transparent share.
     bool straight() const { return eta == 1; }
     bool has_coat() const { return opaque > 0 && coat.f90 > 0; }
-    /// What share of `through` a small mirror reflects at an angle with this cosine.
+    /// What share of `through` a microfacet reflects at an angle with this cosine.
     float reflected_share(float c) const {
         if (thin) return max_component(coat.at(c));
         return straight() ? 0.0f : dielectric_reflectance(c, eta);
     }
-    /// The colour of a small mirror at an angle of incidence with cosine c.
+    /// The colour of a microfacet at an angle of incidence with cosine c.
     Vec3f reflected_colour(float c) const {
         Vec3f colour;
         if (metal > 0) colour += metal_fresnel.at(c) * metal;
@@ -74,7 +74,7 @@ struct SurfaceParts {
         if (through > 0) colour += (thin ? coat.at(c) : Vec3f::all(reflected_share(c))) * through;
         return colour;
     }
-    /// The colour of what goes through a small mirror. It is that of energy, not yet of radiance.
+    /// The colour of what goes through a microfacet. It is that of energy, not yet of radiance.
     Vec3f transmitted_colour(float c) const {
         return through > 0 ? base * product(through, 1 - reflected_share(c)) : Vec3f();
     }
