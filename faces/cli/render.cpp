@@ -2,6 +2,9 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/index_file.h>
+#include <hedgerow/render/film/tone.h>
+#include <hedgerow/render/sampling/path_samples.h>
+#include <hedgerow/render/sampling/pixel_filter.h>
 #include <hedgerow/render/visibility/beams.h>
 #include <hedgerow/render/visibility/rasterise.h>
 #include <hedgerow/render/visibility/rasterise_stream.h>
@@ -155,6 +158,11 @@ void check_cones(const RenderArguments& a) {
         throw UsageError("--cones: leave out --shading steps and --counts, which show what rays cost");
 }
 
+/// Admits the names in a list.
+template <class Names>
+CLI::IsMember one_of(const Names& names) {
+    return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
+}
 /// Throws UsageError for options that are not of paths.
 void check_paths(const RenderArguments& a) {
     const auto refuse = [](bool given, const char* option) {
@@ -208,16 +216,16 @@ Run add_render(CLI::App& verb) {
         ->capture_default_str();
     verb.add_option("--sampler", a->sampler, "of --shading path: sobol (spread evenly) or independent")
         ->capture_default_str()
-        ->check(CLI::IsMember({"sobol", "independent"}));
+        ->check(one_of(sampler_names));
     verb.add_option("--filter", a->filter, "of --shading path: where a pixel's samples lie, box or gaussian")
         ->capture_default_str()
-        ->check(CLI::IsMember({"box", "gaussian"}));
+        ->check(one_of(pixel_filter_names));
     verb.add_option(
             "--tone", a->tone,
             "of --shading path: how a .png shows what is brighter than white, linear (cut off) or neutral "
             "(bent)")
         ->capture_default_str()
-        ->check(CLI::IsMember({"linear", "neutral"}));
+        ->check(one_of(tone_names));
     verb.add_option("--time", a->seconds,
                     "of --shading path: follow paths for so long, as 90s, 5min or 2h, at most to --spp, "
                     "which then is "

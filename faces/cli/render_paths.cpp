@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -24,19 +25,25 @@ namespace hedgerow::cli {
 
 namespace {
 
+/// The value that has a name in the list of all.
+template <class E, class Names>
+E named(const Names& names, std::string_view name) {
+    return static_cast<E>(std::ranges::find(names, name) - names.begin());
+}
+
 PathPictureOptions path_options(const RenderArguments& a, const RenderOptions& shown) {
     PathPictureOptions o;
     o.camera = shown.camera, o.width = shown.width, o.height = shown.height;
     o.samples = static_cast<std::uint32_t>(a.spp);
     o.paths.seed = a.seed, o.paths.bounces = a.bounces;
-    o.filter = a.filter == "gaussian" ? PixelFilter::gaussian : PixelFilter::box;
-    o.paths.sampler = a.sampler == "independent" ? Sampler::independent : Sampler::sobol;
+    o.filter = named<PixelFilter>(pixel_filter_names, a.filter);
+    o.paths.sampler = named<Sampler>(sampler_names, a.sampler);
     return o;
 }
 Image image_of(const RenderArguments& a, const PathPicture& picture) {
     Image image(picture.width, picture.height);
     const auto brightness = static_cast<float>(power(2, static_cast<double>(a.exposure)));
-    const Tone tone = a.tone == "neutral" ? Tone::neutral : Tone::linear;
+    const Tone tone = named<Tone>(tone_names, a.tone);
     for (std::size_t i = 0; i < picture.light.size(); ++i)
         image.pixels[i] = srgb(toned(tone, picture.light.mean(i) * brightness));
     return image;

@@ -2,15 +2,16 @@
 /// empty line, the bytes, and the checksum of all before it in eight bytes.
 #include <hedgerow/io/state_file.h>
 
+#include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstring>
-#include <fstream>
 #include <sstream>
+#include <string_view>
 
 #include <hedgerow/base/error.h>
 
 #include "checksum.h"
+#include "file_bytes.h"
 #include "output_file.h"
 
 namespace hedgerow {
@@ -27,13 +28,6 @@ std::string head_of(const std::string& kind, std::uint32_t version, const WorkSt
                        std::to_string(state.of.size()) + " " + std::to_string(state.bytes.size()) + "\n";
     for (const auto& [name, value] : state.of) head += name + "=" + value + "\n";
     return head + "\n";
-}
-std::string whole_file(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw InputError(path.string() + ": cannot be read");
-    std::ostringstream all;
-    all << file.rdbuf();
-    return std::move(all).str();
 }
 /// The text up to the next line break, which is passed over. Nothing if there is none.
 std::string_view next_line(std::string_view& rest) {
@@ -61,8 +55,9 @@ void save_state(const std::filesystem::path& path, const std::string& kind, std:
 
 WorkState load_state(const std::filesystem::path& path, const std::string& kind, std::uint32_t version,
                      std::span<const std::pair<std::string, std::string>> expected) {
-    const std::string all = whole_file(path);
-    std::string_view rest(all);
+    const detail::FileBytes file = detail::read_file(path);
+    const std::string_view all(reinterpret_cast<const char*>(file.data), file.size);
+    std::string_view rest = all;
     std::istringstream head{std::string(next_line(rest))};
     std::string words[2], of_kind, order;
     std::uint64_t of_version = 0, lines = 0, bytes = 0;

@@ -50,11 +50,10 @@ private:
     int width_, height_, side_ = block_side, columns_;
 };
 
-void check(const PathPicture& picture, std::uint32_t samples, const PathPictureOptions& o) {
+void check(std::uint32_t samples, const PathPictureOptions& o) {
     check_camera(o.camera);
     check_paths(o.paths);
-    if (picture.width != o.width || picture.height != o.height)
-        throw InputError("the picture has another size than its options");
+    if (o.width < 1 || o.height < 1) throw InputError("a picture needs at least one pixel");
     if (samples < 1) throw InputError("a picture needs at least one sample a pixel");
 }
 
@@ -130,6 +129,7 @@ private:
             finish(i, reference.light(path.ray, path.samples));
         }
     }
+
     PathPicture& picture_;
     const PathPictureOptions& o_;
     const PathSurfaces<T> surfaces_;
@@ -169,7 +169,7 @@ FirstSurface first_surface(const PathWorld<T>& world, const Tracer<T>& tracer, c
 template <std::floating_point T>
 std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPictureOptions& o,
                                          std::uint32_t samples, Executor& executor) {
-    check(PathPicture(o.width, o.height), samples, o);
+    check(samples, o);
     const PathSurfaces<T> surfaces(scene.model);
     const PathWorld<T> world{surfaces, scene.lights, o.paths, nullptr};
     const PathCamera camera(o.camera, o.width, o.height, o.filter, o.paths.sampler, o.paths.seed);
@@ -198,7 +198,9 @@ template std::vector<FirstSurface> first_surfaces(const PathScene<double>&, cons
 template <std::floating_point T>
 void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,
                  const PathPictureOptions& options, Executor& executor, const Progress& progress) {
-    check(picture, samples, options);
+    check(samples, options);
+    if (picture.width != options.width || picture.height != options.height)
+        throw InputError("the picture has another size than its options");
     PathTracing<T>(picture, scene, options).run(samples, executor, progress);
 }
 template void add_samples(PathPicture&, std::uint32_t, const PathScene<float>&, const PathPictureOptions&,

@@ -97,19 +97,11 @@ private:
     /// Adds the light that rays meet. Paths that end there leave the flight.
     template <class Finish>
     void arrive(Flight& flight, const Finish& finish) const {
-        std::size_t left = 0;
-        for (std::size_t i = 0; i < flight.size; ++i) {
-            Path& path = flight.paths[i];
-            const auto vertex = steps_.arrive(path.state, flight.hits[i]);
-            if (!vertex) {
-                finish(path.number, path.state.light);
-                continue;
-            }
-            flight.meetings[left].emplace(Meeting{*vertex, steps_.scattering_at(*vertex)});
-            if (left != i) flight.paths[left] = path;
-            ++left;
-        }
-        flight.size = left;
+        keep(flight, finish, [&](std::size_t i, std::size_t to) {
+            const auto vertex = steps_.arrive(flight.paths[i].state, flight.hits[i]);
+            if (vertex) flight.meetings[to].emplace(Meeting{*vertex, steps_.scattering_at(*vertex)});
+            return vertex.has_value();
+        });
     }
     /// Adds the light that shadow rays bring.
     void look_for_light(Flight& flight) const {
@@ -133,18 +125,25 @@ private:
     /// Sends paths on. Those that end leave the flight.
     template <class Finish>
     void leave(Flight& flight, const Finish& finish) const {
-        std::size_t left = 0;
-        for (std::size_t i = 0; i < flight.size; ++i) {
+        keep(flight, finish, [&](std::size_t i, std::size_t) {
             Path& path = flight.paths[i];
             const Meeting& met = *flight.meetings[i];
-            if (!steps_.leave(path.state, met.vertex, met.scattering, path.samples)) {
+            return steps_.leave(path.state, met.vertex, met.scattering, path.samples);
+        });
+    }
+    /// Keeps the paths for which goes_on(i, to) is true: path i then takes place `to`. The others are
+    /// finished.
+    template <class Finish, class GoesOn>
+    static void keep(Flight& flight, const Finish& finish, const GoesOn& goes_on) {
+        std::size_t to = 0;
+        for (std::size_t i = 0; i < flight.size; ++i) {
+            Path& path = flight.paths[i];
+            if (!goes_on(i, to))
                 finish(path.number, path.state.light);
-                continue;
-            }
-            if (left != i) flight.paths[left] = path;
-            ++left;
+            else if (const std::size_t place = to++; place != i)
+                flight.paths[place] = path;
         }
-        flight.size = left;
+        flight.size = to;
     }
     template <class Keep>
     Filter filter(const Keep& keep) const {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <limits>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/render/sampling/path_samples.h>

@@ -41,8 +41,8 @@ struct PathPicture {
     int width = 0, height = 0;
     LightSums light{0};
 
-    PathPicture(int w, int h)
-        : width(w), height(h), light(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+    /// Throws InputError for a picture without pixels.
+    PathPicture(int w, int h) : width(w), height(h), light(pixels(w, h)) {}
     /// Linear light by pixel.
     std::vector<Vec3f> means() const {
         std::vector<Vec3f> all;
@@ -71,6 +71,12 @@ struct PathPicture {
         }
         return sum > 0 ? errors / sum : 0;
     }
+
+private:
+    static std::size_t pixels(int w, int h) {
+        if (w < 1 || h < 1) throw InputError("a picture needs at least one pixel");
+        return static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
+    }
 };
 
 /// Follows paths until each pixel of a picture has `samples` samples, which its options name only for those
@@ -92,7 +98,6 @@ extern template void add_samples(PathPicture&, std::uint32_t, const PathScene<do
 template <std::floating_point T>
 PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& options, Executor& executor,
                         const Progress& progress = {}) {
-    if (options.width < 1 || options.height < 1) throw InputError("a picture needs at least one pixel");
     PathPicture picture(options.width, options.height);
     add_samples(picture, options.samples, scene, options, executor, progress);
     return picture;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <hedgerow/geometry/vec.h>
+#include <hedgerow/render/sampling/warps.h>
 
 namespace hedgerow {
 
@@ -87,11 +88,8 @@ struct EmissiveTriangle {
     /// points close to the triangle: Arvo, SIGGRAPH 1995; Peters, TOG 40(4), 2021.) There is no light behind
     /// a triangle, unless both sides emit, nor in its plane.
     LightSample sample(const Vec3f& point, float u, float v) const {
-        // Map the square to the triangle without a jump (Heitz, A low-distortion map between triangle and
-        // square, 2019).
-        const float half = (u < v ? u : v) / 2;
         LightSample s;
-        s.weights = u < v ? Vec2f(half, v - half) : Vec2f(u - half, half);
+        s.weights = triangle_point(u, v);
         const Vec3d at = Vec3d(a) + (Vec3d(b) - Vec3d(a)) * static_cast<double>(s.weights[0]) +
                          (Vec3d(c) - Vec3d(a)) * static_cast<double>(s.weights[1]);
         const auto [direction, distance] = detail::sight(point, at);
