@@ -291,6 +291,16 @@ TEST_F(Cli, PathsShowScatteredLight) {
     for (const char* options : {"--sheet", "--counts", "--cones", "--light-size 5", "--footprints",
                                 "--opacity 0.5", "--visibility raster", "--structure bvh"})
         expect_usage(scene + file("x.png") + " " + options, "leave out");
+    ASSERT_EQ(run(scene + file("adaptive.png") + " --spp 50 --adaptive --preview").code, 0);
+    ASSERT_EQ(run(scene + file("even.png") + " --spp 50").code, 0);
+    EXPECT_NE(pixels_of(file("adaptive.png")), pixels_of(file("even.png")));
+    const auto calm = run(scene + file("calm.png") + " --noise 0.08 --json");
+    ASSERT_EQ(calm.code, 0);
+    const auto of_calm = nlohmann::json::parse(calm.output);
+    EXPECT_LE(of_calm["noise"].get<double>(), 0.08);
+    EXPECT_GT(of_calm["noise"].get<double>(), 0.06) << "no more samples than it takes";
+    EXPECT_GT(of_calm["samples"].get<double>(), 31);
+    expect_usage(scene + file("x.png") + " --noise 0", "--noise");
     expect_usage(scene + file("x.png") + " --sampler random", "--sampler");
     expect_usage(scene + file("x.png") + " --spp 0", "--spp");
 }
@@ -316,11 +326,18 @@ TEST_F(Cli, PathsGoOnAfterAnInterruption) {
     expect_bad("render gen:cornell-box:500 --shading path --size 64x48 -o " + file("x.png") + " --resume " +
                    file("state"),
                "another scene");
+    // An adaptive picture goes on with the same shares of its pixels.
+    const std::string small = "render gen:cornell-box --shading path --size 20x20 --adaptive -o ";
+    ASSERT_EQ(run(small + file("at_once.png") + " --spp 100").code, 0);
+    for (const char* spp : {" --spp 40", " --spp 100"})
+        ASSERT_EQ(run(small + file("resumed.png") + spp + " --resume " + file("adaptive")).code, 0);
+    EXPECT_EQ(pixels_of(file("at_once.png")), pixels_of(file("resumed.png")));
     const auto timed =
         run("render gen:cornell-box --shading path --size 64x48 --time 0.5s --json -o " + file("timed.png"));
     ASSERT_EQ(timed.code, 0);
     EXPECT_LT(nlohmann::json::parse(timed.output)["samples"].get<int>(), 16384);
-    expect_usage("render gen:cornell-box --time 5s -o " + file("x.png"), "--shading path");
+    for (const char* option : {"--time 5s", "--noise 0.1", "--adaptive", "--preview", "--tone neutral"})
+        expect_usage("render gen:cornell-box -o " + file("x.png") + " " + option, "--shading path");
     expect_usage(scene + file("x.png") + " --time -5s", "--time");
 }
 

@@ -377,9 +377,9 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
     PathPicture in_steps(options.width, options.height);
     for (const std::uint32_t until : {1u, 2u, 2u, 7u, 20u})
         add_samples(in_steps, until, parts, options, default_executor());
-    EXPECT_EQ(in_steps.samples(), 20u);
+    EXPECT_EQ(in_steps.samples, 20u);
     std::size_t stops = 0;
-    while (in_steps.samples() < 23) {
+    while (in_steps.samples < 23) {
         // Stop after a tile.
         std::atomic<bool> stop{false};
         add_samples(in_steps, 23, parts, options, serial_executor(),

@@ -79,6 +79,18 @@ void ProgressLine::say(const std::string& doing) {
     if (shown_) rewrite_line(what_ + " " + doing);
 }
 
+void ProgressLine::rename(std::string what) {
+    const std::lock_guard lock(mutex_);
+    what_ = std::move(what);
+}
+void ProgressLine::show_above(const std::string& lines) {
+    const std::lock_guard lock(mutex_);
+    if (!isatty(2)) return;
+    if (lines_above_ > 0) std::fprintf(stderr, "\033[%tdA", lines_above_);
+    rewrite_line(lines);
+    lines_above_ = std::ranges::count(lines, '\n');
+}
+
 std::string progress_text(const std::string& what, const std::string& unit, std::uint64_t done,
                           std::uint64_t total, double seconds) {
     const double rate = static_cast<double>(done) / std::max(seconds, 1e-9);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <mutex>
 #include <string>
 
@@ -33,6 +34,11 @@ public:
     Progress progress();
     /// Shows the current step, for work of unknown length.
     void say(const std::string& doing);
+    /// Gives the work another name.
+    void rename(std::string what);
+    /// Shows lines of text above the progress, in place of those before, even where there is none to show.
+    /// Nothing is shown unless stderr is a terminal.
+    void show_above(const std::string& lines);
     /// The largest amount that the work has reported as done.
     std::uint64_t done() const { return done_; }
     /// The name of the last work that ended in an exception; empty if none did.
@@ -45,6 +51,7 @@ private:
     bool shown_;
     int exceptions_;  // exceptions in flight when the work began
     double start_, last_ = 0;
+    std::ptrdiff_t lines_above_ = 0;
     std::atomic<std::uint64_t> done_{0};
     std::mutex mutex_;
 };

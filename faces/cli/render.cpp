@@ -163,6 +163,8 @@ template <class Names>
 CLI::IsMember one_of(const Names& names) {
     return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
 }
+constexpr auto options_of_paths = {"--bounces", "--sampler",  "--filter",  "--tone",   "--time",
+                                   "--noise",   "--adaptive", "--preview", "--resume", "--exposure"};
 /// Throws UsageError for options that are not of paths.
 void check_paths(const RenderArguments& a) {
     const auto refuse = [](bool given, const char* option) {
@@ -233,6 +235,14 @@ Run add_render(CLI::App& verb) {
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                           CLI::AsNumberWithUnit::CASE_SENSITIVE))
         ->check(CLI::PositiveNumber);
+    verb.add_option("--noise", a->noise,
+                    "of --shading path: follow paths until this is the picture's noise, as a share of its "
+                    "light (0.01 is 1%), at most to --spp, which then is 16384 if not given; --adaptive is "
+                    "implied")
+        ->check(CLI::Range(1e-6, 1.0));
+    verb.add_flag("--adaptive", a->adaptive,
+                  "of --shading path: more samples for pixels whose samples differ, with --spp on the mean");
+    verb.add_flag("--preview", a->preview, "of --shading path: show the picture in the terminal meanwhile");
     verb.add_option(
         "--resume", a->resume,
         "of --shading path: a file in which the work is kept every few seconds; if it is there, the work "
@@ -250,10 +260,13 @@ Run add_render(CLI::App& verb) {
                     "of --shading colour and path: a camera of the file, counted from 0")
         ->check(CLI::NonNegativeNumber);
     verb.add_option("--steps-max", a->steps_max, "the top of the scale of --shading steps; 0: what was seen");
-    return [a, spp] {
-        if (a->follows_paths() && spp->count() == 0) a->spp = a->seconds > 0 ? 16384 : 64;
-        if (!a->follows_paths() && (a->seconds > 0 || !a->resume.empty()))
-            throw UsageError("--time and --resume are of paths: they need --shading path");
+    const auto given = [&verb](const char* option) { return verb.get_option(option)->count() > 0; };
+    return [a, spp, given] {
+        if (a->follows_paths() && spp->count() == 0) a->spp = a->seconds > 0 || a->noise > 0 ? 16384 : 64;
+        a->adaptive |= a->noise > 0;
+        for (const char* const option : options_of_paths)
+            if (!a->follows_paths() && given(option))
+                throw UsageError(std::string(option) + " is of paths: it needs --shading path");
         if (!a->resume.empty()) check_writable(a->resume);
         const bool saved = names_index_file(a->scene);
         a->layers = asks_for_layers(a->output);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -20,6 +21,7 @@
 
 #include "picture_notes.h"
 #include "render_looks.h"
+#include "terminal_picture.h"
 
 namespace hedgerow::cli {
 
@@ -38,6 +40,7 @@ PathPictureOptions path_options(const RenderArguments& a, const RenderOptions& s
     o.paths.seed = a.seed, o.paths.bounces = a.bounces;
     o.filter = named<PixelFilter>(pixel_filter_names, a.filter);
     o.paths.sampler = named<Sampler>(sampler_names, a.sampler);
+    if (a.adaptive) o.division = Division::adaptive;
     return o;
 }
 Image image_of(const RenderArguments& a, const PathPicture& picture) {
@@ -113,25 +116,63 @@ Lines what_it_is_of(const RenderArguments& a, const ShownModel<T>& shown) {
             {"seed", std::to_string(a.seed)},
             {"sampler", a.sampler},
             {"filter", a.filter},
+            {"division", a.adaptive ? "adaptive" : "even"},
             {"bounces", std::to_string(a.bounces)}};
 }
-constexpr std::uint32_t state_version = 1;
+constexpr std::uint32_t state_version = 2;
 
+/// The state of a picture: its samples, the sums of both halves, and the spreads if there are any.
 void save_paths(const std::string& file, const Lines& lines, const PathPicture& picture) {
-    const auto bytes = std::as_bytes(std::span(picture.light.pixels()));
-    save_state(file, "paths", state_version, {lines, {bytes.begin(), bytes.end()}});
+    std::vector<std::byte> bytes;
+    const auto append = [&bytes](const auto& numbers) {
+        const auto more = std::as_bytes(std::span(numbers));
+        bytes.insert(bytes.end(), more.begin(), more.end());
+    };
+    append(std::array{std::uint64_t{picture.samples}});
+    for (const int half : {0, 1}) append(picture.light.half(half).pixels());
+    for (const auto& spreads : picture.spreads) append(spreads);
+    save_state(file, "paths", state_version, {lines, std::move(bytes)});
 }
 void load_paths(const std::string& file, const Lines& lines, PathPicture& picture) {
     const WorkState state = load_state(file, "paths", state_version, lines);
-    std::vector<LightSums::Pixel> pixels(picture.light.size());
-    if (state.bytes.size() != pixels.size() * sizeof(LightSums::Pixel))
+    const std::size_t pixels = picture.light.size();
+    std::span<const std::byte> rest = state.bytes;
+    const auto take = [&rest](auto& numbers) {
+        const auto into = std::as_writable_bytes(std::span(numbers));
+        std::memcpy(into.data(), rest.data(), into.size());
+        rest = rest.subspan(into.size());
+    };
+    const std::size_t sums = sizeof(std::uint64_t) + 2 * pixels * sizeof(LightSums::Pixel),
+                      with_spreads = sums + 2 * pixels * sizeof(float);
+    if (rest.size() != sums && rest.size() != with_spreads)
         throw InputError(file + ": has another number of pixels than its size says");
-    std::memcpy(pixels.data(), state.bytes.data(), state.bytes.size());
-    picture.light = LightSums(std::move(pixels));
+    std::array<std::uint64_t, 1> samples;
+    take(samples);
+    picture.samples = static_cast<std::uint32_t>(samples[0]);
+    for (const int half : {0, 1}) {
+        std::vector<LightSums::Pixel> all(pixels);
+        take(all);
+        picture.light.half(half) = LightSums(std::move(all));
+    }
+    if (state.bytes.size() == sums) return;
+    for (auto& spreads : picture.spreads) spreads.resize(pixels), take(spreads);
 }
 
-/// Follows paths until the picture has all samples, the time is over, or Ctrl-C. Every few seconds the
-/// picture is saved, and the state, if there is a file for it. Returns whether it was not interrupted.
+/// How many samples a pixel the picture should have next; as many as it has if it is finished.
+std::uint32_t next_samples(const RenderArguments& a, const PathPicture& picture) {
+    const auto most = static_cast<std::uint32_t>(a.spp);
+    if (a.noise == 0 || picture.samples >= most) return std::max(most, picture.samples);
+    const double noise = picture.light.noise();
+    if (noise <= a.noise) return picture.samples;
+    // Noise falls at least with the root of the number of samples. What is known of it is better each time.
+    const double ratio = std::min(noise / a.noise, 1e3);
+    const double needed = picture.samples * std::min(2.0, ratio * ratio);
+    return std::min(most, std::max(2 * pilot_samples, static_cast<std::uint32_t>(needed) + 1));
+}
+
+/// Follows paths until the picture has all samples or little noise, the time is over, or Ctrl-C. Every few
+/// seconds the picture is saved, and the state, if there is a file for it. Returns whether it was not
+/// interrupted.
 template <class T>
 bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictureOptions& options,
             const Lines& lines, const std::vector<FirstSurface>& first, PathPicture& picture) {
@@ -139,24 +180,40 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
     const Progress shown = line.progress();
     std::atomic<bool> stops{false};
     const double start = now();
-    double pause = 10, until = start + pause;  // in seconds, between saves
+    // When the picture is saved next, and when it is shown, in seconds.
+    double save_at = start + 10, show_at = a.preview ? start + 1 : std::numeric_limits<double>::infinity();
     const auto over = [&] { return shown.cancelled() || (a.seconds > 0 && now() - start > a.seconds); };
     const Progress watched{[&](std::uint64_t done, std::uint64_t total) {
                                shown(done, total);
-                               if (over() || now() > until) stops = true;
+                               if (over() || now() > std::min(save_at, show_at)) stops = true;
                            },
                            &stops};
-    while (picture.samples() < options.samples && !over()) {
+    for (;;) {
+        const std::uint32_t goal = next_samples(a, picture);
+        if (a.preview && (now() > show_at || goal == picture.samples)) {
+            const TerminalSize size = terminal_size();
+            line.show_above(terminal_picture(image_of(a, picture), size.columns, size.rows - 2));
+            show_at = now() + 2;
+        }
+        if (goal == picture.samples || over()) break;
         stops = false;
-        add_samples(picture, options.samples, scene, options, default_executor(), watched);
-        if (picture.samples() == options.samples) break;
+        add_samples(picture, goal, scene, options, default_executor(), watched);
+        if (const double noise = picture.light.noise(); noise < 1)
+            line.rename(fmt::format("following paths, noise {:.2g}%,", 100 * noise));
+        if (now() < save_at || picture.samples == 0) continue;
         const double began = now();
-        if (picture.samples() > 0) save_picture(a, picture, first);
+        save_picture(a, picture, first);
         if (!a.resume.empty()) save_paths(a.resume, lines, picture);
         // Saving takes at most a fiftieth of the time, and no more than half a minute can be lost.
-        pause = std::clamp(50 * (now() - began), 10.0, 25.0), until = now() + pause;
+        save_at = now() + std::clamp(50 * (now() - began), 10.0, 25.0);
     }
     return !shown.cancelled();
+}
+
+std::string noise_text(const RenderArguments& a, double noise) {
+    if (!(noise < 1e3)) return "too few samples to tell the noise";
+    // Samples that are spread evenly have less noise than they show.
+    return fmt::format("noise {}{:.2g}% of the light", a.adaptive ? "" : "at most ", 100 * noise);
 }
 
 }  // namespace
@@ -177,18 +234,18 @@ int render_paths(const RenderArguments& a) {
     const PathScene<T> scene{shown.scene, lights, shown.scene.tracer()};
     std::vector<FirstSurface> first;
     if (a.layers) first = first_surfaces(scene, options, std::min(options.samples, 16u), default_executor());
-    const std::uint32_t before = picture.samples();
+    const double before = picture.mean_samples();
     const double start = now();
     const bool finished = follow(a, scene, options, lines, first, picture);
     const double seconds = now() - start;
     if (!a.resume.empty()) save_paths(a.resume, lines, picture);
-    if (picture.light.samples(0) == 0) throw Cancelled("no pixel has a sample");
+    const double samples = picture.mean_samples(), noise = picture.light.noise();
+    if (samples == 0) throw Cancelled("no pixel has a sample");
     save_picture(a, picture, first);
     if (const std::uint64_t dropped = picture.dropped(); dropped > 0)
         fmt::print(stderr, "hedgerow: warning: {} samples were no finite light, and count as black\n",
                    dropped);
-    const std::uint32_t samples = picture.samples();
-    const double rate = double(picture.light.size()) * double(samples - before) / seconds;
+    const double rate = double(picture.light.size()) * (samples - before) / seconds;
     if (a.json)
         print_json(nlohmann::ordered_json{{"output", a.output},
                                           {"width", picture.width},
@@ -201,18 +258,17 @@ int render_paths(const RenderArguments& a) {
                                           {"samples_before", before},
                                           {"seconds", seconds},
                                           {"samples_per_second", rate},
-                                          {"relative_error", picture.relative_error()},
+                                          {"noise", noise},
                                           {"dropped", picture.dropped()},
                                           {"finished", finished}});
     else if (!a.quiet)
         fmt::print(
-            "{}: {}x{}, {} primitives, {} lights\n{} samples a pixel in {:.1f} s: {:.3f} million a second; "
-            "standard error {:.2g}% of the light\n{}",
+            "{}: {}x{}, {} primitives, {} lights\n{:.6g} samples a pixel in {:.1f} s: {:.3f} million a "
+            "second; {}\n{}",
             a.output, picture.width, picture.height, shown.outcome.primitives, lights.emitters().size(),
-            samples, seconds, rate * 1e-6, 100 * picture.relative_error(),
-            up_text(a.view, a, shown.outcome.upright));
+            samples, seconds, rate * 1e-6, noise_text(a, noise), up_text(a.view, a, shown.outcome.upright));
     if (finished) return 0;
-    fmt::print(stderr, "hedgerow: interrupted; {} has {} samples a pixel\n", a.output, samples);
+    fmt::print(stderr, "hedgerow: interrupted; {} has {:.6g} samples a pixel\n", a.output, samples);
     return 130;
 }
 template int render_paths<float>(const RenderArguments&);

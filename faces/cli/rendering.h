@@ -23,6 +23,9 @@ struct RenderArguments : Common {
     float exposure = 0;                                              // of paths, in powers of two
     double seconds = 0;                   // that paths are followed; 0: until all samples are there
     std::string resume;                   // the file of a state of paths
+    double noise = 0;                     // at which paths end; 0: they end by number
+    bool adaptive = false;                // samples of paths
+    bool preview = false;                 // of paths, in the terminal
     bool footprints = false;              // of textures
     bool cones = false;                   // in place of samples
     float light_degrees = 0;              // the diameter of the light

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/render/sampling/allocation.h>
 #include <hedgerow/render/visibility/samples.h>
 
 namespace hedgerow {
@@ -63,6 +64,41 @@ const Compensation& compensation() {
     return tables;
 }
 
+/// How many samples the halves of each pixel should have.
+class Goal {
+public:
+    /// `until`: of both halves, on the mean. Borrows the picture.
+    Goal(const PathPicture& picture, Division division, std::uint32_t until)
+        : even_(division == Division::even), means_{even_ ? until : (until + 1) / 2, even_ ? 0 : until / 2} {
+        if (division == Division::adaptive && !picture.spreads[0].empty())
+            for (std::size_t half = 0; half < 2; ++half)
+                shares_.emplace_back(picture.spreads[half], pilot_samples, means_[half]);
+    }
+    std::uint32_t operator()(std::size_t pixel, int half) const {
+        const auto h = static_cast<std::size_t>(half);
+        return shares_.empty() ? means_[h] : shares_[h][pixel];
+    }
+
+private:
+    bool even_;
+    std::array<std::uint32_t, 2> means_;
+    std::vector<Allocation> shares_;  // of each half; none: all pixels have the mean
+};
+
+/// Samples that follow each other in half a pixel, which are paths from `first` on.
+struct Run {
+    int x, y, half;
+    std::uint32_t begin;
+    std::size_t first;
+
+    std::uint32_t sample(std::size_t path) const { return begin + static_cast<std::uint32_t>(path - first); }
+};
+/// The run of a path. `current` is that of a path before it, and becomes its own.
+const Run& run_of(const std::vector<Run>& runs, std::size_t path, std::size_t& current) {
+    while (current + 1 < runs.size() && runs[current + 1].first <= path) ++current;
+    return runs[current];
+}
+
 template <class T>
 class PathTracing {
 public:
@@ -75,49 +111,70 @@ public:
           camera_(o.camera, o.width, o.height, o.filter, o.paths.sampler, o.paths.seed) {}
 
     /// Goes over the picture again and again, with twice as many samples as before, so that an end at any
-    /// time leaves all pixels about as many.
+    /// time leaves all pixels about as many, or their shares.
     void run(std::uint32_t samples, Executor& executor, const Progress& progress) {
-        std::uint64_t all = 0;
-        for (const LightSums::Pixel& p : picture_.light.pixels())
-            all += samples - std::min(samples, p.samples);
+        const bool adapts = o_.division == Division::adaptive;
+        std::uint64_t all =
+            picture_.light.size() * std::uint64_t{samples - std::min(samples, picture_.samples)};
         std::atomic<std::uint64_t> done{0};
-        for (std::uint32_t least = picture_.samples(); least < samples && !progress.cancelled();) {
-            const std::uint32_t until = std::min(samples, std::max<std::uint32_t>(1, 2 * least));
-            const Tiles tiles(o_, until - least);
+        while (picture_.samples < samples && !progress.cancelled()) {
+            const bool in_pilot = adapts && picture_.samples < 2 * pilot_samples;
+            if (adapts && !in_pilot && picture_.spreads[0].empty()) divide();
+            std::uint32_t until = std::min(samples, std::max<std::uint32_t>(1, 2 * picture_.samples));
+            if (in_pilot) until = std::min(until, 2 * pilot_samples);
+            const Goal goal(picture_, o_.division, until);
+            const Tiles tiles(o_, until - picture_.samples);
+            std::atomic<std::size_t> finished{0};
             executor.for_each_piece(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i)
-                    progress(done += add(tiles[i], until), all);
+                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i) {
+                    const std::uint64_t now = done += add(tiles[i], goal);
+                    progress(now, std::max(now, all));
+                    ++finished;
+                }
             });
-            least = until;
+            if (finished == tiles.size()) picture_.samples = until;
         }
     }
 
 private:
-    /// Adds samples to the pixels of a tile until each has so many, in their order. Returns how many were
-    /// added.
-    std::size_t add(const PixelBox& tile, std::uint32_t until) {
-        // The paths of pixel i of the tile begin at firsts[i].
-        std::vector<std::size_t> firsts(tile.size() + 1);
-        for (std::size_t i = 0; i < tile.size(); ++i) {
-            const auto [x, y] = place(tile, i);
-            firsts[i + 1] = firsts[i] + until - std::min(until, picture_.light.samples(camera_.number(x, y)));
+    /// What the first samples of one half show decides about the other, so that means stay unbiased.
+    void divide() {
+        for (const int half : {0, 1})
+            picture_.spreads[static_cast<std::size_t>(half)] =
+                spreads(picture_.light.half(1 - half), picture_.width);
+    }
+    /// Adds samples to the pixels of a tile until each half has so many, in their order. Returns how many
+    /// were added.
+    std::size_t add(const PixelBox& tile, const Goal& goal) {
+        std::vector<Run> runs;
+        std::size_t all = 0;
+        for (std::size_t i = 0; i < tile.size(); ++i)
+            for (const int half : {0, 1}) {
+                const auto [x, y] = place(tile, i);
+                const std::size_t pixel = camera_.number(x, y);
+                const std::uint32_t has = picture_.light.half(half).samples(pixel);
+                const std::uint32_t wants = goal(pixel, half);
+                if (has < wants) runs.push_back({x, y, half, has, all}), all += wants - has;
+            }
+        // Parts of so many paths, so that the light of all takes little memory.
+        std::vector<Vec3f> light;
+        std::size_t started = 0, added = 0;  // runs, since paths are started in order
+        for (std::size_t first = 0; first < all; first += light.size()) {
+            light.resize(std::min(all - first, paths_of_tile));
+            follow(
+                light.size(),
+                [&](std::size_t i) {
+                    const Run& run = run_of(runs, first + i, started);
+                    return camera_.start<T>(run.x, run.y, static_cast<std::uint32_t>(run.half),
+                                            run.sample(first + i));
+                },
+                [&](std::size_t i, const Vec3f& found) { light[i] = found; });
+            for (std::size_t i = 0; i < light.size(); ++i) {
+                const Run& run = run_of(runs, first + i, added);
+                picture_.light.half(run.half).add(camera_.number(run.x, run.y), light[i]);
+            }
         }
-        std::vector<Vec3f> light(firsts.back());
-        std::size_t pixel = 0;  // paths are started in order
-        follow(
-            light.size(),
-            [&](std::size_t i) {
-                while (i >= firsts[pixel + 1]) ++pixel;
-                const auto [x, y] = place(tile, pixel);
-                return camera_.start<T>(x, y, until - static_cast<std::uint32_t>(firsts[pixel + 1] - i));
-            },
-            [&](std::size_t i, const Vec3f& found) { light[i] = found; });
-        for (std::size_t i = 0; i < tile.size(); ++i) {
-            const auto [x, y] = place(tile, i);
-            for (std::size_t k = firsts[i]; k < firsts[i + 1]; ++k)
-                picture_.light.add(camera_.number(x, y), light[k]);
-        }
-        return light.size();
+        return all;
     }
     template <class OfNumber, class Finish>
     void follow(std::size_t count, const OfNumber& start, const Finish& finish) const {
@@ -174,13 +231,16 @@ std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPi
     const PathWorld<T> world{surfaces, scene.lights, o.paths, nullptr};
     const PathCamera camera(o.camera, o.width, o.height, o.filter, o.paths.sampler, o.paths.seed);
     std::vector<FirstSurface> all(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
+    const bool even = o.division == Division::even;
     executor.for_each_piece(static_cast<std::size_t>(o.height), 1, [&](std::size_t begin, std::size_t end) {
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
             for (int x = 0; x < o.width; ++x) {
                 FirstSurface& mean = all[camera.number(x, y)];
                 Vec3d albedo, normal;
                 for (std::uint32_t k = 0; k < samples; ++k) {
-                    const FirstSurface one = first_surface(world, scene.tracer, camera.start<T>(x, y, k));
+                    const auto start =
+                        even ? camera.start<T>(x, y, 0, k) : camera.start<T>(x, y, k % 2, k / 2);
+                    const FirstSurface one = first_surface(world, scene.tracer, start);
                     if (k == 0) mean = one;
                     albedo = albedo + Vec3d(one.albedo), normal = normal + Vec3d(one.normal);
                 }

@@ -46,18 +46,25 @@ public:
     /// Samples of a pixel that were not finite.
     std::uint32_t dropped(std::size_t pixel) const { return pixels_[pixel].dropped; }
     /// The mean of a pixel's samples; 0 of none.
-    Vec3f mean(std::size_t pixel) const {
+    Vec3f mean(std::size_t pixel) const { return Vec3f(mean_in_double(pixel)); }
+    Vec3d mean_in_double(std::size_t pixel) const {
         const Pixel& p = pixels_[pixel];
-        return p.samples > 0 ? Vec3f(p.sum / static_cast<double>(p.samples)) : Vec3f();
+        return p.samples > 0 ? p.sum / static_cast<double>(p.samples) : Vec3d();
+    }
+    /// The variance of one of a pixel's samples, all colours averaged, if they are independent. 0 of fewer
+    /// than two.
+    double variance(std::size_t pixel) const {
+        const Pixel& p = pixels_[pixel];
+        if (p.samples < 2) return 0;
+        const double n = p.samples, mean = (p.sum[0] + p.sum[1] + p.sum[2]) / 3 / n;
+        const double variance = (p.squares / n - product(mean, mean)) * (n / (n - 1));
+        return variance > 0 ? variance : 0;
     }
     /// The standard error of the mean of a pixel's samples, all colours averaged, if they are independent.
     /// Samples that are spread evenly err less. 0 of fewer than two.
     float standard_error(std::size_t pixel) const {
-        const Pixel& p = pixels_[pixel];
-        if (p.samples < 2) return 0;
-        const double n = p.samples, mean = (p.sum[0] + p.sum[1] + p.sum[2]) / 3 / n;
-        const double variance = (p.squares / n - product(mean, mean)) / (n - 1);
-        return static_cast<float>(std::sqrt(variance > 0 ? variance : 0));
+        const std::uint32_t n = pixels_[pixel].samples;
+        return n > 1 ? static_cast<float>(std::sqrt(variance(pixel) / n)) : 0;
     }
 
 private:

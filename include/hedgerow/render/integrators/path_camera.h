@@ -17,7 +17,8 @@ struct PathStart {
     PathSamples samples;
 };
 
-/// Makes the starts of paths, each a function of the camera, the size, the seed, the pixel and the sample.
+/// Makes the starts of paths, each a function of the camera, the size, the seed, the pixel, the half and the
+/// sample.
 class PathCamera {
 public:
     PathCamera(const Camera& camera, int width, int height, PixelFilter filter, Sampler sampler,
@@ -28,9 +29,10 @@ public:
     std::size_t number(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
     }
+    /// The samples of a picture's second half have a sequence of their own, independent of the first's.
     template <std::floating_point T>
-    PathStart<T> start(int x, int y, std::uint32_t sample) const {
-        const PathSamples samples(PixelSequence(sampler_, seed_, number(x, y)), sample);
+    PathStart<T> start(int x, int y, std::uint32_t half, std::uint32_t sample) const {
+        const PathSamples samples(PixelSequence(sampler_, seed_, number(x, y), half), sample);
         const UnitPair numbers = samples.in_pixel();
         const Vec2f at = place_in_pixel(filter_, numbers.x, numbers.y);
         const float across = static_cast<float>(x) + at[0], down = static_cast<float>(y) + at[1];

@@ -1,7 +1,7 @@
 /// Pictures by path tracing. The component `render` has it compiled.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -9,17 +9,24 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/render/camera/camera.h>
-#include <hedgerow/render/film/light_sums.h>
+#include <hedgerow/render/film/light_halves.h>
 #include <hedgerow/render/integrators/path.h>
 #include <hedgerow/render/integrators/path_reference.h>
 #include <hedgerow/render/sampling/pixel_filter.h>
 
 namespace hedgerow {
 
+/// How the samples of a picture are divided. `even`: all pixels have as many, in one sequence each, which
+/// converges fastest. `halves`: in two independent halves, for denoising and to know the noise. `adaptive`:
+/// in halves, and pixels whose samples differ much have more. What the first samples of one half show decides
+/// how many the other gets, so no pixel is biased.
+enum class Division : std::uint8_t { even, halves, adaptive };
+
 struct PathPictureOptions {
     Camera camera;
     int width = 1024, height = 768;
-    std::uint32_t samples = 64;  ///< of each pixel
+    std::uint32_t samples = 64;  ///< of each pixel, or on the mean
+    Division division = Division::even;
     PathOptions paths;
     PixelFilter filter = PixelFilter::box;
     /// Paths that each thread follows at once (integrators/path.h); 0: one by one, as PathReference does. The
@@ -39,7 +46,13 @@ struct PathScene {
 /// A picture as sums of light, by rows from the top left.
 struct PathPicture {
     int width = 0, height = 0;
-    LightSums light{0};
+    LightHalves light{0};
+    /// The samples that every pixel has, or has at least its share of: on the mean so many a pixel. Pixels
+    /// may have more if work was interrupted.
+    std::uint32_t samples = 0;
+    /// What an adaptive picture divides its samples by: spreads of the first samples of each half
+    /// (sampling/allocation.h). Empty before there are that many.
+    std::array<std::vector<float>, 2> spreads;
 
     /// Throws InputError for a picture without pixels.
     PathPicture(int w, int h) : width(w), height(h), light(pixels(w, h)) {}
@@ -49,27 +62,17 @@ struct PathPicture {
         for (std::size_t i = 0; i < light.size(); ++i) all.push_back(light.mean(i));
         return all;
     }
-    /// The samples that every pixel has.
-    std::uint32_t samples() const {
-        std::uint32_t least = light.samples(0);
-        for (std::size_t i = 0; i < light.size(); ++i) least = std::min(least, light.samples(i));
-        return least;
+    /// The samples that pixels have on the mean, also those of work that was interrupted.
+    double mean_samples() const {
+        double sum = 0;
+        for (std::size_t i = 0; i < light.size(); ++i) sum += light.samples(i);
+        return sum / static_cast<double>(light.size());
     }
     /// The samples of all pixels that were not finite.
     std::uint64_t dropped() const {
         std::uint64_t sum = 0;
         for (std::size_t i = 0; i < light.size(); ++i) sum += light.dropped(i);
         return sum;
-    }
-    /// The mean of the pixels' standard errors, as a share of the mean light. Too large for samples that are
-    /// spread evenly.
-    double relative_error() const {
-        double errors = 0, sum = 0;
-        for (std::size_t i = 0; i < light.size(); ++i) {
-            const Vec3d mean(light.mean(i));
-            errors += static_cast<double>(light.standard_error(i)), sum += (mean[0] + mean[1] + mean[2]) / 3;
-        }
-        return sum > 0 ? errors / sum : 0;
     }
 
 private:
@@ -79,13 +82,16 @@ private:
     }
 };
 
-/// Follows paths until each pixel of a picture has `samples` samples, which its options name only for those
-/// who start anew. A picture that has some goes on with the next, at places that are spread evenly over the
-/// pixel together with those before. What a sample is depends on the scene, the camera, the size, its number
-/// and the options alone, to the last bit: never on the executor, the structure behind the tracer, the
-/// processor, or how often the work was interrupted. If it is cancelled, pixels have the samples that were
-/// finished. Throws InputError for options without a meaning, a camera that sees nothing, pictures without
-/// pixels or samples, and a picture of another size.
+/// The samples that each half of a pixel has before those of an adaptive picture are divided.
+inline constexpr std::uint32_t pilot_samples = 16;
+
+/// Follows paths until each pixel of a picture has `samples` samples, or all have so many on the mean; its
+/// options name them only for those who start anew. A picture that has some goes on with the next, at places
+/// that are spread evenly over the pixel together with those before. What a sample is depends on the scene,
+/// the camera, the size, its number and the options alone, to the last bit: never on the executor, the
+/// structure behind the tracer, the processor, or how often the work was interrupted. If it is cancelled,
+/// pixels have the samples that were finished. Throws InputError for options without a meaning, a camera that
+/// sees nothing, pictures without pixels or samples, and a picture of another size.
 template <std::floating_point T>
 void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,
                  const PathPictureOptions& options, Executor& executor, const Progress& progress = {});
