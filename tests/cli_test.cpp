@@ -270,6 +270,17 @@ TEST_F(Cli, ConesSmoothEdgesAndShadows) {
     expect_bad(scene + file("x.png") + " --cones --projection panorama", "panorama");
 }
 
+TEST_F(Cli, RefinementTakesFewerRays) {
+    const std::string scene = "render gen:teapot:2000 --size 60x40 --json --spp 16 -o ";
+    const auto all = run(scene + file("all.png")), some = run(scene + file("some.png") + " --refine");
+    ASSERT_EQ(some.code, 0);
+    EXPECT_LT(nlohmann::json::parse(some.output)["rays"].get<double>(),
+              nlohmann::json::parse(all.output)["rays"].get<double>() / 2);
+    for (const char* options : {"--visibility raster", "--sheet", "--shading steps", "--shading path"})
+        expect_usage(scene + file("x.png") + " --refine " + options, "leave out");
+    expect_usage("render gen:teapot:2000 --refine --spp 4 -o " + file("x.png"), "--spp");
+}
+
 TEST_F(Cli, PathsShowScatteredLight) {
     const std::string scene = "render gen:cornell-box --shading path --size 24x20 -o ";
     const auto made = run(scene + file("paths.png") + " --spp 4 --threads 1 --json");

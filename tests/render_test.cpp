@@ -206,6 +206,41 @@ TYPED_TEST(Rendered, LightGoesThroughTransparentSurfaces) {
 }
 
 /// A heat map of any size has a scale, or no room for one.
+/// Pixels have the bits of all samples, or the mean of the first four where these are much alike.
+TYPED_TEST(Rendered, RefinementGivesSamplesWhereLightDiffers) {
+    using T = TypeParam;
+    const auto mesh = teapot<T>(800);
+    const auto index = build<WideBvh>(mesh);
+    RenderOptions options = options_for(index);
+    options.layers = true;
+    options.samples = 16;
+    const Picture all = render(index, mesh, options, default_executor());
+    options.refines = true;
+    for (const bool transparent : {false, true}) {
+        options.transparent = transparent;  // though all is opaque
+        const Picture refined = render(index, mesh, options, default_executor());
+        std::size_t equal = 0;
+        double off = 0;
+        for (std::size_t i = 0; i < all.light.size(); ++i) {
+            equal += refined.light[i] == all.light[i];
+            off = std::max(
+                off,
+                double(max_component(max(refined.light[i] - all.light[i], all.light[i] - refined.light[i]))));
+        }
+        EXPECT_TRUE(refined.whole);
+        EXPECT_GT(off, 0) << "most of the picture is background or smooth";
+        EXPECT_LT(off, 0.15) << "contrast that is not seen";
+        if (transparent) continue;
+        EXPECT_LT(refined.costs.rays, all.costs.rays / 2);
+        EXPECT_GT(equal, all.light.size() / 20) << "edges have all samples";
+        EXPECT_EQ(refined.seen[1500].depth, all.seen[1500].depth);
+    }
+    options.transparent = false, options.samples = 4;
+    const Picture four = render(index, mesh, options, serial_executor());
+    options.refines = false;
+    expect_same(render(index, mesh, options, default_executor()), four);
+}
+
 TYPED_TEST(Rendered, HeatMapsOfAnySize) {
     const auto mesh = cornell_box<TypeParam>(0);
     const auto index = build<WideBvh>(mesh);

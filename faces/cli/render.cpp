@@ -158,6 +158,17 @@ void check_cones(const RenderArguments& a) {
         throw UsageError("--cones: leave out --shading steps and --counts, which show what rays cost");
 }
 
+/// Throws UsageError for options that refinement does not go with.
+void check_refinement(const RenderArguments& a) {
+    if (a.spp < 5) throw UsageError("--refine: give more than four samples, as --spp 16");
+    const auto refuse = [](bool given, const std::string& option) {
+        if (given) throw UsageError("--refine adds rays where light differs: leave out " + option);
+    };
+    refuse(a.visibility != "cast", "--visibility " + a.visibility);
+    refuse(a.cones, "--cones"), refuse(a.sheet, "--sheet");
+    refuse(counted(parse_shading(a.shading)), "--shading " + a.shading);
+}
+
 /// Admits the names in a list.
 template <class Names>
 CLI::IsMember one_of(const Names& names) {
@@ -172,7 +183,7 @@ void check_paths(const RenderArguments& a) {
             throw UsageError(std::string("--shading path: leave out ") + option + ", which is not of paths");
     };
     refuse(a.sheet, "--sheet"), refuse(a.counts, "--counts"), refuse(a.footprints, "--footprints");
-    refuse(a.uses_cones(), a.cones ? "--cones" : "--light-size");
+    refuse(a.refines, "--refine"), refuse(a.uses_cones(), a.cones ? "--cones" : "--light-size");
     refuse(a.transparent || a.opacity < 1, "--transparency and --opacity");
     refuse(a.visibility != "cast", "--visibility");
 }
@@ -214,6 +225,9 @@ Run add_render(CLI::App& verb) {
     const auto* const spp =
         verb.add_option("--spp", a->spp, "samples a pixel; of --shading path 64 if not given")
             ->check(CLI::Range(1, 1 << 20));
+    verb.add_flag("--refine", a->refines,
+                  "all of --spp only where light differs much, by the first four samples and those of "
+                  "neighbours; of paths --adaptive does more");
     verb.add_option("--bounces", a->bounces, "of --shading path: how often light is scattered at most")
         ->capture_default_str();
     verb.add_option("--sampler", a->sampler, "of --shading path: sobol (spread evenly) or independent")
@@ -296,6 +310,7 @@ Run add_render(CLI::App& verb) {
             throw UsageError("--footprints: --shading " + a->shading +
                              " shows no textures; give --shading colour");
         if (a->uses_cones()) check_cones(*a);
+        if (a->refines) check_refinement(*a);
         if (a->camera >= 0 && !by_looks)
             throw UsageError("--camera is of files with looks: it needs --shading colour or path");
         return in_precision(*a, [&]<class T>(T) {

@@ -91,6 +91,7 @@ RenderOptions options_of(const RenderArguments& a, const Box3f& bounds, const Up
     options.samples = a.spp, options.seed = a.seed, options.scale.top = a.steps_max;
     options.shading = parse_shading(a.shading);
     options.layers = a.layers, options.counts = a.counts;
+    options.refines = a.refines;
     options.footprints = a.footprints || a.cones;
     options.cones = a.cones, options.light_degrees = a.light_degrees;
     options.transparent = a.transparent, options.opacity = a.opacity;

@@ -27,6 +27,7 @@ struct RenderArguments : Common {
     bool adaptive = false;                // samples of paths
     bool preview = false;                 // of paths, in the terminal
     bool footprints = false;              // of textures
+    bool refines = false;                 // where samples differ
     bool cones = false;                   // in place of samples
     float light_degrees = 0;              // the diameter of the light
     bool counts = false, layers = false;  // layers: whether the output is .exr

@@ -9,6 +9,7 @@
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/elementary.h>
+#include <hedgerow/render/film/contrast.h>
 #include <hedgerow/render/shading/transparency.h>
 
 namespace hedgerow {
@@ -17,6 +18,8 @@ namespace {
 
 /// Size of a tile: large enough for the kernels, small enough to be cancelled soon.
 constexpr int band_rows = 8, tile_columns = 64;
+/// Samples of each pixel that decide whether it gets the others, if a picture is refined.
+constexpr int first_samples = 4;
 template <class V>
 using OfTile = std::array<V, static_cast<std::size_t>(band_rows) * tile_columns>;
 
@@ -42,6 +45,8 @@ void check(const PictureParts<T>& parts, const RenderOptions& o) {
     if (o.cones && counted(o.shading)) throw InputError("this shading shows what rays cost, not cones");
     if (o.cones && o.samples > 1) throw InputError("a cone sees all of a pixel: take one sample");
     if (o.cones) cone_of_pixel(PictureSamples<T>(o.camera, o.width, o.height), 0, 0);  // throws without one
+    if (o.refines && (counted(o.shading) || o.cones || parts.visibility.finds_whole_pictures()))
+        throw InputError("pictures are refined by rays, where light differs: not what rays cost, not cones");
     if (o.footprints && o.camera.projection == Projection::panorama)
         throw InputError("footprints are what pixels of a plane see, not those of a panorama");
     if (!o.transparent) return;
@@ -59,7 +64,8 @@ public:
           whole_(parts.visibility.finds_whole_pictures()),
           shading_(o.camera, diagonal(parts.surfaces, o.shading)),
           plane_(RayMaker(o.camera, o.width, o.height).plane()),
-          film_(o.width, o.height, o.layers) {
+          film_(o.width, o.height, o.layers),
+          contrast_(o.refines ? static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height) : 0) {
         if ((o.shading == Shading::colour || o.transparent) && parts.appearances != nullptr &&
             parts.appearances->has_masks())
             keeps_ = [&looks = *parts.appearances](std::size_t, const Hit<T>& hit) {
@@ -68,18 +74,20 @@ public:
     }
 
     Picture run(Executor& executor, const Progress& progress) {
-        // Samples of whole pictures are found one after the other, those of tiles all at once.
-        const int at_once = whole_ ? 1 : o_.samples, bands = (o_.height + band_rows - 1) / band_rows;
-        const auto all_rows =
-            static_cast<std::uint64_t>(o_.height) * static_cast<std::uint64_t>(o_.samples / at_once);
+        const int bands = (o_.height + band_rows - 1) / band_rows;
+        std::uint64_t passes = 1;
+        for (int last = after(0); last < o_.samples; last = after(last)) ++passes;
+        const auto all_rows = static_cast<std::uint64_t>(o_.height) * passes;
         std::atomic<std::uint64_t> rows{0};
-        for (int first = 0; first < o_.samples && !progress.cancelled(); first += at_once) {
+        for (int first = 0; first < o_.samples && !progress.cancelled(); first = after(first)) {
+            const int last = after(first);
             if (whole_) parts_.visibility.prepare(samples(first), executor, costs_);
+            if (o_.refines && first > 0) contrast_.find(o_.width, o_.height);
             const auto band_range = [&](std::size_t begin, std::size_t end) {
                 for (std::size_t k = begin; k < end && !progress.cancelled(); ++k) {
                     const int top = static_cast<int>(k) * band_rows;
                     const int height = std::min(band_rows, o_.height - top);
-                    if (!band(top, height, first, first + at_once, progress)) return;
+                    if (!band(top, height, first, last, progress)) return;
                     progress(rows += static_cast<std::uint64_t>(height), all_rows);
                 }
             };
@@ -106,6 +114,12 @@ private:
     };
     using Walk = detail::LayerWalk<T, 3>;
 
+    /// The samples that each pixel has after the pass that begins with `first`. Samples of whole pictures are
+    /// found one after the other, those of tiles all at once, and of refined pictures some before the others.
+    int after(int first) const {
+        if (whole_) return first + 1;
+        return o_.refines && first == 0 ? std::min(first_samples, o_.samples) : o_.samples;
+    }
     static float diagonal(const Surfaces<T>& surfaces, Shading shading) {
         const Box<T, 3> box = shading == Shading::depth ? surfaces.bounds() : Box<T, 3>();
         return box.empty() ? 0 : static_cast<float>(length(box.extent()));
@@ -125,15 +139,23 @@ private:
             film_.finish_rows(top, height, 0);
             return false;
         }
+        if (o_.refines && first > 0) fill_up(top, height, first, last);
         film_.finish_rows(top, height, averages_counts() ? 1 : last);
         const std::lock_guard lock(mutex_);
         costs_ += costs;
         return true;
     }
+    /// Gives the pixels that are not refined as much light as more samples alike would bring.
+    void fill_up(int top, int height, int has, int samples) {
+        const float more = static_cast<float>(samples) / static_cast<float>(has);
+        for (std::size_t p = film_.pixel(0, top); p < film_.pixel(0, top + height); ++p)
+            if (!contrast_.is_high(p)) film_.light(p) = film_.light(p) * more;
+    }
     /// Whether a pixel's value is the mean of its counts, not a sum of light.
     bool averages_counts() const { return counts_visits(o_.shading); }
 
-    /// Adds samples to the pixels of a tile. Returns false if that was cancelled.
+    /// Adds samples to the pixels of a tile, or to those that are refined. Returns false if that was
+    /// cancelled.
     bool add(const PixelBox& tile, int first, int last, PictureCosts& costs, const Progress& progress) {
         if (o_.cones) {
             add_cones(tile, costs);
@@ -143,16 +165,21 @@ private:
         Looks looks;
         if (by_looks()) looks.appearances.resize(tile.size());
         for (int y = tile.top; y <= tile.bottom; ++y)
-            for (int x = tile.left; x <= tile.right; ++x) looks.pixels[looks.size++] = film_.pixel(x, y);
+            for (int x = tile.left; x <= tile.right; ++x) {
+                const std::size_t pixel = film_.pixel(x, y);
+                if (!o_.refines || first == 0 || contrast_.is_high(pixel)) looks.pixels[looks.size++] = pixel;
+            }
+        if (looks.size == 0) return true;
         looks.shares.fill(share_of_sample());
         for (int sample = first; sample < last; ++sample) {
-            if (!whole_ && progress.cancelled()) return false;  // else each pixel has the samples before
+            // In later passes each pixel keeps the samples that it has.
+            if (!whole_ && first == 0 && progress.cancelled()) return false;
             look(tile, sample, looks, visits, costs);
             shade(looks, sample, costs);
         }
         for (std::size_t i = 0; i < looks.size; ++i) costs.visits += visits[i];
         // Store the means of the counts.
-        for (std::size_t i = 0; i < looks.size && o_.counted(); ++i) {
+        for (std::size_t i = 0; i < looks.size && o_.counted() && (whole_ || first == 0); ++i) {
             const Visits& v = visits[i];
             const auto mean = [&](std::uint64_t all) {
                 return static_cast<float>(double(all) / (last - first));
@@ -169,20 +196,23 @@ private:
     /// Finds the hits of a sample of each of a tile's pixels, in one batch.
     void look(const PixelBox& tile, int sample, Looks& looks, OfTile<Visits>& visits, PictureCosts& costs) {
         const PictureSamples<T> rays = samples(sample);
-        std::size_t i = 0;
-        for (int y = tile.top; y <= tile.bottom; ++y)
-            for (int x = tile.left; x <= tile.right; ++x) looks.rays[i++] = rays.ray(x, y);
+        const auto columns = static_cast<std::size_t>(o_.width);
+        for (std::size_t i = 0; i < looks.size; ++i)
+            looks.rays[i] = rays.ray(static_cast<int>(looks.pixels[i] % columns),
+                                     static_cast<int>(looks.pixels[i] / columns));
         parts_.visibility.look(tile, std::span(looks.rays).first(looks.size),
                                std::span(looks.hits).first(looks.size),
                                std::span(visits).first(o_.counted() ? looks.size : 0), costs);
     }
     /// Adds the light of a tile's hits to the film, and stores the layers of the first sample.
     void shade(Looks& looks, int sample, PictureCosts& costs) {
-        if (o_.transparent) {
+        if (o_.transparent)
             composite(looks, costs);
-        } else {
+        else
             find_light(looks, costs);
-            for (std::size_t i = 0; i < looks.size; ++i) add_light(looks.pixels[i], looks.light[i]);
+        for (std::size_t i = 0; i < looks.size; ++i) {
+            add_light(looks.pixels[i], looks.light[i]);
+            if (o_.refines) contrast_.add(looks.pixels[i], looks.light[i]);
         }
         if (o_.layers && sample == 0) store_seen(looks);
     }
@@ -230,8 +260,8 @@ private:
         }
     }
     void add_light(std::size_t pixel, const Vec3f& light) { film_.light(pixel) = film_.light(pixel) + light; }
-    /// Adds the light of all layers on the rays of a tile, from those of its hits on.
-    void composite(const Looks& first, PictureCosts& costs) {
+    /// Finds the light of all layers on the rays of a tile, from those of its hits on.
+    void composite(Looks& first, PictureCosts& costs) {
         OfTile<Vec3d> light{};
         OfTile<double> through;
         through.fill(1);
@@ -254,7 +284,7 @@ private:
         costs.layers +=
             follow(std::span(first.rays).first(first.size), std::span(first.hits).first(first.size), shade);
         for (std::size_t i = 0; i < first.size; ++i)
-            add_light(first.pixels[i], Vec3f(light[i] + detail::weighted(shading_.background(), through[i])));
+            first.light[i] = Vec3f(light[i] + detail::weighted(shading_.background(), through[i]));
     }
     /// Follows rays through layers from their first hits on.
     template <class Shade>
@@ -389,6 +419,7 @@ private:
     const PicturePlane plane_;
     typename Tracer<T>::Filter keeps_;
     Film film_;
+    Contrast contrast_;  // of refined pictures
     std::mutex mutex_;
     PictureCosts costs_;
 };

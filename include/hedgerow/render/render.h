@@ -38,6 +38,9 @@ struct RenderOptions {
     /// Whether the textures of the shading `colour` are averaged over what a sample's share of its pixel sees
     /// of them, in place of a lookup at a point, so that fine patterns turn into their mean, not into noise.
     bool footprints = false;
+    /// Whether pixels get all their samples only where light differs much (film/contrast.h): the first four
+    /// decide for the others. Pixels that get all have the bits of a picture that is not refined.
+    bool refines = false;
     /// The diameter of the distant light in degrees, less than 90. Shadows of a disc have soft edges, for
     /// which a cone goes to the light in place of a ray. 0 is a light without extent.
     float light_degrees = 0;
@@ -65,8 +68,8 @@ struct PictureParts {
 /// then rows that are not finished stay black, and their layers empty. Throws InputError for a camera that
 /// sees nothing, no pixels or samples, an opacity that is not 0 to 1, where the picture needs a tracer, cones
 /// or appearances and there are none, where it shows costs of rays but what is visible is found without them,
-/// or through transparent surfaces, and for cones of transparent surfaces, of more samples than one, or of a
-/// lens, and for footprints in a panorama.
+/// through transparent surfaces, or refined, and for cones of transparent surfaces, of more samples than one,
+/// or of a lens, and for footprints in a panorama.
 template <std::floating_point T>
 Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
                const Progress& progress = {});

@@ -76,7 +76,8 @@ public:
     virtual void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) {
         static_cast<void>(samples), static_cast<void>(executor), static_cast<void>(costs);
     }
-    /// Writes the hits of a box of pixels, by rows: those of the samples' rays. With `visits`, adds what was
+    /// Writes the hits of a box of pixels, by rows: those of the samples' rays. Ways that find whole pictures
+    /// need the rays of all its pixels, others may be given those of some. With `visits`, adds what was
     /// visited to one count a sample. Threads may look at once.
     virtual void look(const PixelBox& box, std::span<const Ray<T, 3>> rays, std::span<Hit<T>> hits,
                       std::span<Visits> visits, PictureCosts& costs) const = 0;
