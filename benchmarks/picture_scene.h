@@ -13,14 +13,15 @@
 
 namespace hedgerow {
 
-/// [SIZE] [SCENE ...]: the side of the pictures, 1024 by default, and what they show.
+/// [SIZE] [SCENE ...]: the side of the pictures, and what they show.
 struct PictureArguments {
-    int size = 1024;
+    int size;
     std::vector<std::string> scenes;
 
     /// Without scenes: the dragon if it is there, and the generated ones.
-    PictureArguments(int count, char** arguments, std::initializer_list<const char*> generated)
-        : scenes(arguments + 1, arguments + count) {
+    PictureArguments(int count, char** arguments, std::initializer_list<const char*> generated,
+                     int default_size = 1024)
+        : size(default_size), scenes(arguments + 1, arguments + count) {
         if (!scenes.empty() && std::atoi(scenes[0].c_str()) > 0) {
             size = std::atoi(scenes[0].c_str());
             scenes.erase(scenes.begin());

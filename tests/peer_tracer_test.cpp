@@ -41,23 +41,27 @@ protected:
 };
 
 TEST_F(PeerTracer, FindsClosestAndAnyHits) {
+    using measure::EmbreeCalls;
     const Tracer<float>::Filter filters[] = {
         {}, [](std::size_t ray, const Hit<float>& hit) { return (hit.element + ray) % 3 != 0; }};
-    for (const auto& filter : filters) {
-        std::vector<Hit<float>> want(rays.size()), hits(rays.size());
-        own.closest_hits(rays, want, {}, filter), peer->closest_hits(rays, hits, {}, filter);
-        const auto want_any = std::make_unique<bool[]>(rays.size()),
-                   any = std::make_unique<bool[]>(rays.size());
-        own.any_hits(rays, std::span(want_any.get(), rays.size()), {}, filter);
-        peer->any_hits(rays, std::span(any.get(), rays.size()), {}, filter);
-        std::size_t same = 0, same_any = 0, hit = 0;
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            same += alike(want[i], hits[i]), same_any += want_any[i] == any[i], hit += bool(want[i]);
+    for (const auto& filter : filters)
+        for (const EmbreeCalls calls :
+             {EmbreeCalls::single, EmbreeCalls::stream, EmbreeCalls::coherent_stream}) {
+            const auto theirs = measure::embree_tracer(mesh, calls);
+            std::vector<Hit<float>> want(rays.size()), hits(rays.size());
+            own.closest_hits(rays, want, {}, filter), theirs->closest_hits(rays, hits, {}, filter);
+            const auto want_any = std::make_unique<bool[]>(rays.size()),
+                       any = std::make_unique<bool[]>(rays.size());
+            own.any_hits(rays, std::span(want_any.get(), rays.size()), {}, filter);
+            theirs->any_hits(rays, std::span(any.get(), rays.size()), {}, filter);
+            std::size_t same = 0, same_any = 0, hit = 0;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                same += alike(want[i], hits[i]), same_any += want_any[i] == any[i], hit += bool(want[i]);
+            }
+            EXPECT_GT(hit, 500u);
+            expect_mostly(same, rays.size());
+            expect_mostly(same_any, rays.size());
         }
-        EXPECT_GT(hit, 500u);
-        expect_mostly(same, rays.size());
-        expect_mostly(same_any, rays.size());
-    }
 }
 
 TEST_F(PeerTracer, FindsTheFirstHitsAfterAPlace) {
