@@ -46,21 +46,22 @@ void traces(const TriangleMesh<float>& mesh) {
             theirs.push_back(peer->build(mesh, build_named(*peer, how), {}));
     std::printf("  %-8s %9s %8s %8s %8s", "rays", "Mrays/s", "nodes", "leaves", "prims");
     std::printf("   Embree Mrays/s (ratio)   robust (ratio)\n");
-    for (const auto& [name, rays] : sets) {
+    for (const RaySet& set : sets) {
+        const std::vector<Ray3f>& rays = set.rays;
         // Count what the rays visit.
         Visits v;
         for (const auto& r : rays) closest_hit(index, r, KeepAll{}, v);
         // Time our BVH and the peers in turn.
-        std::vector<std::function<std::size_t()>> contenders = {[&, &rays = rays] {
+        std::vector<std::function<std::size_t()>> contenders = {[&] {
             std::size_t found = 0;
             for (const auto& r : rays) found += bool(closest_hit(index, r));
             return found;
         }};
         for (const auto& peer : theirs)
-            contenders.emplace_back([&peer = *peer, &rays = rays] { return peer.closest(rays); });
+            contenders.emplace_back([&peer = *peer, &rays] { return peer.closest(rays); });
         const auto rate = rates(repeats, rays.size(), contenders);
         const double n = double(rays.size());
-        std::printf("  %-8s %9.2f %8.2f %8.2f %8.2f", name.c_str(), rate[0], double(v.nodes) / n,
+        std::printf("  %-8s %9.2f %8.2f %8.2f %8.2f", set.name.c_str(), rate[0], double(v.nodes) / n,
                     double(v.leaves) / n, double(v.primitives) / n);
         for (std::size_t c = 1; c < rate.size(); ++c)
             std::printf("   %9.2f (%.2f)", rate[c], rate[0] / rate[c]);

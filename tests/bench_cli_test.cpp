@@ -154,6 +154,35 @@ TEST_F(Bench, TakesWhatItIsTold) {
     EXPECT_GT(number(row["best"]["on_threads"], "scaling"), 0);
     EXPECT_EQ(j["scenes"][0]["builds"][0]["on_threads"]["threads"], 2);
 }
+/// Rays from files take the place of those that are made, or follow them.
+TEST_F(Bench, TracesTheRaysOfARender) {
+    ASSERT_EQ(
+        hedgerow::run(
+            "render gen:cornell-box --shading path --size 30x20 --spp 2 --bounces 1 --quiet --save-rays " +
+            file("rays") + " -o " + file("x.png"))
+            .code,
+        0);
+    const std::string files = " --rays " + file("rays-0.npy") + " " + file("rays-0-shadow.npy");
+    const json j = parsed("gen:cornell-box --modes batch" + files);
+    const json& rows = j["scenes"][0]["rows"];
+    ASSERT_EQ(rows.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(rows[i]["set"], i < 2 ? "rays-0" : "rays-0-shadow");
+    EXPECT_EQ(number(rows[0], "rays"), 1200) << "a ray a sample";
+    EXPECT_LT(number(rows[2], "rays"), 1200) << "one where light is looked for";
+    const json both =
+        parsed("gen:cornell-box --modes one --questions any --sets random -o " + file("x.svg") + files);
+    ASSERT_EQ(both["scenes"][0]["rows"].size(), 3u);
+    EXPECT_EQ(both["scenes"][0]["rows"][0]["set"], "random");
+    EXPECT_NE(bytes_of(file("x.svg")).find("rays-0-shadow rays"), std::string::npos);
+
+    expect_refused(2, "--rays " + file("rays-0.npy"), "name it");
+    expect_refused(3, "gen:cube --rays " + file("none.npy"), "none.npy");
+    std::ofstream(file("bad.csv")) << "0 0 0 1 0 0\n0 0 0 nan 0 0\n";
+    expect_refused(3, "gen:cube --rays " + file("bad.csv"), "row 1 is no ray");
+    std::ofstream(file("empty.csv")) << "ox,oy,oz,dx,dy,dz\n";
+    expect_refused(3, "gen:cube --rays " + file("empty.csv"), "has no rays");
+}
+
 TEST_F(Bench, CountsTheSameEachTime) {
     const auto counts = [&] {
         json all;

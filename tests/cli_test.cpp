@@ -3,6 +3,7 @@
 
 #include <hedgerow/io/exr.h>
 #include <hedgerow/io/image.h>
+#include <hedgerow/io/npy.h>
 #include <hedgerow/version.h>
 
 #include "tool.h"
@@ -314,6 +315,39 @@ TEST_F(Cli, PathsShowScatteredLight) {
     expect_usage(scene + file("x.png") + " --noise 0", "--noise");
     expect_usage(scene + file("x.png") + " --sampler random", "--sampler");
     expect_usage(scene + file("x.png") + " --spp 0", "--spp");
+}
+
+/// The rays of a render, by bounce: those of all samples where they are few, or of a million paths.
+TEST_F(Cli, PathsSaveTheirRays) {
+    const std::string scene =
+        "render gen:cornell-box --shading path --size 20x10 --bounces 2 -o " + file("x.png");
+    const auto made = run(scene + " --spp 3 --save-rays " + file("rays"));
+    ASSERT_EQ(made.code, 0);
+    EXPECT_NE(made.output.find("rays of 600 of 600 paths"), std::string::npos) << made.output;
+    std::size_t before = 600;
+    for (const char* bounce : {"0", "1", "2"}) {
+        const auto rays = load_npy(file("rays-" + std::string(bounce) + ".npy"));
+        ASSERT_EQ(rays.shape.size(), 2u);
+        EXPECT_EQ(rays.shape[1], 8u);
+        EXPECT_LE(rays.shape[0], before);
+        EXPECT_GT(rays.shape[0], 0u);
+        before = rays.shape[0];
+        EXPECT_EQ(std::filesystem::exists(file("rays-" + std::string(bounce) + "-shadow.npy")),
+                  *bounce != '2')
+            << "paths end at the third surface";
+    }
+    EXPECT_EQ(load_npy(file("rays-0.npy")).shape[0], 600u);
+    EXPECT_FALSE(std::filesystem::exists(file("rays-3.npy")));
+    for (const char* kind : {"closest-hit", "any-hit"})
+        EXPECT_EQ(run("query " + std::string(kind) + " gen:cornell-box --from " + file("rays-1-shadow.npy") +
+                      " -o " + file("answers.npy"))
+                      .code,
+                  0);
+    expect_usage("render gen:cornell-box --save-rays " + file("rays") + " -o " + file("x.png"),
+                 "--shading path");
+    const auto refused = run(scene + " --save-rays " + file("no-folder/rays"));
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.output.find("no-folder/rays-0.npy"), std::string::npos) << refused.output;
 }
 
 TEST_F(Cli, PathsGoOnAfterAnInterruption) {

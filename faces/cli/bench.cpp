@@ -13,6 +13,7 @@
 
 #include "bench_report.h"
 #include "peers/peers.h"
+#include "saved_rays.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -22,12 +23,12 @@ using namespace measure;
 namespace {
 
 struct BenchArguments : Common {
-    std::vector<std::string> scenes;
+    std::vector<std::string> scenes, rays;
     std::string sets = fmt::format("{}", fmt::join(ray_kinds, ",")), modes = "one,batch",
                 questions = "closest,any", builders = "medium,high", instruction_set, html;
     int width = 0, rounds = 0;
     unsigned threads = 1;
-    bool quick = false;
+    bool quick = false, makes_sets = true;
 };
 
 constexpr const char* usual_scenes[] = {
@@ -58,11 +59,12 @@ std::vector<E> list_of(const std::string& option, const std::string& list,
 
 EngineOptions options_of(const BenchArguments& a) {
     EngineOptions o;
-    o.sets = list_of<RayKind>("--sets", a.sets, ray_kinds);
+    o.sets.clear();
+    if (a.makes_sets) o.sets = list_of<RayKind>("--sets", a.sets, ray_kinds);
     o.questions = list_of<Question>("--questions", a.questions, questions);
     o.modes = list_of<Mode>("--modes", a.modes, modes);
     o.builders = list_of<WideBuilder>("--builders", a.builders, wide_builder_names);
-    if (std::all_of(o.sets.begin(), o.sets.end(), only_any_hit) &&
+    if (a.makes_sets && std::all_of(o.sets.begin(), o.sets.end(), only_any_hit) &&
         o.questions == std::vector{Question::closest})
         throw UsageError("--sets " + a.sets + ": these rays are asked for any hit; add --questions any");
     if (a.quick) o.rounds = 3, o.picture = 128, o.random = 1 << 14, o.sample = 2000;
@@ -148,7 +150,10 @@ void save_pages(const BenchArguments& a, const BenchReport& r) {
 
 int bench(const BenchArguments& a) {
     if (!a.instruction_set.empty()) use_instruction_set(a.instruction_set);
-    const EngineOptions options = options_of(a);
+    EngineOptions options = options_of(a);
+    std::vector<RaySet> saved;
+    for (const std::string& file : a.rays) saved.push_back(load_rays(file));
+    options.more_sets = saved;
     // Load all scenes, and find the peers.
     const auto scenes = load_all(a);
     const auto peers = measure::peers();
@@ -189,8 +194,13 @@ Run add_bench(CLI::App& verb) {
     verb.add_option("-o,--output", a->output, "also write a chart of the rates, as .svg");
     verb.add_option("--html", a->html, "also write one page with plots, that needs no other file");
     verb.add_flag("--quick", a->quick, "fewer rays and rounds");
-    verb.add_option("--sets", a->sets, fmt::format("of rays, as {}", fmt::join(ray_kinds, ",")))
-        ->capture_default_str();
+    const auto* const sets =
+        verb.add_option("--sets", a->sets, fmt::format("of rays, as {}", fmt::join(ray_kinds, ",")))
+            ->capture_default_str();
+    verb.add_option(
+        "--rays", a->rays,
+        "files of rays, as render --save-rays writes them and query reads them, of one scene; they "
+        "take the place of --sets, unless that is given too");
     verb.add_option("--questions", a->questions, "closest,any; shadow and ambient rays are asked any")
         ->capture_default_str();
     verb.add_option("--modes", a->modes, "one: a call a ray; batch: a call for all")->capture_default_str();
@@ -207,7 +217,10 @@ Run add_bench(CLI::App& verb) {
     verb.add_option("--rounds", a->rounds, "whose median is taken; 5, with --quick 3")
         ->check(CLI::Range(1, 1000));
     add_reporting(verb, *a);
-    return [a] {
+    return [a, sets] {
+        if (!a->rays.empty() && a->scenes.size() != 1)
+            throw UsageError("--rays are those of one scene: name it, and no other");
+        a->makes_sets = a->rays.empty() || sets->count() > 0;
         if (!a->html.empty()) check_writable(a->html);
         if (!a->output.empty()) {
             if (ending_of(a->output) != ".svg")

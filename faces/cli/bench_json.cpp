@@ -40,7 +40,7 @@ ordered_json json_of(const Row& row, const BenchReport& report) {
     ordered_json ours = ordered_json::array(), theirs = ordered_json::array();
     for (const OurRate& r : row.ours) ours.push_back(json_of(r, row.mode, report));
     for (const TheirRate& r : row.theirs) theirs.push_back(json_of(r));
-    ordered_json j = {{"set", name_of(row.set)},
+    ordered_json j = {{"set", row.set},
                       {"question", name_of(row.question)},
                       {"mode", name_of(row.mode)},
                       {"rays", row.rays},

@@ -36,10 +36,22 @@ double fastest(const Row& row, int calls_of) {
     return rate;
 }
 
+struct SetName {
+    std::string name;
+    bool only_any_hit;
+};
+/// The sets of rays in the order in which they were traced.
+std::vector<SetName> set_names(const BenchReport& r) {
+    std::vector<SetName> all;
+    for (const RayKind kind : r.options.sets) all.push_back({std::string(name_of(kind)), only_any_hit(kind)});
+    for (const RaySet& set : r.options.more_sets) all.push_back({set.name, set.only_any_hit});
+    return all;
+}
+
 /// A panel for one set of rays and one kind of query, with a group of bars for each scene.
-BarPlot::Panel panel_of(const BenchReport& r, RayKind set, Question question) {
+BarPlot::Panel panel_of(const BenchReport& r, const std::string& set, Question question) {
     const std::string asked = question == Question::closest ? "closest hit" : "any hit";
-    BarPlot::Panel panel{fmt::format("{} rays, {}", name_of(set), asked), {}};
+    BarPlot::Panel panel{fmt::format("{} rays, {}", set, asked), {}};
     for (const SceneCosts& scene : r.scenes) {
         BarPlot::Group group{short_name(scene),
                              measure::number_text(static_cast<double>(scene.triangles)) + " triangles",
@@ -57,7 +69,7 @@ BarPlot::Panel panel_of(const BenchReport& r, RayKind set, Question question) {
 }
 
 BarPlot bars(const BenchReport& r, std::string title,
-             const std::vector<std::pair<RayKind, Question>>& panels) {
+             const std::vector<std::pair<std::string, Question>>& panels) {
     BarPlot plot{std::move(title),
                  {machine_of(r)},
                  {{"Hedgerow, a ray a call", one_colour}, {"Hedgerow, a batch", batch_colour}},
@@ -73,8 +85,8 @@ BarPlot bars(const BenchReport& r, std::string title,
 }
 
 std::string question_plot(const BenchReport& r, Question question) {
-    std::vector<std::pair<RayKind, Question>> panels;
-    for (const RayKind set : r.options.sets) panels.emplace_back(set, question);
+    std::vector<std::pair<std::string, Question>> panels;
+    for (const SetName& set : set_names(r)) panels.emplace_back(set.name, question);
     const auto plot = bars(r,
                            fmt::format("Million rays a second on one thread: {}",
                                        question == Question::closest ? "the closest hit" : "any hit"),
@@ -108,14 +120,14 @@ std::string visits_plot(const BenchReport& r) {
 }  // namespace
 
 std::string chart_of(const BenchReport& r) {
-    std::vector<std::pair<RayKind, Question>> panels;
+    std::vector<std::pair<std::string, Question>> panels;
     const auto asked = [&](Question q) {
         return std::find(r.options.questions.begin(), r.options.questions.end(), q) !=
                r.options.questions.end();
     };
-    for (const RayKind set : r.options.sets)
+    for (const SetName& set : set_names(r))
         panels.emplace_back(
-            set, !only_any_hit(set) && asked(Question::closest) ? Question::closest : Question::any);
+            set.name, !set.only_any_hit && asked(Question::closest) ? Question::closest : Question::any);
     return svg_of(bars(r, "Million rays a second on one thread", panels));
 }
 

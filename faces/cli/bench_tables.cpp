@@ -134,7 +134,7 @@ Table all_table(const SceneCosts& s) {
     if (!s.their_builds.empty()) column("differs");
     // Fill the cells. Rows of one set and query that differ in mode share a row of the table.
     for (const Row& row : s.rows) {
-        const std::string asked = fmt::format("{}, {}", name_of(row.set), name_of(row.question));
+        const std::string asked = fmt::format("{}, {}", row.set, name_of(row.question));
         const auto known =
             std::find_if(t.rows.begin(), t.rows.end(), [&](const auto& r) { return r.front() == asked; });
         auto& cells = known != t.rows.end() ? *known : t.rows.emplace_back(t.columns.size());
@@ -166,7 +166,7 @@ double BenchReport::times_floor(const Row& row) const {
 }
 
 std::string name_of(const Row& row) {
-    return fmt::format("{}, {}, {}", name_of(row.set), name_of(row.question), name_of(row.mode));
+    return fmt::format("{}, {}, {}", row.set, name_of(row.question), name_of(row.mode));
 }
 std::string name_of(const TheirRate& rate) {
     return fmt::format("{} {}{}", rate.peer, rate.build, rate.calls_of > 1 ? " by 16" : "");

@@ -10,6 +10,7 @@
 #include <hedgerow/render/visibility/rasterise_stream.h>
 
 #include "render_looks.h"
+#include "saved_rays.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -174,8 +175,9 @@ template <class Names>
 CLI::IsMember one_of(const Names& names) {
     return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
 }
-constexpr auto options_of_paths = {"--bounces", "--sampler",  "--filter",  "--tone",   "--time",
-                                   "--noise",   "--adaptive", "--preview", "--resume", "--exposure"};
+constexpr auto options_of_paths = {"--bounces", "--sampler",  "--filter",   "--tone",
+                                   "--time",    "--noise",    "--adaptive", "--preview",
+                                   "--resume",  "--exposure", "--save-rays"};
 /// Throws UsageError for options that are not of paths.
 void check_paths(const RenderArguments& a) {
     const auto refuse = [](bool given, const char* option) {
@@ -261,6 +263,10 @@ Run add_render(CLI::App& verb) {
         "--resume", a->resume,
         "of --shading path: a file in which the work is kept every few seconds; if it is there, the work "
         "goes on from it");
+    verb.add_option(
+        "--save-rays", a->save_rays,
+        "of --shading path: a prefix of files, PREFIX-0.npy and so on, in which rays are saved by "
+        "bounce, for bench and query");
     verb.add_option("--exposure", a->exposure, "of --shading path: brightness of a .png in powers of two")
         ->check(CLI::Range(-30.0, 30.0));
     verb.add_flag("--counts", a->counts,
@@ -281,6 +287,7 @@ Run add_render(CLI::App& verb) {
         for (const char* const option : options_of_paths)
             if (!a->follows_paths() && given(option))
                 throw UsageError(std::string(option) + " is of paths: it needs --shading path");
+        if (!a->save_rays.empty()) check_rays_writable(a->save_rays);
         if (!a->resume.empty()) check_writable(a->resume);
         const bool saved = names_index_file(a->scene);
         a->layers = asks_for_layers(a->output);

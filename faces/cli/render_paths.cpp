@@ -21,6 +21,7 @@
 
 #include "picture_notes.h"
 #include "render_looks.h"
+#include "saved_rays.h"
 #include "terminal_picture.h"
 
 namespace hedgerow::cli {
@@ -267,6 +268,8 @@ int render_paths(const RenderArguments& a) {
             "second; {}\n{}",
             a.output, picture.width, picture.height, shown.outcome.primitives, lights.emitters().size(),
             samples, seconds, rate * 1e-6, noise_text(a, noise), up_text(a.view, a, shown.outcome.upright));
+    if (finished && !a.save_rays.empty())
+        save_rays(a, scene, options, std::max(static_cast<std::uint32_t>(samples), 1u));
     if (finished) return 0;
     fmt::print(stderr, "hedgerow: interrupted; {} has {:.6g} samples a pixel\n", a.output, samples);
     return 130;

@@ -131,7 +131,9 @@ private:
         const auto primary = primary_rays(o_.camera.value_or(side_camera(box)), o_.picture);
         std::vector<Hit<float>> hits(primary.size());
         closest_hits(engine, std::span<const Ray3f>(primary), std::span(hits));
-        for (const RayKind kind : o_.sets) sets_.push_back(rays_of(kind, box, primary, hits));
+        for (const RayKind kind : o_.sets)
+            sets_.push_back({std::string(name_of(kind)), rays_of(kind, box, primary, hits), coherent(kind),
+                             only_any_hit(kind)});
         return true;
     }
 
@@ -197,13 +199,13 @@ private:
     /// only. A set is empty where no primary ray hits.
     template <class F>
     bool each_trial(F f) const {
-        for (std::size_t s = 0; s < o_.sets.size(); ++s)
-            for (const Question question : o_.questions) {
-                if (only_any_hit(o_.sets[s]) && question == Question::closest) continue;
-                if (sets_[s].empty()) continue;
-                Trial trial(asked_, o_, o_.sets[s], sets_[s], question);
-                if (!f(trial)) return false;
-            }
+        for (const std::span<const RaySet> sets : {std::span<const RaySet>(sets_), o_.more_sets})
+            for (const RaySet& set : sets)
+                for (const Question question : o_.questions) {
+                    if (set.rays.empty() || (set.only_any_hit && question == Question::closest)) continue;
+                    Trial trial(asked_, o_, set, question);
+                    if (!f(trial)) return false;
+                }
         return true;
     }
 
@@ -213,7 +215,7 @@ private:
     GoOn go_on_;
     SceneCosts costs_;
     Asked asked_;
-    std::vector<std::vector<Ray3f>> sets_;  // by o_.sets
+    std::vector<RaySet> sets_;  // of o_.sets
 };
 
 }  // namespace

@@ -55,7 +55,7 @@ namespace {
 std::string group_of(const Row& row) {
     const std::string question(name_of(row.question));
     if (row.mode == Mode::one) return "one, " + question;
-    return "batch, " + std::string(coherent(row.set) ? "coherent, " : "incoherent, ") + question;
+    return "batch, " + std::string(row.coherent ? "coherent, " : "incoherent, ") + question;
 }
 
 class Means {
@@ -91,11 +91,11 @@ std::vector<Mean> means_of(const std::vector<SceneCosts>& scenes) {
                 for (const SceneCosts& s : scenes)
                     for (const Row& row : s.rows)
                         if (row.mode == mode && row.question == question &&
-                            (mode == Mode::one ? !together : coherent(row.set) == together)) {
-                            means.add(group_of(row), false, row.ratio(), s, name_of(row.set));
+                            (mode == Mode::one ? !together : row.coherent == together)) {
+                            means.add(group_of(row), false, row.ratio(), s, row.set);
                             if (mode == Mode::batch)
                                 means.add(group_of(row) + ", to single calls", false,
-                                          row.ratio_to(row.by_single_calls()), s, name_of(row.set));
+                                          row.ratio_to(row.by_single_calls()), s, row.set);
                         }
     for (const SceneCosts& s : scenes)
         for (const OurBuild& b : s.builds)

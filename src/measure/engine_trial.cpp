@@ -7,19 +7,18 @@
 
 namespace hedgerow::measure {
 
-Trial::Trial(const Asked& asked, const EngineOptions& options, RayKind kind, const std::vector<Ray3f>& rays,
-             Question question)
+Trial::Trial(const Asked& asked, const EngineOptions& options, const RaySet& set, Question question)
     : asked_(asked),
       o_(options),
-      kind_(kind),
-      rays_(rays),
+      set_(set),
+      rays_(set.rays),
       question_(question),
-      hits_(rays.size()),
-      any_(new bool[rays.size()]()),
+      hits_(set.rays.size()),
+      any_(new bool[set.rays.size()]()),
       use_(asked.engines.size()) {}
 
 std::string Trial::title() const {
-    return std::string(name_of(kind_)) + ", " + std::string(name_of(question_));
+    return set_.name + ", " + std::string(name_of(question_));
 }
 bool Trial::has(Mode mode) const {
     return std::find(o_.modes.begin(), o_.modes.end(), mode) != o_.modes.end();
@@ -76,7 +75,7 @@ void Trial::add_theirs(Contest& contest) {
         contest.add(name,
                     [this, closest, &index] { return closest ? index.closest(rays_) : index.any(rays_); });
         if (!by_sixteen()) continue;
-        packets_.push_back(index.packets(rays_, coherent(kind_)));
+        packets_.push_back(index.packets(rays_, set_.coherent));
         contest.add(name + ", by 16", [closest, &index, rays = packets_.back().get()] {
             return closest ? index.closest(*rays) : index.any(*rays);
         });
@@ -90,7 +89,7 @@ std::vector<Row> Trial::rows_of(const std::vector<Times>& times) const {
     auto t = times.begin();
     // Make a row for each mode, with the rates of our trees.
     for (const Mode mode : o_.modes) {
-        Row row{kind_, question_, mode, n, 0, {}, {}};
+        Row row{set_.name, set_.coherent, question_, mode, n, 0, {}, {}};
         for (std::size_t e = 0; e < asked_.engines.size(); ++e, ++t) {
             OurRate ours;
             ours.builder = o_.builders[e];

@@ -25,8 +25,8 @@ struct Asked {
 
 class Trial {
 public:
-    Trial(const Asked& asked, const EngineOptions& options, RayKind kind, const std::vector<Ray3f>& rays,
-          Question question);
+    /// Borrows all.
+    Trial(const Asked& asked, const EngineOptions& options, const RaySet& set, Question question);
 
     /// Returns a row for each mode, or none if `go_on` returned false. Throws Disagreement where an
     /// answer of the kernels differs from the plain walk's.
@@ -55,8 +55,8 @@ private:
 
     const Asked& asked_;
     const EngineOptions& o_;
-    RayKind kind_;
-    std::span<const Ray3f> rays_;
+    const RaySet& set_;
+    std::span<const Ray3f> rays_;  // of the set
     Question question_;
     std::vector<Hit<float>> hits_;  // the last batch's closest hits
     std::unique_ptr<bool[]> any_;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,8 @@ constexpr double floor_of(Mode m) {
 struct EngineOptions {
     std::vector<RayKind> sets = {RayKind::primary, RayKind::diffuse, RayKind::random, RayKind::shadow,
                                  RayKind::ambient};
+    /// Sets that are traced after those. Borrowed.
+    std::span<const RaySet> more_sets;
     std::vector<Question> questions = {Question::closest, Question::any};
     std::vector<Mode> modes = {Mode::one, Mode::batch};
     /// Builders whose trees are traced. The builds of all builders are timed.
@@ -85,7 +88,8 @@ struct TheirRate {
     double differs = 0;
 };
 struct Row {
-    RayKind set = RayKind::primary;
+    std::string set;        ///< the name of the rays: that of a RayKind, or of a RaySet
+    bool coherent = false;  ///< whether neighbouring rays take nearly the same path
     Question question = Question::closest;
     Mode mode = Mode::one;
     std::size_t rays = 0, sample = 0;

@@ -63,6 +63,8 @@ Ray<T, D> random_ray(const Box<T, D>& box, Random& random) {
 struct RaySet {
     std::string name;
     std::vector<Ray3f> rays;
+    bool coherent = false;      ///< see the function of this name
+    bool only_any_hit = false;  ///< see the function of this name
 };
 /// Primary rays of a size × size picture, one diffuse ray from each of their hits, and n random ones.
 std::vector<RaySet> ray_sets(const TriangleMesh<float>& mesh, const Box3f& box, int size, std::size_t n);
