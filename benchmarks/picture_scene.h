@@ -18,16 +18,17 @@ struct PictureArguments {
     int size;
     std::vector<std::string> scenes;
 
-    /// Without scenes: the dragon if it is there, and the generated ones.
+    /// Without scenes: the dragon, if it is there and wanted, and the generated ones.
     PictureArguments(int count, char** arguments, std::initializer_list<const char*> generated,
-                     int default_size = 1024)
+                     int default_size = 1024, bool with_dragon = true)
         : size(default_size), scenes(arguments + 1, arguments + count) {
         if (!scenes.empty() && std::atoi(scenes[0].c_str()) > 0) {
             size = std::atoi(scenes[0].c_str());
             scenes.erase(scenes.begin());
         }
         if (!scenes.empty()) return;
-        if (std::filesystem::exists("data/dragon.ply.gz")) scenes.push_back("data/dragon.ply.gz");
+        if (with_dragon && std::filesystem::exists("data/dragon.ply.gz"))
+            scenes.push_back("data/dragon.ply.gz");
         scenes.insert(scenes.end(), generated.begin(), generated.end());
     }
 };
