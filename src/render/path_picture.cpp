@@ -231,7 +231,6 @@ std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPi
     const PathWorld<T> world{surfaces, scene.lights, o.paths, nullptr};
     const PathCamera camera(o.camera, o.width, o.height, o.filter, o.paths.sampler, o.paths.seed);
     std::vector<FirstSurface> all(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
-    const bool even = o.division == Division::even;
     executor.for_each_piece(static_cast<std::size_t>(o.height), 1, [&](std::size_t begin, std::size_t end) {
         for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
             for (int x = 0; x < o.width; ++x) {

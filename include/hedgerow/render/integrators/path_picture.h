@@ -22,6 +22,14 @@ namespace hedgerow {
 /// how many the other gets, so no pixel is biased.
 enum class Division : std::uint8_t { even, halves, adaptive };
 
+/// The half that has sample k of a pixel, and the sample's number there.
+struct HalfSample {
+    std::uint32_t half, number;
+};
+inline HalfSample half_sample(Division division, std::uint32_t k) {
+    return division == Division::even ? HalfSample{0, k} : HalfSample{k % 2, k / 2};
+}
+
 struct PathPictureOptions {
     Camera camera;
     int width = 1024, height = 768;
