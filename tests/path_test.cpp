@@ -3,18 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <bit>
 #include <cmath>
 
 #include <hedgerow/all.h>
 #include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/film/tone.h>
-#include <hedgerow/render/integrators/path_picture.h>
 #include <hedgerow/scenes/looks.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/structures/brute_force.h>
 
+#include "path_scenes.h"
+
 using namespace hedgerow;
+using namespace hedgerow::test;
 
 namespace {
 
@@ -22,87 +23,6 @@ template <class T>
 class Paths : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Paths, Scalars);
-
-Material matte(const Vec3f& colour, const Vec3f& emission = {}) {
-    Material m;
-    m.base_colour = colour, m.emission = emission;
-    return m;
-}
-/// One object a mesh, each with its material.
-template <class T>
-Model<T> model_of(const std::vector<std::pair<TriangleMesh<T>, Material>>& parts) {
-    Model<T> model;
-    for (const auto& [mesh, material] : parts) {
-        Object<T> object;
-        object.mesh = mesh;
-        object.material = static_cast<std::uint32_t>(model.materials.size());
-        model.instances.push_back({"", static_cast<std::uint32_t>(model.objects.size()), {}});
-        model.objects.push_back(object);
-        model.materials.push_back(material);
-    }
-    return model;
-}
-/// A closed box around the origin, its fronts outward.
-template <class T>
-TriangleMesh<T> box(double x, double y, double z, const Vec3d& middle = {}) {
-    TriangleMesh<T> mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.vertices.push_back(
-            Vec<T, 3>(middle + Vec3d((i & 1) != 0 ? x : -x, (i & 2) != 0 ? y : -y, (i & 4) != 0 ? z : -z)));
-    const std::uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (const auto& f : faces)
-        mesh.triangles.push_back({f[0], f[1], f[2]}), mesh.triangles.push_back({f[0], f[2], f[3]});
-    return mesh;
-}
-/// A square across z, with its front up.
-template <class T>
-TriangleMesh<T> square(double half, double z) {
-    const T a = static_cast<T>(half), h = static_cast<T>(z);
-    return {{{-a, -a, h}, {a, -a, h}, {a, a, h}, {-a, a, h}}, {{0, 1, 2}, {0, 2, 3}}, {}};
-}
-Camera camera_at(const Vec3f& eye, const Vec3f& target, const Vec3f& up = {0, 0, 1}) {
-    Camera c;
-    c.eye = eye, c.target = target, c.up = up, c.field_of_view = 90;
-    return c;
-}
-PathPictureOptions few_pixels(const Camera& camera, std::uint32_t samples) {
-    PathPictureOptions o;
-    o.camera = camera, o.width = 8, o.height = 6, o.samples = samples;
-    return o;
-}
-template <class T>
-PathPicture trace(const Model<T>& model, const PathPictureOptions& options,
-                  SceneLightsOptions of_lights = {}) {
-    const ModelScene<T> scene(model, serial_executor());
-    of_lights.compensates = options.paths.material_sampling;
-    const SceneLights<T> lights(scene, of_lights);
-    return trace_paths(PathScene<T>{scene, lights, scene.tracer()}, options, default_executor());
-}
-/// The mean of all pixels and samples, and its standard error, of the first colour.
-struct Estimate {
-    double mean = 0, error = 0;
-};
-Estimate estimate(const PathPicture& picture) {
-    double sum = 0, squares = 0;
-    const auto n = double(picture.light.size());
-    for (std::size_t i = 0; i < picture.light.size(); ++i) {
-        const auto value = double(picture.light.mean(i)[0]);
-        const auto error = double(picture.light.standard_error(i));
-        sum += value, squares += error * error;
-    }
-    return {sum / n, std::sqrt(squares) / n};
-}
-/// Three ways to look for light.
-void for_each_way(const std::function<void(PathOptions&, const char*)>& look) {
-    const std::pair<bool, bool> ways[] = {{true, true}, {true, false}, {false, true}};
-    const char* const names[] = {"both", "light sampling", "material sampling"};
-    for (int i = 0; i < 3; ++i) {
-        PathOptions o;
-        o.light_sampling = ways[i].first, o.material_sampling = ways[i].second;
-        look(o, names[i]);
-    }
-}
 
 /// In a closed room whose walls emit Le and reflect ρ, the light after k bounces is Le·(1 − ρ^(k+1))/(1 − ρ).
 TYPED_TEST(Paths, AClosedRoomHasTheLightOfItsSeries) {
@@ -317,51 +237,6 @@ TEST(Tones, KeepColoursAndBendHighlights) {
     EXPECT_GT(before, 0.99f);
     const Vec3f bright = toned(Tone::neutral, {1000, 1, 1});
     EXPECT_GT(bright[1], 0.9f) << "very bright colours turn white";
-}
-
-/// A hash of the linear light of a picture, bit by bit.
-std::uint64_t hash_of(const PathPicture& picture) {
-    std::uint64_t hash = 0;
-    for (std::size_t i = 0; i < picture.light.size(); ++i)
-        for (const float x : picture.light.mean(i).data)
-            hash = scattered(hash + std::bit_cast<std::uint32_t>(x));
-    return hash;
-}
-/// Pictures of 64 by 64 pixels that were looked at. Another processor, compiler or instruction set has these
-/// bits.
-TEST(PathPictures, HaveTheseBitsEverywhere) {
-    const auto expect = [](const char* scene, std::uint64_t hash, auto change) {
-        auto model = generate_model<float>(parse_scene_spec(scene));
-        PathPictureOptions options;
-        options.width = options.height = 64, options.samples = 8;
-        const std::string name = parse_scene_spec(scene).name;
-        change(model, options);
-        const ModelScene<float> shown(model, default_executor());
-        options.camera = camera_for(name).value_or(automatic_camera(shown.bounds()));
-        const SceneLights<float> lights(shown, {.up = options.camera.up});
-        const PathScene<float> parts{shown, lights, shown.tracer()};
-        EXPECT_EQ(hash_of(trace_paths(parts, options, default_executor())), hash) << scene;
-    };
-    const auto as_it_is = [](Model<float>&, PathPictureOptions&) {};
-    const auto of_glass = [](Model<float>& model, PathPictureOptions&) {
-        for (Material& m : model.materials) {
-            if (m.emission[0] > 0) continue;
-            m.transmission = 1, m.thin = false, m.roughness = 0.2f;
-            m.attenuation_colour = {0.5f, 0.7f, 0.9f}, m.attenuation_distance = 0.5f;
-        }
-    };
-    const auto of_metal = [](Model<float>& model, PathPictureOptions& o) {
-        for (Material& m : model.materials) m.metallic = 0.7f, m.roughness = 0.3f;
-        o.paths.sampler = Sampler::independent;
-    };
-    expect("gen:cornell-box", 13072849632850776395u, as_it_is);
-    expect("gen:cornell-box", 17444000207230064607u, of_metal);
-    expect("gen:teapot-in-stadium:3000", 7045098765254368040u, as_it_is);
-    expect("gen:teapot:3000", 13287473023831914717u, of_glass);
-    expect("gen:teapot:3000", 15401192420194816110u, of_metal);
-    expect("gen:grass:3000", 17898102663082475837u, as_it_is);
-    expect("gen:hairball:3000", 4965994997278206487u, as_it_is);
-    expect("gen:soup:100", 7654664720023267110u, of_glass);
 }
 
 /// Interrupted at any moment and continued, by other threads and in other steps.

@@ -6,12 +6,12 @@
 
 namespace hedgerow {
 
-/// The origin of a new ray at the hit ray.at(t), on the side of the surface that `toward` points to. The
-/// point is moved along the surface's normal by the error that it can have, and by as much along the ray:
-/// back, or forward if `toward` goes through the surface. The error grows with how far the whole primitive
-/// reaches, from 0 and from the ray's origin, not with how far the hit is. A move along the normal alone
-/// could put a hit at an edge behind the neighbouring surface; only the way that the ray came is known to be
-/// free.
+/// The origin of a new ray at the hit ray.at(t), on the side of the surface that `toward` points to. On the
+/// side that the ray comes from this is a point of the ray, back from the hit until the surface is as far
+/// away as the hit can err, or where the ray begins. So it lies where the ray came, which is known to be
+/// free: a point off the ray could be behind a neighbouring surface, where both meet at an edge. On the other
+/// side the hit is moved by that error along the normal, and by as much along the ray. The error grows with
+/// how far the whole primitive reaches, from 0 and from the ray's origin, not with how far the hit is.
 ///
 /// `bounds` is the primitive's box; `normal` and `toward` may have any length but 0.
 template <class T>
@@ -23,10 +23,10 @@ Vec<T, 3> offset_origin(const Ray<T, 3>& ray, T t, const Box<T, 3>& bounds, cons
     const T far = std::max(largest(bounds.low), largest(bounds.high));
     const T reach = std::max(largest(bounds.low - ray.origin), largest(bounds.high - ray.origin));
     const T step = (far + reach) * (64 * unit_roundoff<T>);
-    const Vec<T, 3> n = unit(normal), d = unit(ray.direction);
-    const T side = dot(n, toward) < 0 ? -step : step;
-    const T way = (dot(n, d) < 0) == (side < 0) ? step : -step;
-    return ray.at(t) + d * way + n * side;
+    const Vec<T, 3> n = unit(normal);
+    const T along = dot(n, ray.direction);
+    if ((along < 0) == (dot(n, toward) > 0)) return ray.at(std::max(ray.t_min, t - step / std::abs(along)));
+    return ray.at(t) + (unit(ray.direction) + (along < 0 ? -n : n)) * step;
 }
 /// The origin of a new ray at a hit on a triangle of any size. The edges are scaled to 1 first, since the
 /// square of the normal may be beyond the range of T.
