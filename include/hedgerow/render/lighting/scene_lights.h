@@ -110,7 +110,8 @@ private:
         const auto& materials = lookups_.model().materials;
         const auto emits = [&](std::size_t i) {
             const Material& m = materials[object.material_of(i)];
-            return max_component(m.emission) * m.emission_strength > 0 && !m.unlit;
+            // Whatever is not black: the emitters refuse what is no light.
+            return m.emission * m.emission_strength != Vec3f() && !m.unlit;
         };
         firsts_.push_back(no_emitter);
         bool any = false;
