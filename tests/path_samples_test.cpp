@@ -129,10 +129,12 @@ TEST(PathSamples, APathTakesEachPairOnce) {
     std::size_t taken = 0;
     const auto take = [&](const UnitPair& p) { seen.insert(p.x), seen.insert(p.y), taken += 2; };
     take(path.in_pixel()), take(path.on_lens());
-    for (std::uint32_t v = 0; v < 50; ++v)
-        take(path.light_point(v)), take(path.direction(v)),
-            take({static_cast<float>(path.light_choice(v)), path.lobe_choice(v)}),
-            take({path.end(v), -path.end(v)});
+    for (std::uint32_t v = 0; v < 50; ++v) {
+        const VertexSamples at = path.at(v);
+        take(at.light_point()), take(at.direction());
+        take({static_cast<float>(at.light_choice()), at.lobe_choice()});
+        take({at.end(), -at.end()});
+    }
     EXPECT_EQ(seen.size(), taken);
 }
 

@@ -1,18 +1,19 @@
-/// Many paths at once, in rounds: the closest hits of all, then what light they meet, then the shadow rays of
-/// all, then where each goes on. So rays are answered in batches (Laine, Karras and Aila, Megakernels
-/// considered harmful, HPG 2013). Where paths end, new ones take their places, so that batches stay full
-/// (Novák, Havran and Dachsbacher, Eurographics 2010). The steps of a path are those of PathReference, and
-/// its light has the same bits.
+/// Many paths at once, in rounds: the closest hits of all, then the steps of each path, then the shadow rays
+/// of all. So rays are answered in batches (Laine, Karras and Aila, Megakernels considered harmful, HPG
+/// 2013). Where paths end, new ones take their places, so that batches stay full (Novák, Havran and
+/// Dachsbacher, Eurographics 2010). The steps of a path are those of PathReference, and its light has the
+/// same bits.
 #pragma once
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include <hedgerow/render/integrators/normal_cache.h>
 #include <hedgerow/render/integrators/path_camera.h>
 #include <hedgerow/render/integrators/path_step.h>
+#include <hedgerow/render/sampling/vertex_sample_batch.h>
 #include <hedgerow/render/tracer.h>
 
 namespace hedgerow {
@@ -45,9 +46,9 @@ public:
             }
             find_hits(flight, 0, old);
             find_hits(flight, old, flight.size);
-            arrive(flight, finish);
-            look_for_light(flight);
-            leave(flight, finish);
+            meet_surfaces(flight);
+            add_light(flight);
+            drop_ended(flight, finish);
         }
     }
 
@@ -59,27 +60,26 @@ private:
         PathSamples samples;
         std::size_t number;
     };
-    struct Meeting {
-        PathVertex<T> vertex;
-        Scattering scattering;
-    };
-    /// The paths of a round, and what they have met in it.
+    /// The paths of a round, and what they have found in it.
     struct Flight {
         explicit Flight(std::size_t most)
             : paths(most, Path{{}, PathSamples(PixelSequence(Sampler::sobol, 0, 0), 0), 0}),
               hits(most),
-              meetings(most),
+              numbers(most),
+              goes_on(std::make_unique<bool[]>(most)),
               shadows(most),
               shaded(most),
               blocked(std::make_unique<bool[]>(most)) {}
 
         std::vector<Path> paths;
         std::vector<Hit<T>> hits;
-        std::vector<std::optional<Meeting>> meetings;
+        NormalCache<T> normals;
+        VertexSampleBatch numbers;
+        std::unique_ptr<bool[]> goes_on;
         std::vector<ShadowRay<T>> shadows;
         std::vector<std::size_t> shaded;  // whose shadow rays these are
         std::unique_ptr<bool[]> blocked;
-        std::size_t size = 0;
+        std::size_t size = 0, shadow_count = 0;
     };
 
     /// The closest hits of some paths. Those that have begun together go apart from the others, since their
@@ -94,51 +94,51 @@ private:
         tracer_.closest_hits(RayArray<T, 3>(rays), std::span(flight.hits).subspan(first, last - first), {},
                              filter(keep));
     }
-    /// Adds the light that rays meet. Paths that end there leave the flight.
-    template <class Finish>
-    void arrive(Flight& flight, const Finish& finish) const {
-        keep(flight, finish, [&](std::size_t i, std::size_t to) {
-            const auto vertex = steps_.arrive(flight.paths[i].state, flight.hits[i]);
-            if (vertex) flight.meetings[to].emplace(Meeting{*vertex, steps_.scattering_at(*vertex)});
-            return vertex.has_value();
-        });
+    /// Takes the three steps of each path before its shadow ray is answered, while its vertex is in registers
+    /// and in the first-level cache.
+    void meet_surfaces(Flight& flight) const {
+        flight.numbers.clear();
+        for (std::size_t i = 0; i < flight.size; ++i)
+            flight.numbers.add(flight.paths[i].samples, flight.paths[i].state.vertex);
+        flight.numbers.compute();
+        flight.shadow_count = 0;
+        for (std::size_t i = 0; i < flight.size; ++i) flight.goes_on[i] = meets_surface(flight, i);
+    }
+    /// One path arrives, looks for light and leaves. Returns whether it goes on.
+    bool meets_surface(Flight& flight, std::size_t i) const {
+        Path& path = flight.paths[i];
+        const Hit<T>& hit = flight.hits[i];
+        const auto front = [&] { return flight.normals.at(hit, [&] { return world_.surfaces.front(hit); }); };
+        const auto vertex = steps_.arrive(path.state, hit, front);
+        if (!vertex) return false;
+        const Scattering scattering = steps_.scattering_at(*vertex);
+        const VertexSamples numbers = flight.numbers[i];
+        if (const auto shadow = steps_.look_for_light(path.state, *vertex, scattering, numbers)) {
+            flight.shadows[flight.shadow_count] = *shadow;
+            flight.shaded[flight.shadow_count++] = i;
+        }
+        return steps_.leave(path.state, *vertex, scattering, numbers);
     }
     /// Adds the light that shadow rays bring.
-    void look_for_light(Flight& flight) const {
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < flight.size; ++i) {
-            const Path& path = flight.paths[i];
-            const Meeting& met = *flight.meetings[i];
-            const auto shadow = steps_.look_for_light(path.state, met.vertex, met.scattering, path.samples);
-            if (shadow) flight.shadows[count] = *shadow, flight.shaded[count++] = i;
-        }
+    void add_light(Flight& flight) const {
+        const std::size_t count = flight.shadow_count;
         if (count == 0) return;
         const auto keep = [&](std::size_t k, const Hit<T>& hit) {
             const Path& path = flight.paths[flight.shaded[k]];
-            return world_.surfaces.is_there(hit, path.samples.shadow_key(path.state.vertex));
+            return world_.surfaces.is_there(hit, path.samples.shadow_key(flight.shadows[k].vertex));
         };
         const Strided<Ray<T, 3>> rays(&flight.shadows[0].ray, count, sizeof(ShadowRay<T>));
         tracer_.any_hits(RayArray<T, 3>(rays), std::span(flight.blocked.get(), count), {}, filter(keep));
         for (std::size_t k = 0; k < count; ++k)
             if (!flight.blocked[k]) steps_.add_light(flight.paths[flight.shaded[k]].state, flight.shadows[k]);
     }
-    /// Sends paths on. Those that end leave the flight.
+    /// Finishes the paths that have ended. The others move together, in their order.
     template <class Finish>
-    void leave(Flight& flight, const Finish& finish) const {
-        keep(flight, finish, [&](std::size_t i, std::size_t) {
-            Path& path = flight.paths[i];
-            const Meeting& met = *flight.meetings[i];
-            return steps_.leave(path.state, met.vertex, met.scattering, path.samples);
-        });
-    }
-    /// Keeps the paths for which goes_on(i, to) is true: path i then takes place `to`. The others are
-    /// finished.
-    template <class Finish, class GoesOn>
-    static void keep(Flight& flight, const Finish& finish, const GoesOn& goes_on) {
+    static void drop_ended(Flight& flight, const Finish& finish) {
         std::size_t to = 0;
         for (std::size_t i = 0; i < flight.size; ++i) {
-            Path& path = flight.paths[i];
-            if (!goes_on(i, to))
+            const Path& path = flight.paths[i];
+            if (!flight.goes_on[i])
                 finish(path.number, path.state.light);
             else if (const std::size_t place = to++; place != i)
                 flight.paths[place] = path;

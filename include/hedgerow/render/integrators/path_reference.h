@@ -55,10 +55,11 @@ public:
             const auto vertex = steps_.arrive(path, hit);
             if (!vertex) return path.light;
             const Scattering scattering = steps_.scattering_at(*vertex);
-            if (const auto shadow = steps_.look_for_light(path, *vertex, scattering, samples))
+            const VertexSamples numbers = samples.at(path.vertex);
+            if (const auto shadow = steps_.look_for_light(path, *vertex, scattering, numbers))
                 if (!rays_.is_blocked(shadow->ray, samples.shadow_key(path.vertex)))
                     steps_.add_light(path, *shadow);
-            if (!steps_.leave(path, *vertex, scattering, samples)) return path.light;
+            if (!steps_.leave(path, *vertex, scattering, numbers)) return path.light;
         }
     }
 

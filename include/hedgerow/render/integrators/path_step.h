@@ -32,6 +32,7 @@ template <std::floating_point T>
 struct ShadowRay {
     Ray<T, 3> ray;
     Vec3f light;
+    std::uint32_t vertex = 0;  ///< the number of the vertex where the ray begins
 };
 
 /// What paths go through, and how.
@@ -51,16 +52,19 @@ public:
     /// Adds the light that a ray meets: of the environment, or of the surface that it hits. Returns the
     /// vertex if the path may go on from there.
     std::optional<PathVertex<T>> arrive(PathState<T>& path, const Hit<T>& hit) const {
+        return arrive(path, hit, [&] { return world_.surfaces.front(hit); });
+    }
+    /// Arrives where `front()` returns the normal that PathSurfaces::front has at the hit.
+    template <class Front>
+    std::optional<PathVertex<T>> arrive(PathState<T>& path, const Hit<T>& hit, const Front& front) const {
         const Vec3f direction(path.ray.direction);
         if (!hit) {
             if (const EnvironmentMap* const sky = world_.lights.environment())
-                add(path, sky->radiance(direction),
-                    weight_of_hit(path,
-                                  world_.lights.density_of_sky(path.left_at, path.left_normal, direction)));
+                add(path, sky->radiance(direction), weight_of_hit(path, density_of_sky(path)));
             return std::nullopt;
         }
         absorb(path, static_cast<float>(hit.t));
-        PathVertex<T> vertex = world_.surfaces.at(path.ray, hit);
+        PathVertex<T> vertex = world_.surfaces.at(path.ray, hit, front());
         if (max_component(vertex.emission) > 0)
             add(path, vertex.emission, weight_of_hit(path, density_of_light(path, hit)));
         if (vertex.unlit) add(path, vertex.material.base_colour, 1);
@@ -75,39 +79,42 @@ public:
     /// A ray to a light, with what it brings; nothing if no light may come from there.
     std::optional<ShadowRay<T>> look_for_light(const PathState<T>& path, const PathVertex<T>& at,
                                                const Scattering& scattering,
-                                               const PathSamples& samples) const {
+                                               const VertexSamples& samples) const {
         if (!world_.options.light_sampling || scattering.only_specular()) return std::nullopt;
         const Vec3f point(at.before);
-        const SampledLight sampled = world_.lights.sample(
-            point, side_of_light(at), samples.light_choice(path.vertex), samples.light_point(path.vertex));
+        const SampledLight sampled =
+            world_.lights.sample(point, side_of_light(at), samples.light_choice(), samples.light_point());
         if (!sampled) return std::nullopt;
         const LightSample& light = sampled.light;
         const Vec3f i = at.shading.to_local(light.direction);
         if (!same_side(at, light.direction, i)) return std::nullopt;
-        const Vec3f value = scattering.value(i);
-        if (!(max_component(value) > 0)) return std::nullopt;
+        const ScatteredLight scattered = scattering.at(i);
+        if (!(max_component(scattered.value) > 0)) return std::nullopt;
         const float density = product(light.density, sampled.probability);
         float share = 1 / sampled.probability;
         if (!light.single) {
             share = 1 / density;
-            if (world_.options.material_sampling) share *= power_heuristic(density, scattering.density(i));
+            if (world_.options.material_sampling) share *= power_heuristic(density, scattered.density);
         }
         ShadowRay<T> shadow;
-        shadow.light = tinted(tinted(path.throughput, value), light.radiance) * share;
+        shadow.light =
+            limited(path, tinted(tinted(path.throughput, scattered.value), light.radiance) * share, 1);
+        shadow.vertex = path.vertex;
         const bool beyond = dot(light.direction, at.geometric) < 0;
         shadow.ray = {beyond ? at.beyond : at.before, Vec<T, 3>(light.direction), T(0),
                       static_cast<T>(light.distance) * (1 - shadow_gap)};
         return shadow;
     }
+    /// May come after `leave`, and comes before the path arrives anew.
     void add_light(PathState<T>& path, const ShadowRay<T>& shadow) const {
-        path.light = path.light + limited(path, shadow.light, 1);
+        path.light = path.light + shadow.light;
     }
 
     /// Chooses where the path goes on. False: it ends.
     bool leave(PathState<T>& path, const PathVertex<T>& at, const Scattering& scattering,
-               const PathSamples& samples) const {
-        const UnitPair p = samples.direction(path.vertex);
-        const auto next = scattering.sample(samples.lobe_choice(path.vertex), p.x, p.y);
+               const VertexSamples& samples) const {
+        const UnitPair p = samples.direction();
+        const auto next = scattering.sample(samples.lobe_choice(), p.x, p.y);
         if (!next) return false;
         const Vec3f direction = normalized(at.shading.to_world(next->direction));
         if (!same_side(at, direction, next->direction)) return false;
@@ -122,6 +129,10 @@ public:
         path.density = next->specular ? 0 : next->density;
         path.left_at = Vec3f(at.before), path.left_normal = side_of_light(at);
         return goes_on(path, samples);
+    }
+    bool leave(PathState<T>& path, const PathVertex<T>& at, const Scattering& scattering,
+               const PathSamples& samples) const {
+        return leave(path, at, scattering, samples.at(path.vertex));
     }
 
 private:
@@ -142,6 +153,10 @@ private:
     /// Others would let light through walls, or are reflections into the surface.
     static bool same_side(const PathVertex<T>& at, const Vec3f& direction, const Vec3f& local) {
         return (dot(direction, at.geometric) > 0) == (local[2] > 0) && local[2] != 0;
+    }
+    float density_of_sky(const PathState<T>& path) const {
+        if (path.density == 0) return 0;
+        return world_.lights.density_of_sky(path.left_at, path.left_normal, Vec3f(path.ray.direction));
     }
     float density_of_light(const PathState<T>& path, const Hit<T>& hit) const {
         if (path.density == 0) return 0;
@@ -168,14 +183,14 @@ private:
             if (path.absorption[k] > 0) path.throughput[k] *= exponential(-(path.absorption[k] * distance));
     }
     /// Roulette and cut, after the vertex; counts it.
-    bool goes_on(PathState<T>& path, const PathSamples& samples) const {
+    bool goes_on(PathState<T>& path, const VertexSamples& samples) const {
         const PathOptions& o = world_.options;
         const float left = max_component(path.throughput);
         const std::uint32_t vertex = path.vertex++;
         if (!(left > o.least_throughput)) return false;
         const float stays = left * path.spread;
         if (vertex < o.roulette_from || stays >= 1) return true;
-        if (!(samples.end(vertex) < stays)) return false;
+        if (!(samples.end() < stays)) return false;
         path.throughput = path.throughput / stays;
         return true;
     }

@@ -50,14 +50,17 @@ public:
         return alpha >= 1 || PixelSequence::unit(own) < alpha;
     }
 
+    /// The normal of the front at a hit, of length 1. O(1).
+    Vec<T, 3> front(const Hit<T>& hit) const { return normal(scene_.instances(), hit); }
     /// The vertex at a hit of a ray whose direction has length 1. O(1).
-    PathVertex<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const {
+    PathVertex<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const { return at(ray, hit, front(hit)); }
+    /// The vertex at a hit where the normal of the front is known.
+    PathVertex<T> at(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& front) const {
         const ModelLookups<T>& looks = scene_.lookups();
         const Material& m = looks.material(hit);
         PathVertex<T> v;
         const Vec3f direction(ray.direction);
         v.toward_origin = -direction;
-        const Vec<T, 3> front = normal(scene_.instances(), ray, hit);
         v.front = !(dot(front, ray.direction) > 0);
         const Vec<T, 3> geometric = v.front ? front : -front;
         v.geometric = Vec3f(geometric);

@@ -37,11 +37,19 @@ public:
     }
     /// The pair with all its bits.
     FractionPair fractions(std::uint32_t sample, std::uint32_t dimension) const {
-        const std::uint32_t seed = scattered32(seed_ + scattered32(dimension));
-        if (sampler_ == Sampler::sobol) return sobol_pair(sample, seed);
-        const std::uint32_t x = scattered32(seed + scattered32(sample));
+        return fractions(sampler_, seed_, sample, dimension);
+    }
+    /// The pair of a sequence whose `seed()` is known.
+    [[gnu::always_inline]] static constexpr FractionPair fractions(Sampler sampler, std::uint32_t seed,
+                                                                   std::uint32_t sample,
+                                                                   std::uint32_t dimension) {
+        const std::uint32_t of_pair = scattered32(seed + scattered32(dimension));
+        if (sampler == Sampler::sobol) return sobol_pair(sample, of_pair);
+        const std::uint32_t x = scattered32(of_pair + scattered32(sample));
         return {x, scattered32(x + 0x9E3779B9u)};
     }
+    std::uint32_t seed() const { return seed_; }
+    Sampler sampler() const { return sampler_; }
     /// The first 24 bits of a fraction.
     static constexpr float unit(std::uint32_t fraction) {
         return static_cast<float>(fraction >> 8) * 0x1p-24f;
@@ -52,42 +60,59 @@ private:
     Sampler sampler_;
 };
 
-/// The numbers of one path, in the order in which it takes them: two pairs of the camera, then `of_vertex`
-/// pairs of each vertex.
+/// The numbers that a path takes at a vertex: `count` pairs.
+struct VertexSamples {
+    static constexpr std::uint32_t count = 4;
+
+    FractionPair pairs[count];
+
+    UnitPair light_point() const { return unit(pairs[0]); }
+    UnitPair direction() const { return unit(pairs[1]); }
+    /// The number that chooses a light, with 32 bits, since there may be many; and one that chooses a lobe.
+    double light_choice() const { return static_cast<double>(pairs[2].x) * 0x1p-32; }
+    float lobe_choice() const { return PixelSequence::unit(pairs[2].y); }
+    /// The number that decides whether the path goes on.
+    float end() const { return PixelSequence::unit(pairs[3].x); }
+
+private:
+    static UnitPair unit(const FractionPair& p) {
+        return {PixelSequence::unit(p.x), PixelSequence::unit(p.y)};
+    }
+};
+
+/// The numbers of one path, in the order in which it takes them: two pairs of the camera, then those of each
+/// vertex.
 class PathSamples {
 public:
-    static constexpr std::uint32_t of_camera = 2, of_vertex = 4;
+    static constexpr std::uint32_t of_camera = 2;
 
     PathSamples(const PixelSequence& pixel, std::uint32_t sample) : pixel_(pixel), sample_(sample) {}
+
+    const PixelSequence& pixel() const { return pixel_; }
+    std::uint32_t sample() const { return sample_; }
 
     UnitPair in_pixel() const { return pixel_.pair(sample_, 0); }
     UnitPair on_lens() const { return pixel_.pair(sample_, 1); }
     /// Vertex 0 is the first hit of the camera's ray.
-    UnitPair light_point(std::uint32_t vertex) const { return of(vertex, 0); }
-    UnitPair direction(std::uint32_t vertex) const { return of(vertex, 1); }
-    /// The number that chooses a light, with 32 bits, since there may be many; and one that chooses a lobe.
-    double light_choice(std::uint32_t vertex) const {
-        return static_cast<double>(choices(vertex).x) * 0x1p-32;
+    VertexSamples at(std::uint32_t vertex) const {
+        VertexSamples s;
+        for (std::uint32_t pair = 0; pair < VertexSamples::count; ++pair)
+            s.pairs[pair] = pixel_.fractions(sample_, dimension(vertex, pair));
+        return s;
     }
-    float lobe_choice(std::uint32_t vertex) const { return PixelSequence::unit(choices(vertex).y); }
-    /// The number that decides whether the path goes on.
-    float end(std::uint32_t vertex) const { return of(vertex, 3).x; }
     /// 32 random bits for the ray to a vertex and for the one to the light there.
     std::uint32_t ray_key(std::uint32_t vertex) const {
-        return pixel_.fractions(sample_, of_camera + of_vertex * vertex + 3).y;
+        return pixel_.fractions(sample_, dimension(vertex, 3)).y;
     }
     std::uint32_t shadow_key(std::uint32_t vertex) const {
         return scattered32(ray_key(vertex) + 0x9E3779B9u);
     }
+    /// The dimension of a pair of a vertex.
+    static constexpr std::uint32_t dimension(std::uint32_t vertex, std::uint32_t pair) {
+        return of_camera + VertexSamples::count * vertex + pair;
+    }
 
 private:
-    FractionPair choices(std::uint32_t vertex) const {
-        return pixel_.fractions(sample_, of_camera + of_vertex * vertex + 2);
-    }
-    UnitPair of(std::uint32_t vertex, std::uint32_t pair) const {
-        return pixel_.pair(sample_, of_camera + of_vertex * vertex + pair);
-    }
-
     PixelSequence pixel_;
     std::uint32_t sample_;
 };

@@ -7,13 +7,13 @@
 namespace hedgerow {
 
 /// A bijection of 32 bits that scatters them (the constants are those of C. Wellons' lowbias32).
-constexpr std::uint32_t scattered32(std::uint32_t x) {
+[[gnu::always_inline]] constexpr std::uint32_t scattered32(std::uint32_t x) {
     x = (x ^ (x >> 16)) * 0x7FEB352Du;
     x = (x ^ (x >> 15)) * 0x846CA68Bu;
     return x ^ (x >> 16);
 }
 
-constexpr std::uint32_t bits_reversed(std::uint32_t x) {
+[[gnu::always_inline]] constexpr std::uint32_t bits_reversed(std::uint32_t x) {
     x = (x << 16) | (x >> 16);
     x = ((x & 0x00FF00FFu) << 8) | ((x & 0xFF00FF00u) >> 8);
     x = ((x & 0x0F0F0F0Fu) << 4) | ((x & 0xF0F0F0F0u) >> 4);
@@ -24,7 +24,7 @@ constexpr std::uint32_t bits_reversed(std::uint32_t x) {
 /// A bijection in which each bit depends on the bits below it alone, so that it is a nested scrambling of
 /// numbers whose bits are reversed (Laine and Karras, EGSR 2011; the constants are those of N. Vegdahl,
 /// who found these to scatter better than Burley's).
-constexpr std::uint32_t scrambled_upward(std::uint32_t x, std::uint32_t seed) {
+[[gnu::always_inline]] constexpr std::uint32_t scrambled_upward(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3D20ADEAu;
     x += seed;
     x *= (seed >> 16) | 1;
@@ -34,7 +34,7 @@ constexpr std::uint32_t scrambled_upward(std::uint32_t x, std::uint32_t seed) {
 
 /// The bits of the second dimension of Sobol's sequence at an index, lowest first. Its matrix is Pascal's
 /// triangle modulo 2, which is a Kronecker power of (1 1, 0 1); each step multiplies by one factor.
-constexpr std::uint32_t pascal_product(std::uint32_t index) {
+[[gnu::always_inline]] constexpr std::uint32_t pascal_product(std::uint32_t index) {
     index ^= (index & 0xAAAAAAAAu) >> 1;
     index ^= (index & 0xCCCCCCCCu) >> 2;
     index ^= (index & 0xF0F0F0F0u) >> 4;
@@ -50,7 +50,7 @@ struct FractionPair {
 /// Point `index` of a shuffled and scrambled Sobol sequence in the unit square. Sequences with other seeds
 /// are independent. The first 2^m points of each are a (0, m, 2)-net: one of them in every box of sides 2^-a
 /// and 2^-(m-a) at multiples of them.
-constexpr FractionPair sobol_pair(std::uint32_t index, std::uint32_t seed) {
+[[gnu::always_inline]] constexpr FractionPair sobol_pair(std::uint32_t index, std::uint32_t seed) {
     const std::uint32_t shuffled = bits_reversed(scrambled_upward(bits_reversed(index), scattered32(seed)));
     return {bits_reversed(scrambled_upward(shuffled, scattered32(seed + 0x9E3779B9u))),
             bits_reversed(scrambled_upward(pascal_product(shuffled), scattered32(seed + 0x3C6EF372u)))};

@@ -20,6 +20,7 @@ namespace hedgerow {
 /// A). Rough coats without tables, whose A is not known, have (1 − F(o))(1 − F(i)), which is a little dark.
 class BroadLobe {
 public:
+    /// Borrows all but o.
     BroadLobe(const SurfaceParts& parts, const Vec3f& o, const Compensation* tables)
         : parts_(parts), tables_(parts.mirror ? nullptr : tables), matte_(parts.base * parts.opaque) {
         const bool reflects = parts.metal > 0 || parts.has_coat() || (parts.through > 0 && parts.thin);
@@ -114,7 +115,7 @@ private:
         glass_down_ = parts_.base * (product(product(lost, refracts), radiance) / glass_lost_down_);
     }
 
-    SurfaceParts parts_;
+    const SurfaceParts& parts_;
     const Compensation* tables_;  // null where nothing is lost
     bool uses_albedo_ = false, has_glass_ = false;
     Vec3f matte_;

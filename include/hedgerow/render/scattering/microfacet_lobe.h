@@ -19,6 +19,12 @@ struct ScatteredDirection {
     bool transmitted = false;  ///< to the other side of the surface
 };
 
+/// What a surface scatters from one direction to another, apart from single directions.
+struct ScatteredLight {
+    Vec3f value;        ///< times |cos|
+    float density = 0;  ///< of sampling that direction, per solid angle
+};
+
 /// The reflection and transmission by microfacets, of all shares of a surface together: they have one
 /// roughness. Refraction is that of Walter et al. 2007, in terms of radiance: where light comes from a medium
 /// of index η_i to an eye in one of index η_o, it has the factor (η_o/η_i)². On a thin surface what goes
@@ -27,6 +33,7 @@ struct ScatteredDirection {
 /// o[2] is above 0 in all functions.
 class MicrofacetLobe {
 public:
+    /// Borrows the parts.
     explicit MicrofacetLobe(const SurfaceParts& parts)
         : parts_(parts),
           ggx_(std::max(product(parts.roughness, parts.roughness), 1e-3f)),
@@ -37,20 +44,15 @@ public:
     bool mirrors() const { return parts_.mirror; }
     bool transmits_singly() const { return parts_.mirror || (!parts_.thin && parts_.straight()); }
 
-    /// The value times |cos|, without single directions.
-    Vec3f value(const Vec3f& o, const Vec3f& i) const {
+    /// The value times |cos| and the density of `sample` per solid angle, without single directions.
+    ScatteredLight at(const Vec3f& o, const Vec3f& i) const {
         const Half half = half_of(o, i);
         if (!(half.density > 0)) return {};
         const float light = product(half.density, ggx_.unshadowed(o[2], std::abs(i[2])));
-        return i[2] > 0 ? parts_.reflected_colour(half.cosine) * light
-                        : parts_.transmitted_colour(half.cosine) * product(light, radiance_);
-    }
-    /// The density of `sample` per solid angle, without single directions.
-    float density(const Vec3f& o, const Vec3f& i) const {
-        const Half half = half_of(o, i);
-        if (!(half.density > 0)) return 0;
         const float reflects = chance_of_reflection(half.cosine);
-        return product(half.density, i[2] > 0 ? reflects : 1 - reflects);
+        if (i[2] > 0) return {parts_.reflected_colour(half.cosine) * light, product(half.density, reflects)};
+        return {parts_.transmitted_colour(half.cosine) * product(light, radiance_),
+                product(half.density, 1 - reflects)};
     }
     /// Chooses a microfacet that o sees by (u, v), and whether it reflects by `choice`, in proportion to
     /// the luminance of both. The weight and density of the result are set only if it is specular. Returns
@@ -113,7 +115,7 @@ private:
         return down > 0 ? up / (up + down) : 1.0f;
     }
 
-    SurfaceParts parts_;
+    const SurfaceParts& parts_;
     Ggx ggx_;
     float radiance_;
 };

@@ -23,23 +23,31 @@ public:
     /// `inside`: o is within a body that is not thin. Without tables, rough surfaces lose the light that
     /// their microfacets send to each other.
     Scattering(const SurfaceMaterial& material, const Vec3f& o, bool inside, const Compensation* tables)
-        : Scattering(SurfaceParts(material, inside), o, tables) {}
-
-    /// The value of the surface for light from i, times |cos θi|. Single directions have none.
-    Vec3f value(const Vec3f& i) const {
-        if (!lit_ || !(std::abs(i[2]) > 0)) return {};
-        Vec3f sum = facets_.value(o_, i);
-        if (i[2] > 0 ? chance_matte_ + chance_up_ > 0 : chance_down_ > 0) sum += broad_.value(i);
-        return sum;
+        : parts_(material, inside), o_(o), facets_(parts_), broad_(parts_, o, tables), lit_(o[2] >= lowest) {
+        if (lit_) set_chances();
     }
-    /// The density of `sample` per solid angle. Single directions have none. Its integral is the probability
-    /// that `sample` returns a direction that is not single.
-    float density(const Vec3f& i) const {
-        if (!lit_ || !(std::abs(i[2]) > 0)) return 0;
+    Scattering(const Scattering&) = delete;
+    Scattering& operator=(const Scattering&) = delete;
+
+    /// The value of the surface for light from i, times |cos θi|, and the density of `sample` per solid
+    /// angle. Single directions have neither. The integral of the density is the probability that `sample`
+    /// returns a direction that is not single.
+    ScatteredLight at(const Vec3f& i) const {
+        if (!lit_ || !(std::abs(i[2]) > 0)) return {};
+        ScatteredLight s;
         const float matte = product(chance_matte_, cosine_direction_density(i[2])),
                     again = product(i[2] > 0 ? chance_up_ : chance_down_, hemisphere_direction_density);
-        return matte + again + product(chance_facets_, facets_.density(o_, i));
+        s.density = matte + again;
+        if (facets_.exists()) {
+            const ScatteredLight facets = facets_.at(o_, i);
+            s.value = facets.value;
+            s.density += product(chance_facets_, facets.density);
+        }
+        if (i[2] > 0 ? chance_matte_ + chance_up_ > 0 : chance_down_ > 0) s.value += broad_.value(i);
+        return s;
     }
+    Vec3f value(const Vec3f& i) const { return at(i).value; }
+    float density(const Vec3f& i) const { return at(i).density; }
     /// Chooses a direction by three numbers in [0, 1). Returns nothing for a path that ends here.
     std::optional<ScatteredDirection> sample(float choose_lobe, float u, float v) const {
         if (!lit_) return std::nullopt;
@@ -47,7 +55,8 @@ public:
         if (choose_lobe < broad || !(chance_facets_ > 0)) return sample_broad(choose_lobe, u, v);
         const float choice = std::min((choose_lobe - broad) / chance_facets_, 0x1.fffffep-1f);
         std::optional<ScatteredDirection> s = facets_.sample(o_, choice, u, v);
-        if (!s || !s->specular) return with_weight(s);
+        if (!s) return s;
+        if (!s->specular) return weighed(*s);
         s->weight /= chance_facets_;
         return s;
     }
@@ -55,13 +64,12 @@ public:
     bool only_specular() const { return only_specular_; }
 
 private:
-    Scattering(const SurfaceParts& parts, const Vec3f& o, const Compensation* tables)
-        : o_(o), facets_(parts), broad_(parts, o, tables), lit_(o[2] >= lowest) {
-        if (!lit_) return;
-        const float c = std::min(o[2], 1.0f);
+    /// Shares out the choice of a lobe by the light that each scatters.
+    void set_chances() {
+        const float c = std::min(o_[2], 1.0f);
         const float matte = luminance(broad_.matte_albedo()), up = luminance(broad_.again_albedo_up()),
                     down = luminance(broad_.again_albedo_down()), broad = matte + up + down;
-        float facets = luminance(parts.reflected_colour(c) + parts.transmitted_colour(c));
+        float facets = luminance(parts_.reflected_colour(c) + parts_.transmitted_colour(c));
         // The microfacets can be brighter elsewhere than at the cosine of o, where they may even be black.
         if (facets_.exists()) facets = std::max(facets, broad / 32);
         if (facets_.exists() && !(broad + facets > 0)) facets = 1;
@@ -70,7 +78,7 @@ private:
         if (!lit_) return;
         chance_matte_ = matte / sum, chance_up_ = up / sum, chance_down_ = down / sum;
         chance_facets_ = facets / sum;
-        const bool single = facets_.mirrors() || (facets_.transmits_singly() && parts.through == 1);
+        const bool single = facets_.mirrors() || (facets_.transmits_singly() && parts_.through == 1);
         only_specular_ = broad == 0 && single;
     }
 
@@ -81,20 +89,20 @@ private:
         s.direction = matte ? cosine_direction(u, v) : hemisphere_direction(u, v);
         s.transmitted = !matte && chance_down_ > 0 && choose_lobe >= chance_matte_ + chance_up_;
         if (s.transmitted) s.direction[2] = -s.direction[2];
-        return with_weight(s);
+        return weighed(s);
     }
-    /// Sets the density and weight of a direction that is not single. Returns nothing if it is impossible.
-    std::optional<ScatteredDirection> with_weight(std::optional<ScatteredDirection> s) const {
-        if (!s) return s;
-        s->density = density(s->direction);
-        if (!(s->density > 0)) return std::nullopt;
-        s->weight = value(s->direction) / s->density;
+    /// A direction that is not single, with its density and weight. Returns nothing if it is impossible.
+    std::optional<ScatteredDirection> weighed(ScatteredDirection s) const {
+        const ScatteredLight there = at(s.direction);
+        if (!(there.density > 0)) return std::nullopt;
+        s.density = there.density, s.weight = there.value / there.density;
         return s;
     }
 
     /// Products with lower heights of o can vanish.
     static constexpr float lowest = 1e-18f;
 
+    SurfaceParts parts_;
     Vec3f o_;
     MicrofacetLobe facets_;
     BroadLobe broad_;

@@ -1,0 +1,41 @@
+/// The random numbers of many vertices, compiled for each instruction set: Highway's foreach_target includes
+/// this file once for each.
+#include "sample_kernels.h"
+
+#if HEDGEROW_HAS_HIGHWAY
+#include "core/targets.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/sample_kernels.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#if HWY_TARGET != HWY_SCALAR
+HWY_BEFORE_NAMESPACE();
+namespace hedgerow::HWY_NAMESPACE {
+
+inline void fill_rows_in_lanes(Sampler sampler, const VertexKeys& of, const VertexRows& rows) {
+    fill_rows(sampler, of, rows);
+}
+inline constexpr SampleKernels sample_kernels{fill_rows_in_lanes};
+
+}  // namespace hedgerow::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#if HWY_ONCE
+#include "core/kernel_tables.h"
+
+const hedgerow::SampleKernels* hedgerow::sample_kernels() {
+    static constexpr KernelTables<SampleKernels> tables = HEDGEROW_KERNEL_TABLES(sample_kernels);
+    return in_use(tables);
+}
+#endif
+
+#else
+
+const hedgerow::SampleKernels* hedgerow::sample_kernels() {
+    return nullptr;
+}
+
+#endif
