@@ -39,7 +39,7 @@ public:
     const Tracer<T>& tracer() const {
         return of_object_ ? static_cast<const Tracer<T>&>(*of_object_) : tracer_;
     }
-    const Surfaces<T>& surfaces() const { return surfaces_; }
+    const SurfacesOf<Instances>& surfaces() const { return surfaces_; }
     const Appearances<T>& appearances() const { return appearances_; }
     const ModelLookups<T>& lookups() const { return lookups_; }
     /// Bytes of all indexes.

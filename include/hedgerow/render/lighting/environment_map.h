@@ -129,7 +129,7 @@ private:
             row = row < 0 ? 0 : texel_rows_ - 1;
             column += texel_columns_ / 2;
         }
-        column = ((column % texel_columns_) + texel_columns_) % texel_columns_;
+        column += column < 0 ? texel_columns_ : column >= texel_columns_ ? -texel_columns_ : 0;
         const Texture& panorama = environment_.panorama;
         if (!panorama.pixels || panorama.pixels->width <= 0 || panorama.pixels->height <= 0)
             return environment_.radiance;
