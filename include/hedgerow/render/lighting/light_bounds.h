@@ -20,6 +20,7 @@ struct NormalCone {
 
     static NormalCone all() { return {{0, 0, 1}, -1, 0}; }
     bool is_all() const { return cosine <= -1; }
+    bool is_axis() const { return cosine == 1 && sine == 0; }
 };
 
 /// Bounds of lights that have a position. `LightBounds()` bounds none.
@@ -99,12 +100,13 @@ inline double importance(const LightBounds& lights, const Vec3f& point, const Ve
     const bool has_horizon = normal != Vec3f();
     if (has_horizon) {
         // The greatest height of the box above the receiver's horizon.
-        double height = 0, reach = 0;
-        for (int k = 0; k < 3; ++k) {
-            height += std::max(product(n[k], low[k]), product(n[k], high[k]));
-            reach += std::max(std::abs(low[k]), std::abs(high[k]));
+        double height = 0;
+        for (int k = 0; k < 3; ++k) height += std::max(product(n[k], low[k]), product(n[k], high[k]));
+        if (!(height > 0)) {
+            double reach = 0;
+            for (int k = 0; k < 3; ++k) reach += std::max(std::abs(low[k]), std::abs(high[k]));
+            if (!(height > -product(slack / 4, reach))) return 0;
         }
-        if (!(height > -product(slack / 4, reach))) return 0;
     }
     // Angles are known where the point is outside of the sphere around the box.
     if (distance2 > radius2) {
@@ -117,13 +119,14 @@ inline double importance(const LightBounds& lights, const Vec3f& point, const Ve
         if (!lights.normals.is_all()) {
             facing = -product(dot(Vec3d(lights.normals.axis), way), inverse);
             if (lights.both_sides) facing = std::abs(facing);
-            facing = detail::cosine_less(facing, static_cast<double>(lights.normals.cosine),
-                                         static_cast<double>(lights.normals.sine));
+            if (!lights.normals.is_axis())
+                facing = detail::cosine_less(facing, static_cast<double>(lights.normals.cosine),
+                                             static_cast<double>(lights.normals.sine));
         }
         emitted = detail::cosine_less(facing, cos_box, sin_box) + slack;
         if (!(received > 0) || !(emitted > static_cast<double>(lights.cos_emission))) return 0;
     }
-    return lights.intensity * received * emitted / std::max({distance2, radius2, 0x1p-200});
+    return lights.intensity * received * emitted / std::max(std::max(distance2, radius2), 0x1p-200);
 }
 
 }  // namespace hedgerow
