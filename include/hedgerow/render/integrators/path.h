@@ -99,20 +99,25 @@ private:
     void meet_surfaces(Flight& flight) const {
         flight.numbers.clear();
         for (std::size_t i = 0; i < flight.size; ++i)
-            flight.numbers.add(flight.paths[i].samples, flight.paths[i].state.vertex);
+            if (flight.hits[i]) flight.numbers.add(flight.paths[i].samples, flight.paths[i].state.vertex);
         flight.numbers.compute();
         flight.shadow_count = 0;
-        for (std::size_t i = 0; i < flight.size; ++i) flight.goes_on[i] = meets_surface(flight, i);
+        std::size_t hit_count = 0;
+        for (std::size_t i = 0; i < flight.size; ++i) {
+            flight.goes_on[i] = meets_surface(flight, i, hit_count);
+            hit_count += flight.hits[i] ? 1 : 0;
+        }
     }
-    /// One path arrives, looks for light and leaves. Returns whether it goes on.
-    bool meets_surface(Flight& flight, std::size_t i) const {
+    /// One path arrives, looks for light and leaves. Returns whether it goes on. `place`: that of its
+    /// numbers.
+    bool meets_surface(Flight& flight, std::size_t i, std::size_t place) const {
         Path& path = flight.paths[i];
         const Hit<T>& hit = flight.hits[i];
         const auto front = [&] { return flight.normals.at(hit, [&] { return world_.surfaces.front(hit); }); };
         const auto vertex = steps_.arrive(path.state, hit, front);
         if (!vertex) return false;
         const Scattering scattering = steps_.scattering_at(*vertex);
-        const VertexSamples numbers = flight.numbers[i];
+        const VertexSamples numbers = flight.numbers[place];
         if (const auto shadow = steps_.look_for_light(path.state, *vertex, scattering, numbers)) {
             flight.shadows[flight.shadow_count] = *shadow;
             flight.shaded[flight.shadow_count++] = i;

@@ -65,7 +65,8 @@ inline float cone_direction_density(float height) {
 /// A point of a triangle as its barycentric coordinates (b, c) of the second and third corner. The density is
 /// 1 over the area (Heitz, A low-distortion map between triangle and square, 2019).
 inline Vec2f triangle_point(float u, float v) {
-    return u < v ? Vec2f(u / 2, v - u / 2) : Vec2f(u - v / 2, v / 2);
+    const float half = std::min(u, v) / 2;
+    return {u - half, v - half};
 }
 
 }  // namespace hedgerow
