@@ -5,7 +5,8 @@
 #include <set>
 #include <vector>
 
-#include <hedgerow/render/sampling/path_samples.h>
+#include <hedgerow/base/instruction_set.h>
+#include <hedgerow/render/sampling/vertex_sample_batch.h>
 
 namespace hedgerow {
 namespace {
@@ -122,6 +123,33 @@ TEST(PathSamples, HaveTheseNumbersOnEveryProcessor) {
     EXPECT_EQ(sum, 2973681719u);
 }
 
+/// Numbers of a batch, with each instruction set and for sizes that fill no vector, are those of single
+/// paths.
+TEST(PathSamples, BatchesHaveTheNumbersOfSinglePaths) {
+    for (const auto set : instruction_sets()) {
+        use_instruction_set(set);
+        SCOPED_TRACE(set);
+        for (const Sampler sampler : {Sampler::sobol, Sampler::independent}) {
+            VertexSampleBatch batch(100);
+            for (const std::uint32_t size : {100u, 0u, 1u, 37u}) {
+                const auto path = [&](std::uint32_t i) {
+                    return PathSamples(PixelSequence(sampler, 3, i / 4), i + size);
+                };
+                batch.clear();
+                for (std::uint32_t i = 0; i < size; ++i) batch.add(path(i), 7 * i % 5);
+                batch.compute();
+                for (std::uint32_t i = 0; i < size; ++i) {
+                    const VertexSamples one = path(i).at(7 * i % 5), of_batch = batch[i];
+                    for (std::size_t k = 0; k < VertexSamples::count; ++k) {
+                        ASSERT_EQ(of_batch.pairs[k].x, one.pairs[k].x) << i << ", pair " << k;
+                        ASSERT_EQ(of_batch.pairs[k].y, one.pairs[k].y) << i << ", pair " << k;
+                    }
+                }
+            }
+        }
+    }
+    use_instruction_set(instruction_sets().front());
+}
 TEST(PathSamples, APathTakesEachPairOnce) {
     const PixelSequence pixel(Sampler::independent, 5, 6);
     const PathSamples path(pixel, 7);
