@@ -250,6 +250,7 @@ TEST_F(ExrTool, PathsHaveTheLayersOfDenoisers) {
         ASSERT_EQ(srgb(read.vector("R", "G", "B", i)), image.pixels[i]) << i;
         EXPECT_EQ(read.words.at("samples")[i], 8u);
         EXPECT_GE(read.value("error", i), 0);
+        EXPECT_EQ(read.value("uv.U", i) + read.value("uv.V", i), 0) << "no texture coordinates";
         const Vec3f albedo = read.vector("albedo.R", "albedo.G", "albedo.B", i),
                     normal = read.vector("normal.X", "normal.Y", "normal.Z", i);
         EXPECT_LE(max_component(albedo), 1);

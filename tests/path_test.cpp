@@ -276,7 +276,9 @@ TYPED_TEST(Paths, FirstSurfacesAreThoseThatScatter) {
     mirror.metallic = 1, mirror.roughness = 0;
     TriangleMesh<T> above = square<T>(50, 8);
     for (auto& t : above.triangles) std::swap(t[1], t[2]);
-    const auto model = model_of<T>({{square<T>(1, 0), mirror}, {above, matte({0.8f, 0.4f, 0.2f})}});
+    auto model = model_of<T>({{square<T>(1, 0), mirror}, {above, matte({0.8f, 0.4f, 0.2f})}});
+    model.objects[0].attributes.texture_coordinates.push_back(
+        {std::vector<Vec2f>(4, Vec2f(0.25f, 0.75f)), {}});
     const ModelScene<T> scene(model, serial_executor());
     const SceneLights<T> lights(scene);
     const PathScene<T> parts{scene, lights, scene.tracer()};
@@ -289,6 +291,7 @@ TYPED_TEST(Paths, FirstSurfacesAreThoseThatScatter) {
     EXPECT_LT(length(down[4].normal - Vec3f(0, 0, -1)), 1e-6f);
     EXPECT_NEAR(down[4].depth, 4, 0.5);
     EXPECT_EQ(down[4].instance, 0u);
+    EXPECT_EQ(down[4].uv, Vec2f(0.25f, 0.75f)) << "of the mirror";
     EXPECT_EQ(down[0].albedo, Vec3f()) << "beside the mirror";
     EXPECT_EQ(down[0].normal, Vec3f());
     EXPECT_EQ(down[0].depth, std::numeric_limits<float>::infinity());

@@ -27,7 +27,7 @@ constexpr const char* layers_help =
     "Of --shading path, in place of these counts:\n"
     "  error samples            the standard error of the light, and how many samples there are\n"
     "  albedo.R .G .B           colour of the first surface that scatters, and its normal in normal; means\n"
-    "  instance                 the object's number at the first hit\n\n";
+    "  instance uv.U .V         the object's number at the first hit, and its texture coordinates\n\n";
 
 /// What finds the hits of the samples.
 template <class T, class P>

@@ -65,6 +65,10 @@ struct PathLayers {
         const FirstSurface& first = first_surfaces[0];
         add({"albedo.R", "albedo.G", "albedo.B"}, first_surfaces, first.albedo);
         add({"normal.X", "normal.Y", "normal.Z"}, first_surfaces, first.normal);
+        for (std::size_t k = 0; k < 2; ++k)
+            layers.channels.push_back(
+                {std::array{"uv.U", "uv.V"}[k],
+                 Strided<float>(&first.uv.data[k], first_surfaces.size(), sizeof(FirstSurface))});
         layers.channels.push_back(
             {"depth.Z", Strided<float>(&first.depth, first_surfaces.size(), sizeof(FirstSurface))});
         add_ids("id", first_surfaces, first.primitive);

@@ -208,7 +208,7 @@ FirstSurface first_surface(const PathWorld<T>& world, const Tracer<T>& tracer, c
         if (!hit) return found;
         if (path.vertex == 0)
             found.depth = static_cast<float>(hit.t), found.primitive = hit.primitive,
-            found.instance = hit.instance;
+            found.instance = hit.instance, found.uv = world.surfaces.texture_coordinates(hit);
         const PathVertex<T> vertex = world.surfaces.at(path.ray, hit);
         const Scattering scattering = steps.scattering_at(vertex);
         if (!scattering.only_specular() || vertex.unlit) {

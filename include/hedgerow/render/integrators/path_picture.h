@@ -122,7 +122,9 @@ PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& opt
 struct FirstSurface {
     Vec3f albedo;  ///< its base colour, from 0 to 1, tinted by what shows it
     Vec3f normal;  ///< by which it scatters, towards the eye
-    /// The hit of the camera's ray: its distance, and what it hits.
+    /// The hit of the camera's ray: its texture coordinates (0 of surfaces without), its distance, and what
+    /// it hits.
+    Vec2f uv;
     float depth = std::numeric_limits<float>::infinity();
     std::uint32_t primitive = Hit<float>::none, instance = Hit<float>::none;
 };

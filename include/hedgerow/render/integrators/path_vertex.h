@@ -50,6 +50,10 @@ public:
         return alpha >= 1 || PixelSequence::unit(own) < alpha;
     }
 
+    /// The texture coordinates at a hit; 0 of surfaces without.
+    Vec2f texture_coordinates(const Hit<T>& hit) const {
+        return scene_.lookups().texture_coordinates(hit).value_or(Vec2f());
+    }
     /// The normal of the front at a hit, of length 1. O(1).
     Vec<T, 3> front(const Hit<T>& hit) const { return normal(scene_.instances(), hit); }
     /// The vertex at a hit of a ray whose direction has length 1. O(1).

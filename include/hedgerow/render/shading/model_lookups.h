@@ -93,6 +93,11 @@ public:
         if (!m.normal_texture) return Vec3f(normal);
         return mapped_normal(hit, part, normal, e1, e2);
     }
+    /// The texture coordinates at a hit, of the first set, as they were given; nothing of a surface without.
+    std::optional<Vec2f> texture_coordinates(const Hit<T>& hit) const {
+        const auto& sets = object(hit).attributes.texture_coordinates;
+        return sets.empty() ? std::nullopt : sets[0].at(object(hit).mesh, hit.element, u(hit), v(hit));
+    }
 
 private:
     struct LevelsOnDemand {
