@@ -56,8 +56,10 @@ public:
         const float choice = std::min((choose_lobe - broad) / chance_facets_, 0x1.fffffep-1f);
         std::optional<ScatteredDirection> s = facets_.sample(o_, choice, u, v);
         if (!s) return s;
-        if (!s->specular) return weighed(*s);
-        s->weight /= chance_facets_;
+        if (!s->specular)
+            weigh(s);
+        else
+            s->weight /= chance_facets_;
         return s;
     }
     /// Whether all directions are single ones, so that light cannot be sampled in place of the surface.
@@ -83,20 +85,20 @@ private:
     }
 
     std::optional<ScatteredDirection> sample_broad(float choose_lobe, float u, float v) const {
-        ScatteredDirection s;
+        std::optional<ScatteredDirection> s(std::in_place);
         // Light after several reflections leaves at grazing directions, for which cosines would be few.
         const bool matte = choose_lobe < chance_matte_ || !(chance_up_ + chance_down_ > 0);
-        s.direction = matte ? cosine_direction(u, v) : hemisphere_direction(u, v);
-        s.transmitted = !matte && chance_down_ > 0 && choose_lobe >= chance_matte_ + chance_up_;
-        if (s.transmitted) s.direction[2] = -s.direction[2];
-        return weighed(s);
-    }
-    /// A direction that is not single, with its density and weight. Returns nothing if it is impossible.
-    std::optional<ScatteredDirection> weighed(ScatteredDirection s) const {
-        const ScatteredLight there = at(s.direction);
-        if (!(there.density > 0)) return std::nullopt;
-        s.density = there.density, s.weight = there.value / there.density;
+        s->direction = matte ? cosine_direction(u, v) : hemisphere_direction(u, v);
+        s->transmitted = !matte && chance_down_ > 0 && choose_lobe >= chance_matte_ + chance_up_;
+        if (s->transmitted) s->direction[2] = -s->direction[2];
+        weigh(s);
         return s;
+    }
+    /// Sets the density and weight of a direction that is not single. Leaves nothing if it is impossible.
+    void weigh(std::optional<ScatteredDirection>& s) const {
+        const ScatteredLight there = at(s->direction);
+        if (!(there.density > 0)) return s.reset();
+        s->density = there.density, s->weight = there.value / there.density;
     }
 
     /// Products with lower heights of o can vanish.
