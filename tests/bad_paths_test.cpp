@@ -137,7 +137,7 @@ TEST(BadPaths, SamplesThatAreNotFiniteAreDroppedAndCounted) {
         const PathPicture picture = trace(model, options);
         expect_finite(picture);
         EXPECT_GT(picture.dropped(), 16u * 48 / 2);
-        EXPECT_EQ(picture.samples(), 16u) << "those that were dropped count, as black ones";
+        EXPECT_EQ(picture.samples, 16u) << "those that were dropped count, as black ones";
     }
     options.paths.bounces = 0;
     EXPECT_EQ(trace(model, options).dropped(), 0u);
