@@ -1,5 +1,6 @@
 /// The tool: reads the command line and runs a verb.
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -180,6 +181,12 @@ void hold_standard_streams() {
         if (fcntl(stream, F_GETFD) == -1) static_cast<void>(open("/dev/null", O_RDONLY));
 }
 
+/// Lets a write beyond the limit on the size of files fail, as on a full disk, in place of ending the
+/// process.
+void survive_limits_of_files() {
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
 /// Prints a message to stderr and returns the exit code.
 int failed(int code, const std::string& why) {
     std::fprintf(stderr, "hedgerow: %s\n", why.c_str());
@@ -226,6 +233,7 @@ int run_safely(int count, char** arguments) {
 
 int main(int count, char** arguments) {
     hedgerow::cli::hold_standard_streams();
+    hedgerow::cli::survive_limits_of_files();
     hedgerow::cli::listen_to_interrupts();
     return hedgerow::cli::run_safely(count, arguments);
 }

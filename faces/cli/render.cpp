@@ -296,9 +296,11 @@ Run add_render(CLI::App& verb) {
         if (a->uses_beams() && a->structure != "wide")
             throw UsageError("--structure " + a->structure + ": beams go through 'wide' alone");
         if (a->sheet) check_sheet(*a);
-        check_picture_memory(a->view.size, a->layers);
+        if (a->follows_paths())
+            check_paths(*a), check_paths_memory(*a);
+        else
+            check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
-        if (a->follows_paths()) check_paths(*a);
         const bool by_looks = a->sheet || a->follows_paths() || parse_shading(a->shading) == Shading::colour;
         if (by_looks && a->uses_beams())
             throw UsageError("beams go through one mesh without looks: leave out --visibility beams");

@@ -29,6 +29,10 @@ int render_looks(const RenderArguments& a);
 template <class T>
 int render_paths(const RenderArguments& a);
 
+/// Throws MemoryShort if there is no memory for the light of a picture by paths, and to save it. Throws
+/// UsageError as parse_size does.
+void check_paths_memory(const RenderArguments& a);
+
 /// Throws UsageError for options that no sheet of pictures has, and MemoryShort as check_picture_memory does.
 void check_sheet(const RenderArguments& a);
 

@@ -110,8 +110,8 @@ Lines what_it_is_of(const RenderArguments& a, const ShownModel<T>& shown) {
     const Camera& c = shown.options.camera;
     const auto vector = [](const Vec3f& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); };
     return {{"version", std::string(version)},
+            {"precision", sizeof(T) == sizeof(float) ? "float" : "double"},  // another scene, too
             {"scene", fmt::format("{:016x}", fingerprint(shown.model))},
-            {"precision", sizeof(T) == sizeof(float) ? "float" : "double"},
             {"camera",
              fmt::format(
                  "eye {}, target {}, up {}, projection {}, field of view {}, height {}, lens {}, focus {}",
@@ -207,8 +207,8 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
             line.rename(fmt::format("following paths, noise {:.2g}%,", 100 * noise));
         if (now() < save_at || picture.samples == 0) continue;
         const double began = now();
-        save_picture(a, picture, first);
         if (!a.resume.empty()) save_paths(a.resume, lines, picture);
+        save_picture(a, picture, first);
         // Saving takes at most a fiftieth of the time, and no more than half a minute can be lost.
         save_at = now() + std::clamp(50 * (now() - began), 10.0, 25.0);
     }
@@ -222,6 +222,15 @@ std::string noise_text(const RenderArguments& a, double noise) {
 }
 
 }  // namespace
+
+void check_paths_memory(const RenderArguments& a) {
+    constexpr std::size_t of_sums = 2 * sizeof(LightSums::Pixel);  // of both halves
+    const std::size_t of_work = of_sums + (a.layers ? sizeof(FirstSurface) : 0);
+    const std::size_t of_picture =
+        a.layers ? sizeof(Vec3f) + sizeof(float) + sizeof(std::uint32_t) : sizeof(Image::Pixel);
+    const std::size_t of_state = a.resume.empty() ? 0 : 2 * of_sums;  // and its file
+    check_memory_of_pixels(a.view.size, of_work + std::max(of_picture, of_state));
+}
 
 template <class T>
 int render_paths(const RenderArguments& a) {

@@ -95,9 +95,12 @@ FinishedPicture finish_picture(const std::string& output, bool some, bool all) {
 }
 
 void check_picture_memory(const std::string& size, bool layers) {
+    check_memory_of_pixels(size, sizeof(Image::Pixel) + sizeof(Vec3f) + (layers ? sizeof(Seen) : 0));
+}
+void check_memory_of_pixels(const std::string& size, std::size_t bytes_of_pixel) {
     const auto [width, height] = parse_size(size);
-    const double pixel = sizeof(Image::Pixel) + sizeof(Vec3f) + (layers ? sizeof(Seen) : 0);
-    expect_memory("a picture of " + size, pixel * width * height, "ask for a smaller --size");
+    expect_memory("a picture of " + size, double(bytes_of_pixel) * width * height,
+                  "ask for a smaller --size");
 }
 
 void save(const std::string& output, const Picture& picture, std::uint64_t seed) {

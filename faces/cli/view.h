@@ -65,9 +65,10 @@ struct FinishedPicture {
 /// Chooses the file by what is finished: all rows, or some. Throws Cancelled if there are none.
 FinishedPicture finish_picture(const std::string& output, bool some, bool all);
 
-/// Throws MemoryShort if there is no memory for a picture of this size, with layers if `layers` is set.
-/// Throws UsageError as parse_size does.
+/// Throws MemoryShort if there is no memory for a picture of this size, with layers if `layers` is set, or
+/// with so many bytes a pixel. Throw UsageError as parse_size does.
 void check_picture_memory(const std::string& size, bool layers);
+void check_memory_of_pixels(const std::string& size, std::size_t bytes_of_pixel);
 
 /// Saves the layers of a picture as .exr if it has them, else its colours as .png.
 void save(const std::string& output, const Picture& picture, std::uint64_t seed);
