@@ -280,45 +280,85 @@ double squared_error(const Lights& lights, const Emitters& emitters, const Recei
     return squares / samples;
 }
 
-TEST(LightTree, HasAtMostHalfTheErrorOfAChoiceByPower) {
-    // Lamps of some triangles each, over a floor, with different powers.
+/// The error of choices by the tree over that of choices by power, at points of a floor from −reach to reach.
+double error_beside_power(const Emitters& emitters, double reach) {
+    const LightTree tree(emitters);
+    const PowerLights power(emitters);
+    Random random(18);
+    double of_tree = 0, of_power = 0, bias = 0;
+    constexpr int points = 20;
+    for (int k = 0; k < points; ++k) {
+        const Receiver r{{float(random.uniform(-reach, reach)), 0, float(random.uniform(-reach, reach))},
+                         {0, 1, 0}};
+        double exact = 0;
+        for (std::size_t i = 0; i < emitters.size(); ++i)
+            exact += irradiance_by(std::get<EmissiveTriangle>(emitters[i]), r.point, r.normal, 3);
+        double mean = 0, ignored = 0;
+        const auto stream = static_cast<std::uint64_t>(k);
+        const double error = squared_error(tree, emitters, r, exact, Random(19, stream), mean);
+        // Unbiased within 4 standard errors of 2000 samples.
+        EXPECT_LT(std::abs(mean / exact - 1), 4 * std::sqrt(error / 2000) + 2e-3);
+        bias += mean / exact - 1;
+        of_tree += error;
+        of_power += squared_error(power, emitters, r, exact, Random(20, stream), ignored);
+    }
+    EXPECT_LT(std::abs(bias / points), 4 * std::sqrt(of_tree / points / 2000 / points) + 2e-3);
+    return std::sqrt(of_tree / of_power);
+}
+/// Groups of triangles of one radiance, over a floor.
+Emitters lamps(int count, int triangles, double size, double reach) {
     Random random(18);
     Emitters emitters;
-    for (int lamp = 0; lamp < 400; ++lamp) {
-        const Vec3f at{float(random.uniform(-20, 20)), float(random.uniform(1, 3)),
-                       float(random.uniform(-20, 20))};
+    for (int lamp = 0; lamp < count; ++lamp) {
+        const Vec3f at{float(random.uniform(-reach, reach)), float(random.uniform(1, 3)),
+                       float(random.uniform(-reach, reach))};
         const Vec3f radiance = Vec3f::all(float(random.uniform(0.2, 5)));
-        for (int i = 0; i < 25; ++i) {
+        for (int i = 0; i < triangles; ++i) {
             EmissiveTriangle t = random_triangle(random, 0.1);
-            const Vec3f shift = at + t.a * 0.2f - t.a;
+            const Vec3f shift = at + t.a * float(size) - t.a;
             t.a += shift, t.b += shift, t.c += shift;
             t.radiance = radiance;
             emitters.add(t);
         }
     }
-    ASSERT_EQ(emitters.size(), 10000u);
-    const LightTree tree(emitters);
-    const PowerLights power(emitters);
-    double of_tree = 0, of_power = 0, bias = 0;
-    constexpr int points = 20;
-    for (int k = 0; k < points; ++k) {
-        const Receiver r{{float(random.uniform(-20, 20)), 0, float(random.uniform(-20, 20))}, {0, 1, 0}};
-        double exact = 0;
-        for (std::size_t i = 0; i < emitters.size(); ++i)
-            exact += irradiance_by(std::get<EmissiveTriangle>(emitters[i]), r.point, r.normal, 3);
-        double mean = 0, ignored = 0;
-        const double error =
-            squared_error(tree, emitters, r, exact, Random(19, static_cast<std::uint64_t>(k)), mean);
-        // Unbiased within 4 standard errors of 2000 samples.
-        EXPECT_LT(std::abs(mean / exact - 1), 4 * std::sqrt(error / 2000) + 2e-3);
-        bias += mean / exact - 1;
-        of_tree += error;
-        of_power +=
-            squared_error(power, emitters, r, exact, Random(20, static_cast<std::uint64_t>(k)), ignored);
+    return emitters;
+}
+
+TEST(LightTree, HasAtMostHalfTheErrorOfAChoiceByPower) {
+    const auto expect = [](const char* name, const Emitters& emitters, double reach) {
+        ASSERT_EQ(emitters.size(), 10000u) << name;
+        EXPECT_LE(error_beside_power(emitters, reach), 0.5) << name;
+    };
+    expect("lamps of 25 triangles", lamps(400, 25, 0.2, 20), 20);
+    expect("single triangles", lamps(10000, 1, 0, 20), 20);
+    expect("large lamps", lamps(20, 500, 2, 20), 20);
+    // Windows in walls around, which shine inward: each triangle has one side.
+    Random random(21);
+    Emitters windows;
+    while (windows.size() < 10000) {
+        const double along = random.uniform(-20, 20), up = random.uniform(0.5, 6);
+        const Vec3f radiance = Vec3f::all(float(random.uniform(0.2, 5)));
+        for (int wall = 0; wall < 4; ++wall) {
+            const float s = wall % 2 == 0 ? 20.0f : -20.0f;
+            const auto place = [&](double x, double y) {
+                return wall < 2 ? Vec3f(s, float(y), float(x)) : Vec3f(float(x), float(y), s);
+            };
+            EmissiveTriangle t{place(along, up), place(along + 0.1, up), place(along, up + 0.1), radiance,
+                               false};
+            if (dot(t.normal(), Vec3d(t.a)) > 0) std::swap(t.b, t.c);
+            windows.add(t);
+        }
     }
-    EXPECT_LT(std::abs(bias / points), 4 * std::sqrt(of_tree / points / 2000 / points) + 2e-3);
-    const double ratio = std::sqrt(of_tree / of_power);
-    EXPECT_LE(ratio, 0.5);
+    expect("windows", windows, 18);
+    // Few lamps that are a hundred times as bright, beyond the others.
+    Emitters uneven = lamps(300, 30, 0.3, 10);
+    for (int i = 0; i < 1000; ++i) {
+        EmissiveTriangle t = random_triangle(random, 0.1);
+        for (Vec3f* corner : {&t.a, &t.b, &t.c}) *corner += Vec3f(60, 8, 0);
+        t.radiance = Vec3f::all(300);
+        uneven.add(t);
+    }
+    expect("uneven lamps", uneven, 10);
 }
 
 }  // namespace
