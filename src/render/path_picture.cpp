@@ -237,9 +237,9 @@ std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPi
                 FirstSurface& mean = all[camera.number(x, y)];
                 Vec3d albedo, normal;
                 for (std::uint32_t k = 0; k < samples; ++k) {
-                    const auto start =
-                        even ? camera.start<T>(x, y, 0, k) : camera.start<T>(x, y, k % 2, k / 2);
-                    const FirstSurface one = first_surface(world, scene.tracer, start);
+                    const auto [half, sample] = half_sample(o.division, k);
+                    const FirstSurface one =
+                        first_surface(world, scene.tracer, camera.start<T>(x, y, half, sample));
                     if (k == 0) mean = one;
                     albedo = albedo + Vec3d(one.albedo), normal = normal + Vec3d(one.normal);
                 }
