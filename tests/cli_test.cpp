@@ -313,6 +313,10 @@ TEST_F(Cli, PathsShowScatteredLight) {
     EXPECT_GT(of_calm["noise"].get<double>(), 0.06) << "no more samples than it takes";
     EXPECT_GT(of_calm["samples"].get<double>(), 31);
     expect_usage(scene + file("x.png") + " --noise 0", "--noise");
+    ASSERT_EQ(run(scene + file("denoised.png") + " --spp 8 --denoise").code, 0);
+    ASSERT_EQ(run(scene + file("raw.png") + " --spp 8").code, 0);
+    EXPECT_NE(pixels_of(file("denoised.png")), pixels_of(file("raw.png")));
+    expect_usage(scene + file("x.png") + " --denoise --spp 3", "four samples");
     expect_usage(scene + file("x.png") + " --sampler random", "--sampler");
     expect_usage(scene + file("x.png") + " --spp 0", "--spp");
 }

@@ -265,6 +265,21 @@ TEST_F(ExrTool, PathsHaveTheLayersOfDenoisers) {
     EXPECT_GT(seen, 300u);
 }
 
+/// Light without noise is beside the raw light, which is the mean of both halves, and is what a .png shows.
+TEST_F(ExrTool, DenoisedPathsAreALayerOfTheirOwn) {
+    const std::string render = "render gen:cornell-box --shading path --spp 8 --size 24x20 --denoise";
+    const Read read = written(render);
+    ASSERT_EQ(run(render + " --quiet -o " + file("a.png")).code, 0);
+    const Image image = load_png(file("a.png"));
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const Vec3f denoised = read.vector("denoised.R", "denoised.G", "denoised.B", i);
+        ASSERT_EQ(srgb(denoised), image.pixels[i]) << i;
+        differ += denoised != read.vector("R", "G", "B", i);
+    }
+    EXPECT_GT(differ, 200u);
+}
+
 TEST_F(ExrTool, ColoursAreTheLightOfThePng) {
     for (const char* shading : {"normals", "depth", "diffuse"}) {
         const std::string render =

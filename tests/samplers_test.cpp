@@ -150,7 +150,7 @@ TEST(Samplers, LightsOfASceneHaveTheDensityOfTheirHits) {
             const PathSamples numbers(PixelSequence(Sampler::independent, 2, static_cast<std::uint64_t>(i)),
                                       0);
             const SampledLight s =
-                lights.sample(point, normal, numbers.light_choice(0), numbers.light_point(0));
+                lights.sample(point, normal, numbers.at(0).light_choice(), numbers.at(0).light_point());
             if (s)
                 counts[grid.cell(s.light.direction)] += 1;
             else

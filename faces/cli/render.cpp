@@ -27,6 +27,7 @@ constexpr const char* layers_help =
     "Of --shading path, in place of these counts:\n"
     "  error samples            the standard error of the light, and how many samples there are\n"
     "  albedo.R .G .B           colour of the first surface that scatters, and its normal in normal; means\n"
+    "  denoised.R .G .B         with --denoise: linear light with less noise\n"
     "  instance uv.U .V         the object's number at the first hit, and its texture coordinates\n\n";
 
 /// What finds the hits of the samples.
@@ -175,9 +176,9 @@ template <class Names>
 CLI::IsMember one_of(const Names& names) {
     return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
 }
-constexpr auto options_of_paths = {"--bounces", "--sampler",  "--filter",   "--tone",
-                                   "--time",    "--noise",    "--adaptive", "--preview",
-                                   "--resume",  "--exposure", "--save-rays"};
+constexpr auto options_of_paths = {"--bounces", "--sampler",  "--filter",    "--tone",
+                                   "--time",    "--noise",    "--adaptive",  "--preview",
+                                   "--resume",  "--exposure", "--save-rays", "--denoise"};
 /// Throws UsageError for options that are not of paths.
 void check_paths(const RenderArguments& a) {
     const auto refuse = [](bool given, const char* option) {
@@ -188,6 +189,7 @@ void check_paths(const RenderArguments& a) {
     refuse(a.refines, "--refine"), refuse(a.uses_cones(), a.cones ? "--cones" : "--light-size");
     refuse(a.transparent || a.opacity < 1, "--transparency and --opacity");
     refuse(a.visibility != "cast", "--visibility");
+    if (a.denoises && a.spp < 4) throw UsageError("--denoise: a picture needs four samples, as --spp 4");
 }
 
 }  // namespace
@@ -258,6 +260,9 @@ Run add_render(CLI::App& verb) {
         ->check(CLI::Range(1e-6, 1.0));
     verb.add_flag("--adaptive", a->adaptive,
                   "of --shading path: more samples for pixels whose samples differ, with --spp on the mean");
+    verb.add_flag("--denoise", a->denoises,
+                  "of --shading path: take the noise out of a .png, and write layers without noise into an "
+                  ".exr beside the others");
     verb.add_flag("--preview", a->preview, "of --shading path: show the picture in the terminal meanwhile");
     verb.add_option(
         "--resume", a->resume,

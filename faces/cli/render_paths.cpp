@@ -16,6 +16,7 @@
 #include <hedgerow/looks/fingerprint.h>
 #include <hedgerow/render/film/colour.h>
 #include <hedgerow/render/film/tone.h>
+#include <hedgerow/render/integrators/denoise_paths.h>
 #include <hedgerow/render/integrators/path_picture.h>
 #include <hedgerow/version.h>
 
@@ -34,6 +35,10 @@ E named(const Names& names, std::string_view name) {
     return static_cast<E>(std::ranges::find(names, name) - names.begin());
 }
 
+Division division_of(const RenderArguments& a) {
+    if (a.adaptive) return Division::adaptive;
+    return a.denoises ? Division::halves : Division::even;
+}
 PathPictureOptions path_options(const RenderArguments& a, const RenderOptions& shown) {
     PathPictureOptions o;
     o.camera = shown.camera, o.width = shown.width, o.height = shown.height;
@@ -41,21 +46,21 @@ PathPictureOptions path_options(const RenderArguments& a, const RenderOptions& s
     o.paths.seed = a.seed, o.paths.bounces = a.bounces;
     o.filter = named<PixelFilter>(pixel_filter_names, a.filter);
     o.paths.sampler = named<Sampler>(sampler_names, a.sampler);
-    if (a.adaptive) o.division = Division::adaptive;
+    o.division = division_of(a);
     return o;
 }
-Image image_of(const RenderArguments& a, const PathPicture& picture) {
+Image image_of(const RenderArguments& a, const PathPicture& picture, const std::vector<Vec3f>& light) {
     Image image(picture.width, picture.height);
     const auto brightness = static_cast<float>(power(2, static_cast<double>(a.exposure)));
     const Tone tone = named<Tone>(tone_names, a.tone);
-    for (std::size_t i = 0; i < picture.light.size(); ++i)
-        image.pixels[i] = srgb(toned(tone, picture.light.mean(i) * brightness));
+    for (std::size_t i = 0; i < light.size(); ++i) image.pixels[i] = srgb(toned(tone, light[i] * brightness));
     return image;
 }
-/// The channels of an .exr: linear light, its standard error and the number of samples, and what is seen
-/// first.
+/// The channels of an .exr: linear light, its standard error and the number of samples, what is seen first,
+/// and light without noise, if there is some.
 struct PathLayers {
-    explicit PathLayers(const PathPicture& picture, const std::vector<FirstSurface>& first_surfaces)
+    PathLayers(const PathPicture& picture, const std::vector<FirstSurface>& first_surfaces,
+               const std::vector<Vec3f>& denoised)
         : light(picture.means()), layers{picture.width, picture.height, {}} {
         for (std::size_t i = 0; i < light.size(); ++i)
             errors.push_back(picture.light.standard_error(i)), samples.push_back(picture.light.samples(i));
@@ -73,6 +78,7 @@ struct PathLayers {
             {"depth.Z", Strided<float>(&first.depth, first_surfaces.size(), sizeof(FirstSurface))});
         add_ids("id", first_surfaces, first.primitive);
         add_ids("instance", first_surfaces, first.instance);
+        if (!denoised.empty()) add({"denoised.R", "denoised.G", "denoised.B"}, denoised, denoised[0]);
     }
     PathLayers(const PathLayers&) = delete;
 
@@ -93,14 +99,27 @@ private:
         layers.channels.push_back({name, Strided<std::uint32_t>(&first, pixels.size(), sizeof(Pixel))});
     }
 };
-/// Saves a picture; what is seen first is for an .exr alone.
+/// Saves a picture; what is seen first is for an .exr alone. `denoised` is its light without noise, or empty.
 void save_picture(const RenderArguments& a, const PathPicture& picture,
-                  const std::vector<FirstSurface>& first_surfaces) {
+                  const std::vector<FirstSurface>& first_surfaces, const std::vector<Vec3f>& denoised = {}) {
     const Notes notes = picture_notes(a.seed);
     if (a.layers)
-        save_exr(a.output, PathLayers(picture, first_surfaces).layers, {}, notes);
+        save_exr(a.output, PathLayers(picture, first_surfaces, denoised).layers, {}, notes);
     else
-        save_png(a.output, image_of(a, picture), {}, notes);
+        save_png(a.output, image_of(a, picture, denoised.empty() ? picture.means() : denoised), {}, notes);
+}
+/// The light of a picture without noise; empty if that is not asked for, or there are too few samples.
+std::vector<Vec3f> without_noise(const RenderArguments& a, const PathPicture& picture,
+                                 const std::vector<FirstSurface>& first_surfaces) {
+    if (!a.denoises) return {};
+    if (!can_be_denoised(picture)) {
+        fmt::print(stderr, "hedgerow: warning: some pixels have too few samples to be denoised\n");
+        return {};
+    }
+    ProgressLine line("taking noise out", a.quiet);
+    Progress progress = line.progress();
+    progress.cancel = nullptr;  // after Ctrl-C, too
+    return denoised(picture, first_surfaces, {}, default_executor(), progress);
 }
 
 /// All that the light of a picture depends on, but for the number of samples.
@@ -121,7 +140,7 @@ Lines what_it_is_of(const RenderArguments& a, const ShownModel<T>& shown) {
             {"seed", std::to_string(a.seed)},
             {"sampler", a.sampler},
             {"filter", a.filter},
-            {"division", a.adaptive ? "adaptive" : "even"},
+            {"division", std::string(division_names[static_cast<std::size_t>(division_of(a))])},
             {"bounces", std::to_string(a.bounces)}};
 }
 constexpr std::uint32_t state_version = 2;
@@ -197,7 +216,8 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
         const std::uint32_t goal = next_samples(a, picture);
         if (a.preview && (now() > show_at || goal == picture.samples)) {
             const TerminalSize size = terminal_size();
-            line.show_above(terminal_picture(image_of(a, picture), size.columns, size.rows - 2));
+            line.show_above(
+                terminal_picture(image_of(a, picture, picture.means()), size.columns, size.rows - 2));
             show_at = now() + 2;
         }
         if (goal == picture.samples || over()) break;
@@ -218,14 +238,15 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
 std::string noise_text(const RenderArguments& a, double noise) {
     if (!(noise < 1e3)) return "too few samples to tell the noise";
     // Samples that are spread evenly have less noise than they show.
-    return fmt::format("noise {}{:.2g}% of the light", a.adaptive ? "" : "at most ", 100 * noise);
+    return fmt::format("noise {}{:.2g}% of the light", division_of(a) == Division::even ? "at most " : "",
+                       100 * noise);
 }
 
 }  // namespace
 
 void check_paths_memory(const RenderArguments& a) {
     constexpr std::size_t of_sums = 2 * sizeof(LightSums::Pixel);  // of both halves
-    const std::size_t of_work = of_sums + (a.layers ? sizeof(FirstSurface) : 0);
+    const std::size_t of_work = of_sums + (a.layers || a.denoises ? sizeof(FirstSurface) : 0);
     const std::size_t of_picture =
         a.layers ? sizeof(Vec3f) + sizeof(float) + sizeof(std::uint32_t) : sizeof(Image::Pixel);
     const std::size_t of_state = a.resume.empty() ? 0 : 2 * of_sums;  // and its file
@@ -247,7 +268,8 @@ int render_paths(const RenderArguments& a) {
     if (!a.resume.empty() && std::filesystem::exists(a.resume)) load_paths(a.resume, lines, picture);
     const PathScene<T> scene{shown.scene, lights, shown.scene.tracer()};
     std::vector<FirstSurface> first;
-    if (a.layers) first = first_surfaces(scene, options, std::min(options.samples, 16u), default_executor());
+    if (a.layers || a.denoises)
+        first = first_surfaces(scene, options, std::min(options.samples, 16u), default_executor());
     const double before = picture.mean_samples();
     const double start = now();
     const bool finished = follow(a, scene, options, lines, first, picture);
@@ -255,7 +277,7 @@ int render_paths(const RenderArguments& a) {
     if (!a.resume.empty()) save_paths(a.resume, lines, picture);
     const double samples = picture.mean_samples(), noise = picture.light.noise();
     if (samples == 0) throw Cancelled("no pixel has a sample");
-    save_picture(a, picture, first);
+    save_picture(a, picture, first, without_noise(a, picture, first));
     if (const std::uint64_t dropped = picture.dropped(); dropped > 0)
         fmt::print(stderr, "hedgerow: warning: {} samples were no finite light, and count as black\n",
                    dropped);

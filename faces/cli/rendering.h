@@ -26,6 +26,7 @@ struct RenderArguments : Common {
     double noise = 0;                     // at which paths end; 0: they end by number
     bool adaptive = false;                // samples of paths
     bool preview = false;                 // of paths, in the terminal
+    bool denoises = false;                // pictures of paths
     std::string save_rays;                // the prefix of files for rays of paths
     bool footprints = false;              // of textures
     bool refines = false;                 // where samples differ

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include <hedgerow/base/error.h>
@@ -21,6 +22,7 @@ namespace hedgerow {
 /// in halves, and pixels whose samples differ much have more. What the first samples of one half show decides
 /// how many the other gets, so no pixel is biased.
 enum class Division : std::uint8_t { even, halves, adaptive };
+inline constexpr std::array<std::string_view, 3> division_names = {"even", "halves", "adaptive"};
 
 /// The half that has sample k of a pixel, and the sample's number there.
 struct HalfSample {
