@@ -32,7 +32,9 @@ struct Case {
     NoisyPicture picture() const {
         return {width, height, {light[0], light[1]}, {variance[0], variance[1]}, albedo, normal, depth};
     }
-    std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * width + x); }
+    std::size_t at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
 };
 using Truth = std::function<Vec3f(int, int)>;
 
@@ -182,7 +184,8 @@ Case everything(int width, int height) {
     const auto is_sky = [](int x, int y) { return y < 5 + x % 3; };
     Case c = noisy(width, height, [&](int x, int y) {
         if (is_sky(x, y)) return Vec3f(0.3f, 0.4f, 0.9f);
-        return Vec3f(0.5f + product(0.02f, static_cast<float>(x)), (x / 4 + y / 4) % 2 == 0 ? 0.9f : 0.3f, 0.2f);
+        return Vec3f(0.5f + product(0.02f, static_cast<float>(x)), (x / 4 + y / 4) % 2 == 0 ? 0.9f : 0.3f,
+                     0.2f);
     });
     Random random(2, 0);
     const auto some = [&] { return static_cast<float>(random.uniform()); };

@@ -55,7 +55,7 @@ struct DenoiserOptions {
 ///
 /// Light is never negative. Pixels without variance whose halves agree stay as they are, unless they are
 /// black, which may be by chance. A half that is far brighter than the other and than its neighbours is cut
-/// off, which takes up to half a hundredth of the light of a noisy picture.
+/// off, which takes about a hundredth of the light of a picture that is full of such samples.
 ///
 /// O(pixels · radius²): about 4 µs a pixel and thread at a radius of 5. Takes 160 bytes a pixel. Throws
 /// InputError for sizes that do not match, options out of range, values that are no numbers, light, albedo or
