@@ -80,8 +80,8 @@ struct Box {
 class Divisions : public testing::TestWithParam<Division> {};
 INSTANTIATE_TEST_SUITE_P(All, Divisions,
                          testing::Values(Division::even, Division::halves, Division::adaptive),
-                         [](const auto& info) {
-                             return std::string(division_names[static_cast<std::size_t>(info.param)]);
+                         [](const auto& test) {
+                             return std::string(division_names[static_cast<std::size_t>(test.param)]);
                          });
 
 /// Interrupted at any moment and continued, one by one or many at once.
