@@ -1,6 +1,7 @@
 /// Pictures of paths that were looked at, held to their bits: another processor, compiler or instruction set
 /// has the same ones.
 #include <gtest/gtest.h>
+#include <array>
 
 #include <bit>
 #include <memory>
@@ -174,12 +175,11 @@ PathPicture pots_and_lamps() {
     const Rows<3> turned{Vec3d(0.6, -0.8, 0), Vec3d(0.8, 0.6, 0), Vec3d(0, 0, 1)},
         mirrored{Vec3d(-1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)},
         stretched{Vec3d(0.6, 0, 0), Vec3d(0, 0.6, 0), Vec3d(0, 0, 1.5)};
-    for (int i = 0; i < 9; ++i)
-        place(model, static_cast<std::uint32_t>(i % 2),
-              {i % 3 == 0   ? turned
-               : i % 3 == 1 ? mirrored
-                            : stretched,
-               Vec3d(7 * (i % 3 - 1), 7 * (i / 3 - 1), 0)});
+    const std::array forms{turned, mirrored, stretched};
+    for (int row = -1; row <= 1; ++row)
+        for (int column = -1; column <= 1; ++column)
+            place(model, static_cast<std::uint32_t>((row + column) & 1),
+                  {forms[static_cast<std::size_t>(column + 1)], Vec3d(7 * column, 7 * row, 0)});
     for (std::uint32_t i = 0; i < 15; ++i) {
         Random random(3, i);
         const Vec3f colour(random.in_cube<3>());

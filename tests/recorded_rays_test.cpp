@@ -37,6 +37,7 @@ TYPED_TEST_SUITE(RecordedRays, Scalars);
 template <class T>
 std::vector<std::array<T, 8>> sorted(const std::vector<Ray<T, 3>>& rays) {
     std::vector<std::array<T, 8>> all;
+    all.reserve(rays.size());
     for (const auto& [o, d, t_min, t_max] : rays)
         all.push_back({o[0], o[1], o[2], d[0], d[1], d[2], t_min, t_max});
     std::ranges::sort(all);

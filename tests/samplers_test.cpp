@@ -23,10 +23,10 @@ public:
     CellsOfSquare(double low, double high) : low_(low), high_(high), counts_(std::size_t(side) * side) {}
 
     void add(const Vec2f& p) {
-        const auto cell = [&](float x) {
+        const auto place = [&](float x) {
             return std::clamp(static_cast<int>((double(x) - low_) / (high_ - low_) * side), 0, side - 1);
         };
-        counts_[static_cast<std::size_t>(cell(p[1]) * side + cell(p[0]))] += 1, ++samples_;
+        counts_[cell(place(p[0]), place(p[1]))] += 1, ++samples_;
     }
     /// How many standard deviations χ² lies above its mean, for a density that must integrate to 1.
     double score(const std::function<double(const Vec2d&)>& density) const {
@@ -37,13 +37,16 @@ public:
         for (int y = 0; y < side * fine; ++y)
             for (int x = 0; x < side * fine; ++x) {
                 const double p = density({low_ + (x + 0.5) * step, low_ + (y + 0.5) * step}) * step * step;
-                expected[static_cast<std::size_t>(y / fine * side + x / fine)] += p, all += p;
+                expected[cell(x / fine, y / fine)] += p, all += p;
             }
         EXPECT_NEAR(all, 1, 3e-3);
         return chi_square_score(counts_, expected, samples_);
     }
 
 private:
+    static std::size_t cell(int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
+    }
     static constexpr int side = 16;
     double low_, high_, samples_ = 0;
     std::vector<double> counts_;
