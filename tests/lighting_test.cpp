@@ -13,17 +13,6 @@ using namespace hedgerow::test;
 
 namespace {
 
-/// The irradiance by a polygon of radiance 1 wholly above the horizon (Lambert 1760).
-double lambert(const std::vector<Vec3d>& corners, const Vec3d& point, const Vec3d& normal) {
-    double sum = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Vec3d a = normalized(corners[i] - point),
-                    b = normalized(corners[(i + 1) % corners.size()] - point);
-        const Vec3d across = cross(a, b);
-        sum += std::atan2(length(across), dot(a, b)) * dot(normalized(across), normal);
-    }
-    return std::abs(sum) / 2;
-}
 /// The solid angle of a triangle (Van Oosterom & Strackee 1983).
 double solid_angle(const EmissiveTriangle& t, const Vec3f& point) {
     const Vec3d a = normalized(Vec3d(t.a) - Vec3d(point)), b = normalized(Vec3d(t.b) - Vec3d(point)),

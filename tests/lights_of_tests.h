@@ -104,4 +104,16 @@ inline double irradiance_by(const EmissiveTriangle& t, const Vec3f& point, const
     return sum / side / side;
 }
 
+/// The irradiance by a polygon of radiance 1 wholly above the horizon (Lambert 1760).
+inline double lambert(const std::vector<Vec3d>& corners, const Vec3d& point, const Vec3d& normal) {
+    double sum = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec3d a = normalized(corners[i] - point),
+                    b = normalized(corners[(i + 1) % corners.size()] - point);
+        const Vec3d across = cross(a, b);
+        sum += std::atan2(length(across), dot(a, b)) * dot(normalized(across), normal);
+    }
+    return std::abs(sum) / 2;
+}
+
 }  // namespace hedgerow::test

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include <hedgerow/render/camera/presets.h>
 #include <hedgerow/scenes/looks.h>
 #include <hedgerow/scenes/meshes.h>
 
+#include "lights_of_tests.h"
 #include "path_scenes.h"
 #include "scattering_support.h"
 
@@ -17,8 +17,6 @@ using namespace hedgerow;
 using namespace hedgerow::test;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 /// The cube's vertices drawn to a sphere of radius 1.
 TriangleMesh<float> ball(std::uint64_t size) {
@@ -175,17 +173,6 @@ TEST(PathPhysics, RoughThingsHaveTheirAlbedo) {
             }
 }
 
-/// The irradiance by a polygon of radiance 1 above the horizon (Lambert 1760).
-double lambert(const std::vector<Vec3d>& corners, const Vec3d& point, const Vec3d& normal) {
-    double sum = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Vec3d a = normalized(corners[i] - point),
-                    b = normalized(corners[(i + 1) % corners.size()] - point);
-        const Vec3d across = cross(a, b);
-        sum += std::atan2(length(across), dot(a, b)) * dot(normalized(across), normal);
-    }
-    return std::abs(sum) / 2;
-}
 /// A matte floor of albedo ½ at z = 0 beneath a lamp, seen at a point all but one, by one bounce.
 void expect_irradiance(const TriangleMesh<float>& lamp, double expected, const Vec3f& at = {}) {
     Material shines = matte({}, Vec3f::all(2));

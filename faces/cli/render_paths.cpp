@@ -182,11 +182,10 @@ void load_paths(const std::string& file, const Lines& lines, PathPicture& pictur
     for (auto& spreads : picture.spreads) spreads.resize(pixels), take(spreads);
 }
 
-/// How many samples a pixel the picture should have next; as many as it has if it is finished.
-std::uint32_t next_samples(const RenderArguments& a, const PathPicture& picture) {
+/// How many samples a pixel the picture should have next, by its noise; as many as it has if it is finished.
+std::uint32_t next_samples(const RenderArguments& a, const PathPicture& picture, double noise) {
     const auto most = static_cast<std::uint32_t>(a.spp);
     if (a.noise == 0 || picture.samples >= most) return std::max(most, picture.samples);
-    const double noise = picture.light.noise();
     if (noise <= a.noise) return picture.samples;
     // Noise falls at least with the root of the number of samples. What is known of it is better each time.
     const double ratio = std::min(noise / a.noise, 1e3);
@@ -213,7 +212,9 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
                            },
                            &stops};
     for (;;) {
-        const std::uint32_t goal = next_samples(a, picture);
+        const double noise = picture.light.noise();
+        if (noise < 1) line.rename(fmt::format("following paths, noise {:.2g}%,", 100 * noise));
+        const std::uint32_t goal = next_samples(a, picture, noise);
         if (a.preview && (now() > show_at || goal == picture.samples)) {
             const TerminalSize size = terminal_size();
             line.show_above(
@@ -223,8 +224,6 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
         if (goal == picture.samples || over()) break;
         stops = false;
         add_samples(picture, goal, scene, options, default_executor(), watched);
-        if (const double noise = picture.light.noise(); noise < 1)
-            line.rename(fmt::format("following paths, noise {:.2g}%,", 100 * noise));
         if (now() < save_at || picture.samples == 0) continue;
         const double began = now();
         if (!a.resume.empty()) save_paths(a.resume, lines, picture);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/render/film/around.h>
 
 #include "local_models.h"
 
@@ -145,9 +146,9 @@ private:
         if (!(own > product(brightest, other))) return 1;
         std::array<float, 18> near;
         std::size_t count = 0;
-        for (int v = std::max(0, y - 1); v <= std::min(p_.height - 1, y + 1); ++v)
-            for (int u = std::max(0, x - 1); u <= std::min(p_.width - 1, x + 1); ++u)
-                for (const auto& light : p_.light) near[count++] = brightness(light[number(u, v)]);
+        for_each_around(x, y, p_.width, p_.height, [&](std::size_t i) {
+            for (const auto& light : p_.light) near[count++] = brightness(light[i]);
+        });
         const std::size_t rank = std::min<std::size_t>(3, count - 1);
         std::nth_element(near.begin(), near.begin() + rank, near.begin() + count, std::greater<>());
         const float limit = product(brightest, std::max(other, near[rank]));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <hedgerow/geometry/vec.h>
+#include <hedgerow/render/film/around.h>
 
 namespace hedgerow {
 
@@ -29,20 +30,15 @@ public:
     /// Finds the pixels among whose samples, and those of their eight neighbours, contrast is high.
     /// O(pixels).
     void find(int width, int height) {
-        high_.resize(ranges_.size());
-        const auto at = [&](int x, int y) -> const Range& {
-            return ranges_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                           static_cast<std::size_t>(x)];
-        };
+        high_.clear();
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {
                 Range around;
-                for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
-                    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u) {
-                        around.least = min(around.least, at(u, v).least);
-                        around.most = max(around.most, at(u, v).most);
-                    }
-                high_[static_cast<std::size_t>(&at(x, y) - ranges_.data())] = around.has_contrast();
+                for_each_around(x, y, width, height, [&](std::size_t pixel) {
+                    around.least = min(around.least, ranges_[pixel].least);
+                    around.most = max(around.most, ranges_[pixel].most);
+                });
+                high_.push_back(around.has_contrast());
             }
     }
     bool is_high(std::size_t pixel) const { return high_[pixel] != 0; }

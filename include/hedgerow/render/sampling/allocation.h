@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include <hedgerow/render/film/around.h>
 #include <hedgerow/render/film/light_halves.h>
 
 namespace hedgerow {
@@ -19,10 +19,7 @@ namespace hedgerow {
 /// twentieth of the mean, since few samples may all miss what is rare. O(pixels).
 inline std::vector<float> spreads(const LightSums& light, int width) {
     const int height = width > 0 ? static_cast<int>(light.size() / static_cast<std::size_t>(width)) : 0;
-    const auto number = [width](int x, int y) {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-    };
-    std::vector<float> own(light.size()), all(light.size());
+    std::vector<float> own(light.size()), all;
     for (std::size_t i = 0; i < own.size(); ++i) {
         const double mean = LightHalves::grey(light.mean_in_double(i));
         own[i] = static_cast<float>(
@@ -32,11 +29,9 @@ inline std::vector<float> spreads(const LightSums& light, int width) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             float around = 0, count = 0;
-            for (int v = std::max(y - 1, 0); v <= std::min(y + 1, height - 1); ++v)
-                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, width - 1); ++u)
-                    around += own[number(u, v)], count += 1;
-            all[number(x, y)] = around / count;
-            sum += static_cast<double>(around / count);
+            for_each_around(x, y, width, height, [&](std::size_t i) { around += own[i], count += 1; });
+            all.push_back(around / count);
+            sum += static_cast<double>(all.back());
         }
     const auto least = static_cast<float>(sum / static_cast<double>(all.size()) / 20);
     for (float& s : all) s = std::max(s, least);
