@@ -18,14 +18,6 @@ using namespace hedgerow::test;
 
 namespace {
 
-/// The cube's vertices drawn to a sphere of radius 1.
-TriangleMesh<float> ball(std::uint64_t size) {
-    TriangleMesh<double> fine = cube<double>(size);
-    TriangleMesh<float> mesh;
-    for (const Vec3d& p : fine.vertices) mesh.vertices.push_back(Vec3f(normalized(p)));
-    mesh.triangles = fine.triangles;
-    return mesh;
-}
 /// A box with an edge that points inward: a corner of the upper side is pushed in.
 TriangleMesh<float> dented() {
     TriangleMesh<float> mesh = box<float>(1, 1, 1);
@@ -83,17 +75,6 @@ TEST(PathPhysics, RouletteAndLightSamplingKeepTheMean) {
         EXPECT_LT(all.error, 0.01 * expected);
     }
 }
-/// Normals that are not the surface's lose the light that would go into the surface, and add none.
-TEST(PathPhysics, SmoothNormalsLoseLittle) {
-    auto model = model_of<float>({{ball(2000), matte(Vec3f::all(0.75f), Vec3f::all(0.5f))}});
-    model.objects[0].attributes.normals.values = model.objects[0].mesh.vertices;
-    PathPictureOptions options = few_pixels(camera_at({0.3f, 0.1f, -0.6f}, {0.1f, 0.9f, 0}), 512);
-    options.paths.light_sampling = false;
-    const Estimate found = estimate(trace(model, options));
-    EXPECT_LT(found.mean, 2 + 3 * found.error);
-    EXPECT_GT(found.mean, 2 * 0.99);
-}
-
 /// A material of a square below a white sky, seen along a ray at this angle to its normal.
 Estimate under_white_sky(const Material& material, double cosine, bool compensation, std::uint32_t samples) {
     auto model = model_of<float>({{square<float>(1, 0), material}});

@@ -9,6 +9,7 @@
 
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/render/integrators/path_picture.h>
+#include <hedgerow/scenes/meshes.h>
 
 namespace hedgerow::test {
 
@@ -42,6 +43,14 @@ TriangleMesh<T> box(double x, double y, double z, const Vec3d& middle = {}) {
                                        {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& f : faces)
         mesh.triangles.push_back({f[0], f[1], f[2]}), mesh.triangles.push_back({f[0], f[2], f[3]});
+    return mesh;
+}
+/// The cube's vertices drawn to a sphere of radius 1.
+inline TriangleMesh<float> ball(std::uint64_t size) {
+    TriangleMesh<double> fine = cube<double>(size);
+    TriangleMesh<float> mesh;
+    for (const Vec3d& p : fine.vertices) mesh.vertices.push_back(Vec3f(normalized(p)));
+    mesh.triangles = fine.triangles;
     return mesh;
 }
 /// A square across z, with its front up.

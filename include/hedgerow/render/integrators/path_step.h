@@ -97,12 +97,13 @@ public:
             if (world_.options.material_sampling) share *= power_heuristic(density, scattered.density);
         }
         ShadowRay<T> shadow;
+        share *= shown_share(at, light.direction);
         shadow.light =
             limited(path, tinted(tinted(path.throughput, scattered.value), light.radiance) * share, 1);
         shadow.vertex = path.vertex;
         const bool beyond = dot(light.direction, at.geometric) < 0;
         shadow.ray = {beyond ? at.beyond : at.before, Vec<T, 3>(light.direction), T(0),
-                      static_cast<T>(light.distance) * (1 - shadow_gap)};
+                      static_cast<T>(light.free)};
         return shadow;
     }
     /// May come after `leave`, and comes before the path arrives anew.
@@ -119,6 +120,7 @@ public:
         const Vec3f direction = normalized(at.shading.to_world(next->direction));
         if (!same_side(at, direction, next->direction)) return false;
         path.throughput = tinted(path.throughput, next->weight);
+        if (!next->specular) path.throughput = path.throughput * shown_share(at, direction);
         if (next->transmitted && !at.material.thin) {
             const float eta = at.front ? at.material.ior : 1 / at.material.ior;
             path.spread *= eta * eta;
@@ -136,9 +138,6 @@ public:
     }
 
 private:
-    /// The part of the way to a light before it, which nothing may block; the light itself lies there.
-    static constexpr T shadow_gap = T(1e-4);
-
     /// Veach's heuristic for two ways to find light, with squares: the weight of the first.
     static float power_heuristic(float first, float second) {
         // By the ratio, whose square may be infinite.
@@ -153,6 +152,11 @@ private:
     /// Others would let light through walls, or are reflections into the surface.
     static bool same_side(const PathVertex<T>& at, const Vec3f& direction, const Vec3f& local) {
         return (dot(direction, at.geometric) > 0) == (local[2] > 0) && local[2] != 0;
+    }
+    /// The share of light from a direction that an opaque surface shows.
+    static float shown_share(const PathVertex<T>& at, const Vec3f& direction) {
+        if (at.material.transmission > 0) return 1;
+        return share_at_terminator(at.shading.normal(), at.geometric, direction);
     }
     float density_of_sky(const PathState<T>& path) const {
         if (path.density == 0) return 0;

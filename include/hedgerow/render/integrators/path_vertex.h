@@ -17,8 +17,10 @@ namespace hedgerow {
 /// A point of a surface as a path sees it. Directions have length 1.
 template <std::floating_point T>
 struct PathVertex {
-    Vec3f toward_origin;            ///< back along the ray
-    Vec3f geometric;                ///< the normal of the surface, on the side of the ray's origin
+    Vec3f toward_origin;  ///< back along the ray
+    /// The normal of the surface, on the side of the ray's origin: that of the triangle, or of the smooth
+    /// surface over it that normals of its corners mean.
+    Vec3f geometric;
     Frame shading{Vec3f(0, 0, 1)};  ///< around the normal by which it scatters, on the same side
     bool front = true;              ///< whether the ray came to the front
     bool unlit = false;             ///< shows its colour, and ends the path
@@ -68,7 +70,6 @@ public:
         v.front = !(dot(front, ray.direction) > 0);
         const Vec<T, 3> geometric = v.front ? front : -front;
         v.geometric = Vec3f(geometric);
-        v.shading = Frame(shading_normal(hit, v));
         v.unlit = m.unlit;
         v.material.base_colour = min(looks.base_colour(hit, {}), Vec3f::all(1));
         v.material.metallic = m.metallic * looks.number(m.metallic_texture, hit, {});
@@ -79,12 +80,34 @@ public:
         v.material.thin = m.thin;
         if (v.front || m.double_sided) v.emission = looks.emission(hit, {});
         v.absorption = absorptions_[looks.object(hit).material_of(hit.element)];
-        v.before = scene_.surfaces().origin(ray, hit, geometric);
+        Hit<T> met = hit;
+        met.t -= static_cast<T>(meet_smooth(hit, v));
+        v.shading = Frame(shading_normal(hit, v));
+        v.before = scene_.surfaces().origin(ray, met, geometric);
         if (v.material.transmission > 0) v.beyond = scene_.surfaces().origin(ray, hit, -geometric);
         return v;
     }
 
 private:
+    /// Takes the smooth surface that normals of corners mean for the surface, if that lets no light through.
+    /// Returns how much nearer to the ray's origin it is than the triangle. So faces do not end in steps
+    /// where light goes past them; and no light goes through walls, since rays begin where this one came.
+    /// Where the smooth surface is behind the triangle, directions below the triangle's horizon meet it
+    /// again.
+    float meet_smooth(const Hit<T>& hit, PathVertex<T>& v) const {
+        if (v.material.transmission > 0) return 0;
+        const Vec3f smooth = scene_.lookups().smooth_normal(hit);
+        if (length2(smooth) == 0) return 0;
+        const float side = dot(smooth, v.geometric) < 0 ? -1.0f : 1.0f;
+        const Vec3f facet = v.geometric;
+        v.geometric = usable_normal(smooth * side, facet, v.toward_origin);
+        const float height = dot(scene_.lookups().way_to_smooth(hit, static_cast<double>(side)), facet);
+        return height > 0 ? height / std::max(dot(facet, v.toward_origin), least_cosine) : 0;
+    }
+    /// Rays that come in flat are not followed back beyond this, since the smooth surface is known over the
+    /// hit alone.
+    static constexpr float least_cosine = 0.25f;
+
     Vec3f shading_normal(const Hit<T>& hit, const PathVertex<T>& v) const {
         Vec3f own = scene_.lookups().own_normal(hit, {});
         if (length2(own) == 0) return v.geometric;

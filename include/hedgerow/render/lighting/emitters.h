@@ -89,7 +89,8 @@ public:
         if (const auto* light = std::get_if<SpotEmitter>(&emitters_[i])) return light->sample(point);
         if (const auto* light = std::get_if<SunEmitter>(&emitters_[i])) return light->sample();
         const auto [direction, radiance, density] = environment_->sample(u, v);
-        return {direction, std::numeric_limits<float>::infinity(), radiance, density, false, {}};
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        return {direction, infinity, infinity, radiance, density, false, {}};
     }
     /// The density per solid angle with which `sample` chooses a direction that a ray, not sampled from
     /// emitter i, has met it by. The direction has length 1; the distance is to the hit, and does not matter
@@ -115,7 +116,7 @@ public:
         LightBounds b;
         b.cos_emission = 0;
         if (const auto* triangle = std::get_if<EmissiveTriangle>(&emitters_[i])) {
-            b.box.expand(triangle->a).expand(triangle->b).expand(triangle->c);
+            b.box = triangle->bounds();
             b.normals.axis = Vec3f(normalized(triangle->normal()));
             b.both_sides = triangle->both_sides;
             b.intensity = product(triangle->area(), detail::brightness(triangle->radiance));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <hedgerow/geometry/offset.h>
 #include <hedgerow/geometry/vec.h>
 #include <hedgerow/render/sampling/warps.h>
 
@@ -22,6 +23,9 @@ inline constexpr float most_single_light = 0x1p100f;
 struct LightSample {
     Vec3f direction;     ///< from the point to the source, of length 1
     float distance = 0;  ///< to the source along the direction; infinity for the sun and the environment
+    /// What is nearer than this is in the way of the light. Less than the distance by as much as a hit on the
+    /// source may err, so that the source itself is not.
+    float free = 0;
     /// Radiance, or for a single direction the irradiance of a surface that faces the source.
     Vec3f radiance;
     /// The probability density of the direction per solid angle. It is 0 for a single direction, and where no
@@ -56,6 +60,12 @@ inline Sight sight(const Vec3f& from, const Vec3d& to) {
     if (!(l >= static_cast<double>(std::numeric_limits<float>::min()))) return {};
     return {Vec3f(way / l), rounded_to<float>(l)};
 }
+/// The part of a way from a point that nothing may block: until the source within these bounds is as near as
+/// a hit on it may err. `cosine`: that of the way and the source's normal, positive.
+inline float free_way(const Vec3f& from, float distance, const Box3f& source, double cosine) {
+    return rounded_to<float>(static_cast<double>(distance) -
+                             static_cast<double>(hit_error(from, source)) / cosine);
+}
 
 inline float bounded_density(double density) {
     constexpr auto most = static_cast<double>(most_light_density);
@@ -71,6 +81,23 @@ inline Vec3f irradiance(const Vec3f& intensity, double share, float distance) {
     });
 }
 
+/// Light from a place without extent. `share(direction)`: the part of the intensity that goes there, where
+/// the direction is the way to the place.
+template <class Share>
+LightSample from_place(const Vec3f& point, const Vec3f& place, const Vec3f& intensity, const Share& share) {
+    const auto [direction, distance] = sight(point, Vec3d(place));
+    if (!(distance > 0)) return {};
+    const double part = share(direction);
+    if (!(part > 0)) return {};
+    return {direction,
+            distance,
+            free_way(point, distance, {place, place}, 1),
+            irradiance(intensity, part, distance),
+            0,
+            true,
+            {}};
+}
+
 }  // namespace detail
 
 /// A triangle that emits the same radiance from all of its front, from where its corners are
@@ -83,6 +110,7 @@ struct EmissiveTriangle {
     /// The normal of the front, whose length is twice the area.
     Vec3d normal() const { return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)); }
     double area() const { return length(normal()) / 2; }
+    Box3f bounds() const { return Box3f().expand(a).expand(b).expand(c); }
 
     /// Samples the area uniformly, by two numbers in [0, 1). (Sampling by solid angle has less noise at
     /// points close to the triangle: Arvo, SIGGRAPH 1995; Peters, TOG 40(4), 2021.) There is no light behind
@@ -96,7 +124,10 @@ struct EmissiveTriangle {
         s.direction = direction;
         s.distance = distance;
         s.density = density_toward(direction, distance);
-        if (s) s.radiance = radiance;
+        if (!s) return s;
+        s.radiance = radiance;
+        const Vec3d n = normal();
+        s.free = detail::free_way(point, distance, bounds(), std::abs(dot(n, Vec3d(direction))) / length(n));
         return s;
     }
     /// The density that `sample` returns for the place where a ray hits the triangle: a ray of this
@@ -120,9 +151,7 @@ struct PointEmitter {
 
     /// There is no light at the position itself.
     LightSample sample(const Vec3f& point) const {
-        const auto [direction, distance] = detail::sight(point, Vec3d(position));
-        if (!(distance > 0)) return {};
-        return {direction, distance, detail::irradiance(intensity, 1, distance), 0, true, {}};
+        return detail::from_place(point, position, intensity, [](const Vec3f&) { return 1.0; });
     }
 };
 
@@ -142,11 +171,8 @@ struct SpotEmitter {
         return product(rise, rise);
     }
     LightSample sample(const Vec3f& point) const {
-        const auto [direction, distance] = detail::sight(point, Vec3d(position));
-        if (!(distance > 0)) return {};
-        const double part = share(-dot(Vec3d(axis), Vec3d(direction)));
-        if (!(part > 0)) return {};
-        return {direction, distance, detail::irradiance(intensity, part, distance), 0, true, {}};
+        return detail::from_place(point, position, intensity,
+                                  [&](const Vec3f& d) { return share(-dot(Vec3d(axis), Vec3d(d))); });
     }
 };
 
@@ -156,7 +182,8 @@ struct SunEmitter {
     Vec3f illuminance;  ///< of a surface that faces the sun, in lux
 
     LightSample sample() const {
-        return {toward, std::numeric_limits<float>::infinity(), illuminance, 0, true, {}};
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        return {toward, infinity, infinity, illuminance, 0, true, {}};
     }
 };
 

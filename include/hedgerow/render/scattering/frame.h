@@ -58,4 +58,15 @@ inline Vec3f usable_normal(const Vec3f& shading, const Vec3f& geometric, const V
     return normalized(geometric * std::sqrt((1 + cosine) / 2) + axis * std::sqrt((1 - cosine) / 2));
 }
 
+/// The share of the light from direction i that a surface shows whose shading normal differs from the
+/// geometric one: 1 where i is high above the surface, smoothly down to 0 at its horizon. Without this, a
+/// shading normal that leans to the light shows it up to that horizon, and faces end in bright edges (Chiang,
+/// Li and Burley, Taming the shadow terminator, SIGGRAPH Talks 2019). All have length 1, and i lies on the
+/// side of both normals.
+inline float share_at_terminator(const Vec3f& shading, const Vec3f& geometric, const Vec3f& i) {
+    if (shading == geometric) return 1;
+    const float g = dot(geometric, i) / product(dot(shading, i), dot(shading, geometric));
+    return g < 1 ? product(g, 1 + product(g, 1 - g)) : 1;
+}
+
 }  // namespace hedgerow

@@ -80,11 +80,37 @@ public:
     Vec3f mean_of(const TextureSlot& slot) const {
         return levels_of(slot.texture).mean(model_.textures[slot.texture]).colour;
     }
+    /// The normal of the corners at a hit, of length 1, in the world, on either side. 0 where they have none.
+    Vec3f smooth_normal(const Hit<T>& hit) const {
+        const auto own = normal_of_corners(hit, u(hit), v(hit));
+        return own ? Vec3f(normal_in_world(hit, Vec3d(*own))) : Vec3f();
+    }
+    /// The way in the world from a hit to the smooth surface over its triangle that has the corners' normals;
+    /// 0 where they have none, and where the surface is not out from the triangle. Out is to the front; to
+    /// the back if `side` is −1. The surface is taken for the mean of the corners' planes, by the weights of
+    /// the corners (Hanika, Hacking the shadow terminator, Ray Tracing Gems II, 2021).
+    Vec3f way_to_smooth(const Hit<T>& hit, double side) const {
+        const auto triangle = object(hit).mesh.view().triangle(hit.element);
+        const Vec3d a(triangle.a), ab = Vec3d(triangle.b) - a, ac = Vec3d(triangle.c) - a;
+        const double to_b = static_cast<double>(hit.u), to_c = static_cast<double>(hit.v);
+        const Vec3d from_a = ab * to_b + ac * to_c;
+        Vec3d way;
+        const auto add_plane = [&](float of_b, float of_c, const Vec3d& from_corner, double weight) {
+            const auto given = normal_of_corners(hit, of_b, of_c);
+            if (!given) return;
+            const Vec3d n = normalized(Vec3d(*given)) * side;
+            const double height = dot(n, from_corner);
+            if (height < 0) way = way - n * product(weight, height);
+        };
+        add_plane(0, 0, from_a, 1 - to_b - to_c);
+        add_plane(1, 0, from_a - ab, to_b);
+        add_plane(0, 1, from_a - ac, to_c);
+        return Vec3f(placed(hit).to_world.there().vector(way));
+    }
     /// The surface's own normal, that of its corners and its map of normals, of length 1, in the world, on
     /// either side. 0 where it has none.
     Vec3f own_normal(const Hit<T>& hit, const Extent& part) const {
-        const auto of_corners =
-            object(hit).attributes.normals.at(object(hit).mesh, hit.element, u(hit), v(hit));
+        const auto of_corners = normal_of_corners(hit, u(hit), v(hit));
         const Material& m = material(hit);
         if (!of_corners && !m.normal_texture) return {};
         const auto triangle = object(hit).mesh.view().triangle(hit.element);
@@ -107,6 +133,9 @@ private:
 
     static float u(const Hit<T>& hit) { return static_cast<float>(hit.u); }
     static float v(const Hit<T>& hit) { return static_cast<float>(hit.v); }
+    std::optional<Vec3f> normal_of_corners(const Hit<T>& hit, float u, float v) const {
+        return object(hit).attributes.normals.at(object(hit).mesh, hit.element, u, v);
+    }
     std::optional<Rgba> colour_of_corners(const Hit<T>& hit) const {
         return object(hit).attributes.colours.at(object(hit).mesh, hit.element, u(hit), v(hit));
     }
