@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include <hedgerow/base/instruction_set.h>
 #include <hedgerow/render/lighting/default_sky.h>
 #include <hedgerow/render/lighting/light_tree.h>
 
@@ -224,6 +225,47 @@ TEST(PowerLights, ChooseByPower) {
     for (std::size_t i = 0; i < emitters.size(); ++i) total += emitters.power(i, 1);
     for (std::uint32_t i = 0; i < emitters.size(); ++i)
         EXPECT_NEAR(double(lights.probability({}, {}, i)), emitters.power(i, 1) / total, 1e-6);
+}
+
+TEST(LightGroups, HaveTheSameImportancesByEveryInstructionSet) {
+    const Emitters emitters = mixed_lights(40, 20);
+    const std::vector<Receiver> all = receivers(500, 21);
+    std::vector<LightGroups> groups(10);
+    for (std::size_t i = 0; i < 40; ++i) groups[i / 4].set(i % 4, emitters.bounds(i));
+    groups.emplace_back();  // without lights
+    const auto importances = [&](std::string_view set) {
+        use_instruction_set(set);
+        std::vector<LightGroups::Lanes> found;
+        for (const Receiver& r : all)
+            for (const LightGroups& g : groups) found.push_back(g.importances(r.point, r.normal));
+        return found;
+    };
+    const auto sets = instruction_sets();
+    const auto plain = importances("plain");
+    for (const std::string_view set : sets) EXPECT_EQ(importances(set), plain) << set;
+    use_instruction_set(sets.front());
+    EXPECT_EQ(groups.back().importances({1, 2, 3}, {0, 1, 0}), LightGroups::Lanes());
+}
+
+/// From afar, where the distance to the middle is nearly that to all places.
+TEST(LightGroups, ImportancesBoundTheLightOfTriangles) {
+    Random random(22);
+    int lit = 0;
+    for (int k = 0; k < 3000; ++k) {
+        const EmissiveTriangle triangle = random_triangle(random, 0.3);
+        const Receiver r{random_point(random, -4, 4), Vec3f(random.direction<3>())};
+        Emitters emitters;
+        emitters.add(triangle);
+        LightGroups groups;
+        groups.set(2, emitters.bounds(0));
+        const double irradiance = irradiance_by(triangle, r.point, r.normal, 3);
+        if (length(Vec3d(r.point) - Vec3d(triangle.a)) < 3 || !(irradiance > 0)) continue;
+        ++lit;
+        const double in_mean =
+            irradiance * detail::brightness(triangle.radiance) / double(triangle.radiance[0]);
+        EXPECT_LE(in_mean, 1.3 * groups.importances(r.point, r.normal)[2]) << k;
+    }
+    EXPECT_GT(lit, 300);
 }
 
 TEST(LightBounds, MergedConesContainBoth) {

@@ -47,10 +47,10 @@ std::vector<LitPixel> lit_from_the_side(std::uint64_t size, bool smooth) {
     std::vector<LitPixel> pixels;
     for (int row = 0; row < side; ++row)
         for (int column = 0; column < side; ++column) {
+            const std::size_t number = std::size_t(row) * side + std::size_t(column);
             const double x = 2 * (column + 0.5) / side - 1, y = 1 - 2 * (row + 0.5) / side;
             if (x * x + y * y > 0.8) continue;
-            pixels.push_back({0.8 * x - 0.6 * y,
-                              double(picture.light.mean(static_cast<std::size_t>(row * side + column))[0])});
+            pixels.push_back({0.8 * x - 0.6 * y, double(picture.light.mean(number)[0])});
         }
     return pixels;
 }

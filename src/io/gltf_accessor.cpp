@@ -58,8 +58,8 @@ std::uint64_t GltfNumbers::size_of_number() const {
 GltfAccessor::GltfAccessor(GltfFile& file, std::uint64_t number, int components) : components_(components) {
     const auto& accessor = file.object("accessors", number);
     const auto type = accessor.find("type");
-    constexpr const char* types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    const char* const wanted = types[components - 1];
+    constexpr const char* names[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
+    const char* const wanted = names[components - 1];
     const std::string place = "accessor " + std::to_string(number);
     if (type == accessor.end() || *type != wanted) file.fail(place + " is not of type " + wanted);
     size_ = file.needed_number(accessor, "count");

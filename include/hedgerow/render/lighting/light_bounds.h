@@ -1,6 +1,5 @@
-/// Bounds of a group of lights, and the importance of the group for a point: an upper bound of the light that
-/// may arrive, by which a light tree is descended (Conty Estevez & Kulla, Importance Sampling of Many Lights
-/// with Adaptive Tree Splitting, HPG 2018).
+/// Bounds of a group of lights: where they are, and to where they shine (Conty Estevez & Kulla, Importance
+/// Sampling of Many Lights with Adaptive Tree Splitting, HPG 2018).
 #pragma once
 
 #include <algorithm>
@@ -61,13 +60,6 @@ inline NormalCone merged(const NormalCone& a, const NormalCone& b) {
     return {Vec3f(axis), rounded_to<float>(cosine(half)), rounded_to<float>(sine(half))};
 }
 
-/// The cosine of an angle from 0 to π less another, or 1 where the other is larger.
-inline double cosine_less(double cosine, double cos_other, double sin_other) {
-    if (cosine >= cos_other) return 1;
-    const double sine = std::sqrt(std::max(0.0, product(1 - cosine, 1 + cosine)));
-    return product(cosine, cos_other) + product(sine, sin_other);
-}
-
 }  // namespace detail
 
 /// Bounds of two groups together.
@@ -79,54 +71,6 @@ inline LightBounds merged(const LightBounds& a, const LightBounds& b) {
     if (b.both_sides && dot(a.normals.axis, of_b.axis) < 0) of_b.axis = -of_b.axis;
     return {merged(a.box, b.box), detail::merged(a.normals, of_b), std::min(a.cos_emission, b.cos_emission),
             a.both_sides || b.both_sides, a.intensity + b.intensity};
-}
-
-/// Bounds the light that arrives at a point from a group: intensity · cos · cos / d². The first cosine is of
-/// the least angle between a light's normal and the way to the point, less what the cone of normals and the
-/// extent of the box take off. The second is of the least angle between the receiver's normal and the way
-/// to a light. A receiver's normal has length 1; a normal of 0 leaves the second cosine out, as for volumes
-/// and transparent surfaces. Distances less than half the box's diagonal count as that.
-///
-/// The importance is 0 only where no light of the group can arrive: cosines are raised by more than they may
-/// err by.
-inline double importance(const LightBounds& lights, const Vec3f& point, const Vec3f& normal) {
-    // What cosines are raised by. Axes, cosines and sines in float err by about 1e-7.
-    constexpr double slack = 1e-5;
-    if (!(lights.intensity > 0)) return 0;
-    const Vec3d low = Vec3d(lights.box.low) - Vec3d(point), high = Vec3d(lights.box.high) - Vec3d(point);
-    const Vec3d way = (low + high) / 2.0, n(normal);
-    const double radius2 = length2(high - low) / 4, distance2 = length2(way);
-    double received = 1, emitted = 1;
-    const bool has_horizon = normal != Vec3f();
-    if (has_horizon) {
-        // The greatest height of the box above the receiver's horizon.
-        double height = 0;
-        for (int k = 0; k < 3; ++k) height += std::max(product(n[k], low[k]), product(n[k], high[k]));
-        if (!(height > 0)) {
-            double reach = 0;
-            for (int k = 0; k < 3; ++k) reach += std::max(std::abs(low[k]), std::abs(high[k]));
-            if (!(height > -product(slack / 4, reach))) return 0;
-        }
-    }
-    // Angles are known where the point is outside of the sphere around the box.
-    if (distance2 > radius2) {
-        const double inverse = 1 / std::sqrt(distance2);
-        const double sin_box = std::min(1.0, product(std::sqrt(radius2), inverse));
-        const double cos_box = std::sqrt(product(1 - sin_box, 1 + sin_box));
-        if (has_horizon)
-            received = detail::cosine_less(product(dot(n, way), inverse), cos_box, sin_box) + slack;
-        double facing = 1;
-        if (!lights.normals.is_all()) {
-            facing = -product(dot(Vec3d(lights.normals.axis), way), inverse);
-            if (lights.both_sides) facing = std::abs(facing);
-            if (!lights.normals.is_axis())
-                facing = detail::cosine_less(facing, static_cast<double>(lights.normals.cosine),
-                                             static_cast<double>(lights.normals.sine));
-        }
-        emitted = detail::cosine_less(facing, cos_box, sin_box) + slack;
-        if (!(received > 0) || !(emitted > static_cast<double>(lights.cos_emission))) return 0;
-    }
-    return lights.intensity * received * emitted / std::max(std::max(distance2, radius2), 0x1p-200);
 }
 
 }  // namespace hedgerow

@@ -1,5 +1,5 @@
-/// The choice of one of many lights by a tree over them (Conty Estevez & Kulla, HPG 2018): at each node the
-/// child is chosen by what may arrive from it (light_bounds.h).
+/// The choice of one of many lights by a tree over them (Conty Estevez & Kulla, HPG 2018): at each node one
+/// of four children is chosen by what may arrive from it (light_groups.h).
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hedgerow/parallel/ieee_executor.h>
+#include <hedgerow/render/lighting/light_groups.h>
 #include <hedgerow/render/lighting/power_lights.h>
 #include <hedgerow/structures/bvh/bvh.h>
 #include <hedgerow/walks/fold.h>
@@ -24,13 +25,13 @@ public:
                        Executor& executor = serial_executor()) {
         double near_power = 0, far_power = 0;
         std::vector<double> far_powers;
-        place_.resize(emitters.size());
+        lists_.resize(emitters.size());
         for (std::uint32_t i = 0; i < emitters.size(); ++i) {
             const double power = emitters.power(i, detail::radius_around(scene));
             const bool near = emitters.has_position(i);
             (near ? near_power : far_power) += power;
             auto& list = near ? near_ : far_;
-            place_[i] = {near, static_cast<std::uint32_t>(list.size())};
+            lists_[i] = {near, static_cast<std::uint32_t>(list.size())};
             list.push_back(i);
             if (!near) far_powers.push_back(power);
         }
@@ -51,48 +52,83 @@ public:
             const TableChoice c = far_table_.choose(left / far_share_);
             return {far_[c.entry], detail::probability_in_float(product(far_share_, c.probability))};
         }
-        if (near_.empty() || !(importance(bounds_[0], point, normal) > 0)) return {};
+        if (near_.empty()) return {};
         left = in_unit_interval((left - far_share_) / (1 - far_share_));
         double probability = 1 - far_share_;
-        NodeRef node = tree_.root();
-        while (!node.leaf()) {
-            const double first = share_of_first(node, point, normal);
-            if (first < 0) return {};
-            const int i = left < first ? 0 : 1;
-            const double share = i == 0 ? first : 1 - first;
-            left = in_unit_interval((i == 0 ? left : left - first) / share);
-            probability = product(probability, share);
-            node = tree_.child(node, i);
+        Place place = 0;
+        while (true) {
+            const Node& node = nodes_[place / width];
+            const Weights weights = weights_at(node, point, normal);
+            if (!(weights.sum > 0)) return {};
+            const std::size_t i = weights.choose(left);
+            probability = product(probability, weights.of[i] / weights.sum);
+            const Child& child = node.children[i];
+            if (child.leaf_size == 0) {
+                place = child.first * width;
+                continue;
+            }
+            const auto at = static_cast<std::uint32_t>(left * child.leaf_size);
+            return {near_[tree_.items()[child.first + at]], leaf_probability(probability, child.leaf_size)};
         }
-        const auto at = static_cast<std::uint32_t>(left * node.count);
-        return {near_[tree_.items()[node.first + at]], leaf_probability(probability, node.count)};
     }
     /// The probability with which `choose` chooses this emitter, in the same bits. O(depth).
     float probability(const Vec3f& point, const Vec3f& normal, std::uint32_t emitter) const {
-        const auto [is_near, place] = place_[emitter];
-        if (!is_near) return detail::probability_in_float(product(far_share_, far_table_.probability(place)));
-        if (!(importance(bounds_[0], point, normal) > 0)) return 0;
+        const auto [is_near, at] = lists_[emitter];
+        if (!is_near) return detail::probability_in_float(product(far_share_, far_table_.probability(at)));
         // Collect the way up, then multiply the shares on the way down, in the order of `choose`.
-        std::array<NodeId, static_cast<std::size_t>(bvh_max_depth) + 1> way;
+        std::array<Place, static_cast<std::size_t>(bvh_max_depth) + 1> way;
         std::size_t count = 0;
-        for (NodeId id = leaves_[place]; id != 0; id = ids_[(id - 1) / 2]) way[count++] = id;
+        way[count++] = places_[at];
+        while (way[count - 1] >= width) way[count] = nodes_[way[count - 1] / width].place, ++count;
         double probability = 1 - far_share_;
-        NodeRef node = tree_.root();
-        while (count-- > 0) {
-            const double first = share_of_first(node, point, normal);
-            const int i = static_cast<int>((way[count] - 1) % 2);
-            const double share = i == 0 ? first : 1 - first;
-            if (first < 0 || !(share > 0)) return 0;
-            probability = product(probability, share);
-            node = tree_.child(node, i);
+        while (true) {
+            const Place place = way[--count];
+            const Node& node = nodes_[place / width];
+            const Weights weights = weights_at(node, point, normal);
+            if (!(weights.of[place % width] > 0)) return 0;
+            probability = product(probability, weights.of[place % width] / weights.sum);
+            if (count == 0) return leaf_probability(probability, node.children[place % width].leaf_size);
         }
-        return leaf_probability(probability, node.count);
     }
 
 private:
-    struct Place {
+    static constexpr std::size_t width = LightGroups::width;
+
+    /// A child of a node: its number times the width, plus the child's own.
+    using Place = std::size_t;
+    /// A node, or a leaf: so many items of the binary tree from `first` on.
+    struct Child {
+        std::uint32_t first = 0, leaf_size = 0;
+    };
+    struct Node {
+        LightGroups groups;
+        std::array<Child, width> children;
+        Place place = 0;  // in its parent
+    };
+    /// An emitter is in near_ or in far_.
+    struct InList {
         bool near;
-        std::uint32_t at;  // in near_ or far_
+        std::uint32_t at;
+    };
+    /// What the children of a node are chosen by.
+    struct Weights {
+        LightGroups::Lanes of;
+        double sum = 0;
+
+        /// The child that a number in [0, 1) chooses. What it leaves of the number is in [0, 1), too.
+        std::size_t choose(double& number) const {
+            std::size_t i = 0, last = width - 1;
+            while (!(of[last] > 0)) --last;
+            double left = number * sum;
+            while (i < last && left >= of[i]) left -= of[i++];
+            number = in_unit_interval(left / of[i]);
+            return i;
+        }
+    };
+    /// A node of the binary tree, and its number.
+    struct Binary {
+        NodeRef node;
+        NodeId id;
     };
     /// The boxes of emitters, to build a tree over.
     struct Boxes {
@@ -114,7 +150,7 @@ private:
             IeeeExecutor threads(executor);
             tree_ = Bvh<float, 3>::build(Boxes{of_emitters}, options, threads);
         });
-        bounds_ = fold(
+        const std::vector<LightBounds> bounds = fold(
             tree_,
             [&](const Leaf& leaf) {
                 LightBounds all;
@@ -123,30 +159,60 @@ private:
                 return all;
             },
             [](const LightBounds& a, const LightBounds& b) { return merged(a, b); });
-        leaves_.resize(near_.size());
-        ids_.resize(tree_.leaf_count());
-        note_places(tree_.root(), 0);
+        places_.resize(near_.size());
+        add_node(children_of({tree_.root(), 0}, bounds), 0, bounds);
     }
-    /// Notes the leaf of each emitter below a node, and the ids of inner nodes. The depth of the recursion is
-    /// that of the tree.
-    void note_places(NodeRef node, NodeId id) {
-        if (node.leaf()) {
-            for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-                leaves_[tree_.items()[i]] = id;
-            return;
+    using Children = std::vector<Binary>;
+    /// Up to four nodes of the binary tree that part what is below one: of those there are, the one with the
+    /// most light is opened.
+    Children children_of(const Binary& parent, const std::vector<LightBounds>& bounds) const {
+        Children parts{parent};
+        while (parts.size() < width) {
+            const auto light = [&](const Binary& b) { return b.node.leaf() ? -1 : bounds[b.id].intensity; };
+            const auto most =
+                std::max_element(parts.begin(), parts.end(),
+                                 [&](const Binary& a, const Binary& b) { return light(a) < light(b); });
+            if (most->node.leaf()) break;
+            const Binary opened = *most;
+            *most = child_of(opened, 0);
+            parts.push_back(child_of(opened, 1));
         }
-        ids_[node.first] = id;
-        for (int i = 0; i < 2; ++i) note_places(tree_.child(node, i), Bvh<float, 3>::child_id(node, i));
+        return parts;
+    }
+    Binary child_of(const Binary& b, int i) const {
+        return {tree_.child(b.node, i), Bvh<float, 3>::child_id(b.node, i)};
+    }
+    /// Adds a node with these children, and all below it. The depth of the recursion is that of the tree.
+    void add_node(const Children& children, Place place, const std::vector<LightBounds>& bounds) {
+        const std::size_t number = nodes_.size();
+        nodes_.push_back({});
+        nodes_[number].place = place;
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            const auto& [node, id] = children[i];
+            nodes_[number].groups.set(i, bounds[id]);
+            const Place own = number * width + i;
+            if (node.leaf()) {
+                nodes_[number].children[i] = {node.first, node.count};
+                for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+                    places_[tree_.items()[k]] = own;
+            } else {
+                nodes_[number].children[i] = {static_cast<std::uint32_t>(nodes_.size()), 0};
+                add_node(children_of(children[i], bounds), own, bounds);
+            }
+        }
     }
 
-    /// The share of choices at an inner node that its first child has; less than 0 if no light can arrive
-    /// from either child. A child from which light can arrive has at least 2^-20.
-    double share_of_first(NodeRef node, const Vec3f& point, const Vec3f& normal) const {
-        const double first = importance(bounds_[Bvh<float, 3>::child_id(node, 0)], point, normal);
-        const double second = importance(bounds_[Bvh<float, 3>::child_id(node, 1)], point, normal);
-        if (!(first > 0) && !(second > 0)) return -1;
-        if (!(first > 0) || !(second > 0)) return first > 0 ? 1 : 0;
-        return std::clamp(first / (first + second), 0x1p-20, 1 - 0x1p-20);
+    /// What the children of a node are chosen by: their importance. A child from which light can arrive has
+    /// at least 2^-20 of all.
+    static Weights weights_at(const Node& node, const Vec3f& point, const Vec3f& normal) {
+        Weights weights{node.groups.importances(point, normal)};
+        double all = 0;
+        for (const double w : weights.of) all += w;
+        for (double& w : weights.of) {
+            w = w > 0 ? std::max(w, all * 0x1p-20) : 0;
+            weights.sum += w;
+        }
+        return weights;
     }
     /// Emitters of one leaf are equally probable. A leaf has several only where the tree cannot part them.
     static float leaf_probability(double probability, std::uint32_t count) {
@@ -154,11 +220,10 @@ private:
     }
 
     std::vector<std::uint32_t> near_, far_;  // emitters with a position, and others
-    std::vector<Place> place_;               // of each emitter
+    std::vector<InList> lists_;              // of each emitter
     Bvh<float, 3> tree_;                     // over near_
-    std::vector<LightBounds> bounds_;        // by node
-    std::vector<NodeId> ids_;                // of inner nodes, by number
-    std::vector<NodeId> leaves_;             // of near_
+    std::vector<Node> nodes_;                // of four children; the root is first
+    std::vector<Place> places_;              // of near_
     CumulativeTable far_table_;
     double far_share_ = 0;
 };
