@@ -245,11 +245,16 @@ TEST_F(ExrTool, PathsHaveTheLayersOfDenoisers) {
     const Read read = written(render);
     ASSERT_EQ(run(render + " --quiet -o " + file("a.png")).code, 0);
     const Image image = load_png(file("a.png"));
-    std::size_t seen = 0;
+    std::size_t seen = 0, both = 0;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         ASSERT_EQ(srgb(read.vector("R", "G", "B", i)), image.pixels[i]) << i;
         EXPECT_EQ(read.words.at("samples")[i], 8u);
         EXPECT_GE(read.value("error", i), 0);
+        const Vec3f light = read.vector("R", "G", "B", i),
+                    direct = read.vector("direct.R", "direct.G", "direct.B", i),
+                    indirect = read.vector("indirect.R", "indirect.G", "indirect.B", i);
+        for (int k = 0; k < 3; ++k) ASSERT_NEAR(direct[k] + indirect[k], light[k], 1.2e-7f * light[k]) << i;
+        both += max_component(direct) > 0 && max_component(indirect) > 0;
         EXPECT_EQ(read.value("uv.U", i) + read.value("uv.V", i), 0) << "no texture coordinates";
         const Vec3f albedo = read.vector("albedo.R", "albedo.G", "albedo.B", i),
                     normal = read.vector("normal.X", "normal.Y", "normal.Z", i);
@@ -263,6 +268,32 @@ TEST_F(ExrTool, PathsHaveTheLayersOfDenoisers) {
         EXPECT_GT(max_component(albedo), 0);
     }
     EXPECT_GT(seen, 300u);
+    EXPECT_GT(both, 200u) << "pixels with direct and with indirect light";
+}
+
+/// Direct light goes on from a state, whatever file it is of in between. A state that has been begun without
+/// goes on without, and says so.
+TEST_F(ExrTool, PathsGoOnWithTheirDirectLight) {
+    for (const std::string division : {"", "--adaptive"}) {
+        const std::string render = "render gen:cornell-box --shading path --size 24x20 " + division,
+                          state = " --resume " + file("state" + division);
+        const Read at_once = written(render + " --spp 40");
+        (void)written(render + " --spp 8" + state);
+        ASSERT_EQ(run(render + " --spp 34 --quiet -o " + file("a.png") + state).code, 0);
+        const Read resumed = written(render + " --spp 40" + state);
+        EXPECT_EQ(at_once.words, resumed.words) << division;
+        EXPECT_EQ(at_once.words.count("direct.R"), 1u);
+    }
+    const std::string render =
+        "render gen:cornell-box --shading path --size 24x20 --quiet --resume " + file("of_png") + " --spp ";
+    ASSERT_EQ(run(render + "2 -o " + file("b.png")).code, 0);
+    const auto r = run(render + "4 -o " + file("b.exr"));
+    EXPECT_EQ(r.code, 0);
+    EXPECT_NE(r.output.find("warning: " + file("of_png") + " was begun for a .png"), std::string::npos)
+        << r.output;
+    const Read read(file("b.exr"));
+    EXPECT_EQ(read.words.at("samples")[0], 4u);
+    EXPECT_EQ(read.words.count("direct.R") + read.words.count("indirect.B"), 0u);
 }
 
 /// Light without noise is beside the raw light, which is the mean of both halves, and is what a .png shows.

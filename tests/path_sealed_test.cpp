@@ -145,7 +145,7 @@ std::size_t bright_paths(const Room& room, const Material& walls, bool smooth, A
     PathWavefront<T>(world, scene.tracer())
         .follow(
             paths, [&](std::size_t i) { return start_in<T>(room, aim, i); },
-            [&](std::size_t, const Vec3f& light) { bright += light != Vec3f(); });
+            [&](std::size_t, const PathLight& light) { bright += light.all != Vec3f(); });
     return bright;
 }
 

@@ -26,6 +26,8 @@ constexpr const char* layers_help =
     "  nodes leaves primitives  looked at to find the hit; mean\n"
     "Of --shading path, in place of these counts:\n"
     "  error samples            the standard error of the light, and how many samples there are\n"
+    "  direct.R .G .B           linear light that is scattered at most once on its way to the eye\n"
+    "  indirect.R .G .B         linear light that is scattered more often: R G B less direct\n"
     "  albedo.R .G .B           colour of the first surface that scatters, and its normal in normal; means\n"
     "  denoised.R .G .B         with --denoise: linear light with less noise\n"
     "  instance uv.U .V         the object's number at the first hit, and its texture coordinates\n\n";

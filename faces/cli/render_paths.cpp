@@ -20,6 +20,7 @@
 #include <hedgerow/render/integrators/path_picture.h>
 #include <hedgerow/version.h>
 
+#include "path_layers.h"
 #include "picture_notes.h"
 #include "render_looks.h"
 #include "saved_rays.h"
@@ -46,7 +47,7 @@ PathPictureOptions path_options(const RenderArguments& a, const RenderOptions& s
     o.paths.seed = a.seed, o.paths.bounces = a.bounces;
     o.filter = named<PixelFilter>(pixel_filter_names, a.filter);
     o.paths.sampler = named<Sampler>(sampler_names, a.sampler);
-    o.division = division_of(a);
+    o.division = division_of(a), o.keeps_direct = a.layers;
     return o;
 }
 Image image_of(const RenderArguments& a, const PathPicture& picture, const std::vector<Vec3f>& light) {
@@ -56,49 +57,6 @@ Image image_of(const RenderArguments& a, const PathPicture& picture, const std::
     for (std::size_t i = 0; i < light.size(); ++i) image.pixels[i] = srgb(toned(tone, light[i] * brightness));
     return image;
 }
-/// The channels of an .exr: linear light, its standard error and the number of samples, what is seen first,
-/// and light without noise, if there is some.
-struct PathLayers {
-    PathLayers(const PathPicture& picture, const std::vector<FirstSurface>& first_surfaces,
-               const std::vector<Vec3f>& denoised)
-        : light(picture.means()), layers{picture.width, picture.height, {}} {
-        for (std::size_t i = 0; i < light.size(); ++i)
-            errors.push_back(picture.light.standard_error(i)), samples.push_back(picture.light.samples(i));
-        add({"R", "G", "B"}, light, light[0]);
-        layers.channels.push_back({"error", Strided<float>(errors.data(), errors.size(), sizeof(float))});
-        add_ids("samples", samples, samples[0]);
-        const FirstSurface& first = first_surfaces[0];
-        add({"albedo.R", "albedo.G", "albedo.B"}, first_surfaces, first.albedo);
-        add({"normal.X", "normal.Y", "normal.Z"}, first_surfaces, first.normal);
-        for (std::size_t k = 0; k < 2; ++k)
-            layers.channels.push_back(
-                {std::array{"uv.U", "uv.V"}[k],
-                 Strided<float>(&first.uv.data[k], first_surfaces.size(), sizeof(FirstSurface))});
-        layers.channels.push_back(
-            {"depth.Z", Strided<float>(&first.depth, first_surfaces.size(), sizeof(FirstSurface))});
-        add_ids("id", first_surfaces, first.primitive);
-        add_ids("instance", first_surfaces, first.instance);
-        if (!denoised.empty()) add({"denoised.R", "denoised.G", "denoised.B"}, denoised, denoised[0]);
-    }
-    PathLayers(const PathLayers&) = delete;
-
-    std::vector<Vec3f> light;
-    std::vector<float> errors;
-    std::vector<std::uint32_t> samples;
-    Layers layers;  // of these and of the first surfaces
-
-private:
-    template <class Pixel>
-    void add(std::array<const char*, 3> names, const std::vector<Pixel>& pixels, const Vec3f& first) {
-        for (std::size_t k = 0; k < 3; ++k)
-            layers.channels.push_back(
-                {names[k], Strided<float>(&first.data[k], pixels.size(), sizeof(Pixel))});
-    }
-    template <class Pixel>
-    void add_ids(const char* name, const std::vector<Pixel>& pixels, const std::uint32_t& first) {
-        layers.channels.push_back({name, Strided<std::uint32_t>(&first, pixels.size(), sizeof(Pixel))});
-    }
-};
 /// Saves a picture; what is seen first is for an .exr alone. `denoised` is its light without noise, or empty.
 void save_picture(const RenderArguments& a, const PathPicture& picture,
                   const std::vector<FirstSurface>& first_surfaces, const std::vector<Vec3f>& denoised = {}) {
@@ -143,43 +101,65 @@ Lines what_it_is_of(const RenderArguments& a, const ShownModel<T>& shown) {
             {"division", std::string(division_names[static_cast<std::size_t>(division_of(a))])},
             {"bounces", std::to_string(a.bounces)}};
 }
-constexpr std::uint32_t state_version = 2;
+constexpr std::uint32_t state_version = 3;
 
-/// The state of a picture: its samples, the sums of both halves, and the spreads if there are any.
+/// The state of a picture: its samples, whether it keeps direct light and has spreads, and then the sums of
+/// both halves of its light and of its direct light, and its spreads.
 void save_paths(const std::string& file, const Lines& lines, const PathPicture& picture) {
     std::vector<std::byte> bytes;
     const auto append = [&bytes](const auto& numbers) {
         const auto more = std::as_bytes(std::span(numbers));
         bytes.insert(bytes.end(), more.begin(), more.end());
     };
-    append(std::array{std::uint64_t{picture.samples}});
-    for (const int half : {0, 1}) append(picture.light.half(half).pixels());
+    append(
+        std::array<std::uint64_t, 3>{picture.samples, picture.keeps_direct(), !picture.spreads[0].empty()});
+    for (const LightHalves* const light : {&picture.light, &picture.direct})
+        for (const int half : {0, 1}) append(light->half(half).pixels());
     for (const auto& spreads : picture.spreads) append(spreads);
     save_state(file, "paths", state_version, {lines, std::move(bytes)});
 }
-void load_paths(const std::string& file, const Lines& lines, PathPicture& picture) {
+PathPicture load_paths(const std::string& file, const Lines& lines, int width, int height) {
     const WorkState state = load_state(file, "paths", state_version, lines);
-    const std::size_t pixels = picture.light.size();
+    const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::span<const std::byte> rest = state.bytes;
     const auto take = [&rest](auto& numbers) {
         const auto into = std::as_writable_bytes(std::span(numbers));
         std::memcpy(into.data(), rest.data(), into.size());
         rest = rest.subspan(into.size());
     };
-    const std::size_t sums = sizeof(std::uint64_t) + 2 * pixels * sizeof(LightSums::Pixel),
-                      with_spreads = sums + 2 * pixels * sizeof(float);
-    if (rest.size() != sums && rest.size() != with_spreads)
+    const auto take_light = [&take, pixels](LightHalves& light) {
+        for (const int half : {0, 1}) {
+            std::vector<LightSums::Pixel> all(pixels);
+            take(all);
+            light.half(half) = LightSums(std::move(all));
+        }
+    };
+    std::array<std::uint64_t, 3> head{};
+    if (rest.size() > sizeof(head)) take(head);
+    const bool keeps_direct = head[1] != 0, has_spreads = head[2] != 0;
+    if (rest.size() !=
+        2 * pixels * (sizeof(LightSums::Pixel) * (keeps_direct ? 2 : 1) + (has_spreads ? sizeof(float) : 0)))
         throw InputError(file + ": has another number of pixels than its size says");
-    std::array<std::uint64_t, 1> samples;
-    take(samples);
-    picture.samples = static_cast<std::uint32_t>(samples[0]);
-    for (const int half : {0, 1}) {
-        std::vector<LightSums::Pixel> all(pixels);
-        take(all);
-        picture.light.half(half) = LightSums(std::move(all));
-    }
-    if (state.bytes.size() == sums) return;
-    for (auto& spreads : picture.spreads) spreads.resize(pixels), take(spreads);
+    PathPicture picture(width, height, keeps_direct);
+    picture.samples = static_cast<std::uint32_t>(head[0]);
+    take_light(picture.light);
+    if (keeps_direct) take_light(picture.direct);
+    if (has_spreads)
+        for (auto& spreads : picture.spreads) spreads.resize(pixels), take(spreads);
+    return picture;
+}
+/// The picture that work goes on from: that of the state, if there is one. If that has no direct light, the
+/// options no longer ask for it.
+PathPicture begun(const RenderArguments& a, const Lines& lines, PathPictureOptions& options) {
+    if (a.resume.empty() || !std::filesystem::exists(a.resume))
+        return {options.width, options.height, options.keeps_direct};
+    PathPicture picture = load_paths(a.resume, lines, options.width, options.height);
+    if (options.keeps_direct && !picture.keeps_direct())
+        fmt::print(stderr,
+                   "hedgerow: warning: {} was begun for a .png, so {} lacks the layers direct and indirect\n",
+                   a.resume, a.output);
+    options.keeps_direct = picture.keeps_direct();
+    return picture;
 }
 
 /// How many samples a pixel the picture should have next, by its noise; as many as it has if it is finished.
@@ -244,10 +224,11 @@ std::string noise_text(const RenderArguments& a, double noise) {
 }  // namespace
 
 void check_paths_memory(const RenderArguments& a) {
-    constexpr std::size_t of_sums = 2 * sizeof(LightSums::Pixel);  // of both halves
+    const std::size_t of_sums =  // of both halves, and of the direct light
+        2 * sizeof(LightSums::Pixel) * (a.layers ? 2 : 1);
     const std::size_t of_work = of_sums + (a.layers || a.denoises ? sizeof(FirstSurface) : 0);
     const std::size_t of_picture =
-        a.layers ? sizeof(Vec3f) + sizeof(float) + sizeof(std::uint32_t) : sizeof(Image::Pixel);
+        a.layers ? 3 * sizeof(Vec3f) + sizeof(float) + sizeof(std::uint32_t) : sizeof(Image::Pixel);
     const std::size_t of_state = a.resume.empty() ? 0 : 2 * of_sums;  // and its file
     check_memory_of_pixels(a.view.size, of_work + std::max(of_picture, of_state));
 }
@@ -261,10 +242,9 @@ int render_paths(const RenderArguments& a) {
     const SceneLights<T> lights(shown.scene, of_lights, interruptible_executor());
     if (lights.has_default_sky() && !a.quiet)
         fmt::print(stderr, "hedgerow: {}: has no lights, so it gets a sky\n", a.scene);
-    const PathPictureOptions options = path_options(a, shown.options);
+    PathPictureOptions options = path_options(a, shown.options);
     const Lines lines = a.resume.empty() ? Lines() : what_it_is_of(a, shown);
-    PathPicture picture(options.width, options.height);
-    if (!a.resume.empty() && std::filesystem::exists(a.resume)) load_paths(a.resume, lines, picture);
+    PathPicture picture = begun(a, lines, options);
     const PathScene<T> scene{shown.scene, lights, shown.scene.tracer()};
     std::vector<FirstSurface> first;
     if (a.layers || a.denoises)

@@ -157,7 +157,7 @@ private:
                 if (has < wants) runs.push_back({x, y, half, has, all}), all += wants - has;
             }
         // Parts of so many paths, so that the light of all takes little memory.
-        std::vector<Vec3f> light;
+        std::vector<PathLight> light;
         std::size_t started = 0, added = 0;  // runs, since paths are started in order
         for (std::size_t first = 0; first < all; first += light.size()) {
             light.resize(std::min(all - first, paths_of_tile));
@@ -168,10 +168,10 @@ private:
                     return camera_.start<T>(run.x, run.y, static_cast<std::uint32_t>(run.half),
                                             run.sample(first + i));
                 },
-                [&](std::size_t i, const Vec3f& found) { light[i] = found; });
+                [&](std::size_t i, const PathLight& found) { light[i] = found; });
             for (std::size_t i = 0; i < light.size(); ++i) {
                 const Run& run = run_of(runs, first + i, added);
-                picture_.light.half(run.half).add(camera_.number(run.x, run.y), light[i]);
+                picture_.add(camera_.number(run.x, run.y), run.half, light[i]);
             }
         }
         return all;
@@ -260,6 +260,8 @@ void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>
     check(samples, options);
     if (picture.width != options.width || picture.height != options.height)
         throw InputError("the picture has another size than its options");
+    if (options.keeps_direct && !picture.keeps_direct())
+        throw InputError("the picture was begun without its direct light");
     PathTracing<T>(picture, scene, options).run(samples, executor, progress);
 }
 template void add_samples(PathPicture&, std::uint32_t, const PathScene<float>&, const PathPictureOptions&,

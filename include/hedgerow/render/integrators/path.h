@@ -29,9 +29,9 @@ public:
                   std::size_t in_flight = default_in_flight)
         : world_(world), tracer_(tracer), steps_(world), in_flight_(in_flight) {}
 
-    /// Follows paths 0 to count − 1. `start(i)` returns path i, and `finish(i, light)` takes the light that
-    /// comes along its ray; paths are started in order and finish in any. Neighbours in order should have
-    /// neighbouring rays.
+    /// Follows paths 0 to count − 1. `start(i)` returns path i, and `finish(i, light)` takes the PathLight
+    /// that comes along its ray; paths are started in order and finish in any. Neighbours in order should
+    /// have neighbouring rays.
     template <class OfNumber, class Finish>
     void follow(std::size_t count, const OfNumber& start, const Finish& finish) const {
         Flight flight(in_flight_);

@@ -42,6 +42,8 @@ struct PathPictureOptions {
     /// Paths that each thread follows at once (integrators/path.h); 0: one by one, as PathReference does. The
     /// picture is the same.
     std::size_t in_flight = PathWavefront<float>::default_in_flight;
+    /// Whether the picture has sums of its direct light, too, as PathPicture::direct.
+    bool keeps_direct = false;
 };
 
 /// What paths of a picture go through. All of it is borrowed.
@@ -57,6 +59,9 @@ struct PathScene {
 struct PathPicture {
     int width = 0, height = 0;
     LightHalves light{0};
+    /// The part of the light that is direct: scattered at most once between its source and the eye. Its
+    /// samples are those of the light, and dropped as those are. No pixels if it is not kept.
+    LightHalves direct{0};
     /// The samples that every pixel has, or has at least its share of: on the mean so many a pixel. Pixels
     /// may have more if work was interrupted.
     std::uint32_t samples = 0;
@@ -65,13 +70,23 @@ struct PathPicture {
     std::array<std::vector<float>, 2> spreads;
 
     /// Throws InputError for a picture without pixels.
-    PathPicture(int w, int h) : width(w), height(h), light(pixels(w, h)) {}
+    PathPicture(int w, int h, bool keeps_direct = false)
+        : width(w), height(h), light(pixels(w, h)), direct(keeps_direct ? light.size() : 0) {}
+    bool keeps_direct() const { return direct.size() > 0; }
+    /// Adds a sample to half a pixel. One that is not finite counts as black.
+    void add(std::size_t pixel, int half, const PathLight& sample) {
+        light.half(half).add(pixel, sample.all);
+        if (keeps_direct()) direct.half(half).add(pixel, finite(sample.all) ? sample.direct : sample.all);
+    }
     /// Linear light by pixel.
     std::vector<Vec3f> means() const {
         std::vector<Vec3f> all;
         for (std::size_t i = 0; i < light.size(); ++i) all.push_back(light.mean(i));
         return all;
     }
+    /// The mean of a pixel's light that is scattered more than once, if direct light is kept: what is left of
+    /// the light without it. Not negative.
+    Vec3f indirect(std::size_t pixel) const { return light.mean(pixel) - direct.mean(pixel); }
     /// The samples that pixels have on the mean, also those of work that was interrupted.
     double mean_samples() const {
         double sum = 0;
@@ -101,7 +116,8 @@ inline constexpr std::uint32_t pilot_samples = 16;
 /// the camera, the size, its number and the options alone, to the last bit: never on the executor, the
 /// structure behind the tracer, the processor, or how often the work was interrupted. If it is cancelled,
 /// pixels have the samples that were finished. Throws InputError for options without a meaning, a camera that
-/// sees nothing, pictures without pixels or samples, and a picture of another size.
+/// sees nothing, pictures without pixels or samples, a picture of another size, and one that does not keep
+/// direct light if the options ask for it. A picture that keeps it goes on to do so.
 template <std::floating_point T>
 void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,
                  const PathPictureOptions& options, Executor& executor, const Progress& progress = {});
@@ -114,7 +130,7 @@ extern template void add_samples(PathPicture&, std::uint32_t, const PathScene<do
 template <std::floating_point T>
 PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& options, Executor& executor,
                         const Progress& progress = {}) {
-    PathPicture picture(options.width, options.height);
+    PathPicture picture(options.width, options.height, options.keeps_direct);
     add_samples(picture, options.samples, scene, options, executor, progress);
     return picture;
 }

@@ -47,7 +47,7 @@ public:
         : rays_(world.surfaces, tracer), steps_(world) {}
 
     /// The light that comes along a ray from the camera, whose direction has length 1.
-    Vec3f light(const Ray<T, 3>& ray, const PathSamples& samples) const {
+    PathLight light(const Ray<T, 3>& ray, const PathSamples& samples) const {
         PathState<T> path;
         path.ray = ray;
         for (;;) {

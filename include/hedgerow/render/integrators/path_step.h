@@ -12,12 +12,26 @@
 
 namespace hedgerow {
 
+/// The light that a path brings to the eye.
+struct PathLight {
+    Vec3f all;
+    /// The part that is scattered at most once between its source and the eye. The rest is indirect.
+    Vec3f direct;
+
+    static constexpr bool is_direct(std::uint32_t scatterings) { return scatterings <= 1; }
+    /// Adds light that is scattered so often.
+    void add(const Vec3f& light, std::uint32_t scatterings) {
+        all = all + light;
+        if (is_direct(scatterings)) direct = direct + light;
+    }
+};
+
 /// A path between two vertices. Directions have length 1.
 template <std::floating_point T>
 struct PathState {
     Ray<T, 3> ray;
     Vec3f throughput = Vec3f::all(1);  ///< the share of light that gets to the eye
-    Vec3f light;                       ///< that has been found
+    PathLight light;                   ///< that has been found
     Vec3f absorption;                  ///< of the body that the ray is in
     /// The density of the ray's direction where it left a surface; 0 for the camera and for directions that a
     /// surface has a single one of. Light that it meets is then found in no other way.
@@ -108,7 +122,7 @@ public:
     }
     /// May come after `leave`, and comes before the path arrives anew.
     void add_light(PathState<T>& path, const ShadowRay<T>& shadow) const {
-        path.light = path.light + shadow.light;
+        path.light.add(shadow.light, shadow.vertex + 1);
     }
 
     /// Chooses where the path goes on. False: it ends.
@@ -174,13 +188,14 @@ private:
     }
     void add(PathState<T>& path, const Vec3f& radiance, float weight) const {
         if (weight > 0)
-            path.light = path.light + limited(path, tinted(path.throughput, radiance) * weight, 0);
+            path.light.add(limited(path, tinted(path.throughput, radiance) * weight, 0), path.vertex);
     }
-    /// Light that has been scattered more than once counts up to a limit. `more`: how often it is scattered
-    /// at the vertex where the path is.
+    /// Indirect light counts up to a limit. `more`: how often light is scattered at the vertex where the path
+    /// is.
     Vec3f limited(const PathState<T>& path, const Vec3f& light, std::uint32_t more) const {
         const float brightest = max_component(light), limit = world_.options.brightest_indirect;
-        return path.vertex + more > 1 && brightest > limit ? light * (limit / brightest) : light;
+        return !PathLight::is_direct(path.vertex + more) && brightest > limit ? light * (limit / brightest)
+                                                                              : light;
     }
     static void absorb(PathState<T>& path, float distance) {
         for (int k = 0; k < 3; ++k)
