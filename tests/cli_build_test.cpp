@@ -126,7 +126,7 @@ TEST_F(CliBuild, RefusesOutputsThatCannotBeWrittenBeforeTheSceneIsMade) {
 }
 
 TEST_F(CliBuild, RefusesABuildForWhichThereIsTooLittleMemory) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HEDGEROW_SANITIZED
     GTEST_SKIP() << "sanitizers take more addresses than any limit leaves";
 #endif
     const std::string to = " -o " + file("x.hedgerow");

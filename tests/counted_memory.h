@@ -1,5 +1,5 @@
 /// Counts all memory that a program allocates with `new`. One source of a program includes this. A sanitizer
-/// has an allocator of its own, so nothing is counted there: HEDGEROW_SANITIZED is defined.
+/// (HEDGEROW_SANITIZED) has an allocator of its own, so nothing is counted there.
 #pragma once
 
 #include <atomic>
@@ -7,15 +7,6 @@
 #include <new>
 
 #include <malloc.h>
-
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define HEDGEROW_SANITIZED 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define HEDGEROW_SANITIZED 1
-#endif
 
 #ifndef HEDGEROW_SANITIZED
 static std::atomic<std::size_t> allocations{0}, live{0}, most_live{0};  // the latter two in bytes

@@ -12,7 +12,7 @@ namespace {
 using namespace hedgerow;
 
 /// Limits the address space of a run, in KiB. Sanitizers map terabytes, so they run without a limit.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HEDGEROW_SANITIZED
 constexpr const char* limits = "";
 #else
 constexpr const char* limits = "ulimit -v 2000000; ";

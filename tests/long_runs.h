@@ -13,7 +13,7 @@ inline std::size_t in_long_runs(std::size_t many, std::size_t few) {
 
 /// `few` in builds with sanitizers, which take ten times as long; else `usual`.
 inline std::size_t unless_sanitized(std::size_t usual, std::size_t few) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef HEDGEROW_SANITIZED
     return static_cast<void>(usual), few;
 #else
     return static_cast<void>(few), usual;
