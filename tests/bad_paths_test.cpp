@@ -87,6 +87,36 @@ TEST(BadPaths, EmissionThatIsNoneIsRefused) {
     }
 }
 
+/// The message with which a model is refused.
+std::string refusal_of(const Model<float>& model) {
+    try {
+        look(model);
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "nothing";
+}
+
+TEST(BadPaths, LightsThatAreNoneAreNamedAsTheModelNamesThem) {
+    const std::string no_light = "its emission must be finite";
+    auto model = box_in_room(matte(Vec3f::all(0.8f), {1, -1, 1}));
+    EXPECT_EQ(refusal_of(model).find("light 0: " + no_light), 0u) << refusal_of(model);
+    model.objects[0].name = "box";
+    EXPECT_EQ(refusal_of(model).find("light 'box': " + no_light), 0u) << refusal_of(model);
+    model.materials[0].name = "neon";
+    EXPECT_EQ(refusal_of(model).find("light 'neon': " + no_light), 0u) << refusal_of(model);
+    model.materials[0].emission = {};
+    const Vec3d down(0, 0, -1);
+    const Light bad[] = {PointLight{"bulb", {}, {nan, 1, 1}}, SpotLight{"bulb", {}, down, {nan, 1, 1}},
+                         DirectionalLight{"bulb", down, {nan, 1, 1}}};
+    for (const Light& light : bad) {
+        model.lights = {light};
+        EXPECT_EQ(refusal_of(model).find("light 'bulb': " + no_light), 0u) << refusal_of(model);
+    }
+    model.lights = {DirectionalLight{"bulb", {}, Vec3f::all(1)}};
+    EXPECT_EQ(refusal_of(model).find("light 'bulb': its direction"), 0u) << refusal_of(model);
+}
+
 /// A panorama of one bad texel is named, where it lies.
 TEST(BadPaths, SkiesWithBadTexelsAreRefused) {
     for (const float bad : {nan, inf, -1.0f}) {

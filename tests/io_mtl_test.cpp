@@ -39,6 +39,21 @@ TEST(Mtl, MatteColours) {
     EXPECT_EQ(material_with("Kd 0.5 0.5 0.5\nKs 0 0 0\nillum 2").specular, 0);
 }
 
+TEST(Mtl, NegativeColoursCountAsBlackWithAWarning) {
+    TempFolder folder;
+    const auto model = model_with(folder, "Kd 0.5 -0.25 1\nKs 0 0 0\nKe -1\nTf 1 1 -1");
+    const Material& m = model.materials[0];
+    EXPECT_EQ(m.base_colour, Vec3f(0.5f, 0, 1));
+    EXPECT_EQ(m.emission, Vec3f());
+    ASSERT_EQ(model.warnings.size(), 3u);
+    for (const auto& [i, told] :
+         {std::pair(0, "line 3: Kd"), std::pair(1, "line 5: Ke"), std::pair(2, "line 6: Tf")})
+        EXPECT_NE(
+            model.warnings[std::size_t(i)].find(std::string("a.mtl: ") + told + " has a negative number"),
+            std::string::npos)
+            << model.warnings[std::size_t(i)];
+}
+
 TEST(Mtl, Highlights) {
     const Material m = material_with("Kd 0 0 0\nKs 0.5 0.25 1\nNs 198\nNi 1.25");
     EXPECT_EQ(m.specular, 1);

@@ -96,8 +96,12 @@ Material material_of(const MtlEntry& e) {
 
 class MtlReader {
 public:
-    MtlReader(const std::filesystem::path& path, TextureShelf& textures, NamedOnce& not_shown)
-        : path_(path), file_(path), textures_(textures), not_shown_(not_shown) {}
+    MtlReader(const std::filesystem::path& path, const ModelContext& context)
+        : path_(path),
+          file_(path),
+          textures_(context.textures),
+          not_shown_(context.not_shown),
+          warnings_(context.warnings) {}
 
     void read(MaterialsByName& materials) {
         std::string text;
@@ -141,7 +145,8 @@ private:
         }
         return one_is_all && i == 1 ? Vec3f::all(v[0]) : v;
     }
-    /// A colour; nothing for one by a spectrum or in XYZ.
+    /// A colour, in which what is negative counts as 0, with a warning; nothing for one by a spectrum or in
+    /// XYZ.
     std::optional<Vec3f> colour(std::string_view word) {
         std::string_view after = rest_;
         const std::string_view first = take_word(after);
@@ -149,8 +154,11 @@ private:
             not_shown_.add(std::string(word) + " " + std::string(first) + " (MTL)");
             return std::nullopt;
         }
-        const Vec3f value = numbers({}, true);
-        return max(value, Vec3f());
+        const Vec3f value = numbers({}, true), light = max(value, Vec3f());
+        if (value != light)
+            warnings_.add(file_.name() + ": line " + std::to_string(line_) + ": " + std::string(word) +
+                          " has a negative number, which counts as 0");
+        return light;
     }
 
     void read_word(std::string_view word) {
@@ -273,6 +281,7 @@ private:
     ByteSource file_;
     TextureShelf& textures_;
     NamedOnce& not_shown_;
+    NamedOnce& warnings_;
     std::uint64_t line_ = 1;
     std::string_view rest_;
     std::optional<MtlEntry> entry_;
@@ -280,9 +289,8 @@ private:
 
 }  // namespace
 
-void read_mtl(const std::filesystem::path& path, MaterialsByName& materials, TextureShelf& textures,
-              NamedOnce& not_shown) {
-    MtlReader(path, textures, not_shown).read(materials);
+void read_mtl(const std::filesystem::path& path, const ModelContext& context, MaterialsByName& materials) {
+    MtlReader(path, context).read(materials);
 }
 
 }  // namespace hedgerow::detail

@@ -147,7 +147,7 @@ private:
                                   " is not in its folder. What it would colour is grey");
             return;
         }
-        read_mtl(library(name), materials_, context_.textures, context_.not_shown);
+        read_mtl(library(name), context_, materials_);
     }
 
     template <class T>

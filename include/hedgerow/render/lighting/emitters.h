@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -33,31 +34,33 @@ public:
     /// comes from it: a triangle without area (counted by `without_area`), or whatever emits nothing (counted
     /// by `dark`). They throw InputError for positions that are not finite, for emission that is not finite
     /// or negative, for a direction of length 0, and for angles of a spot that break
-    /// 0 <= inner < outer <= π/2. O(1), amortized.
-    std::uint32_t add(const EmissiveTriangle& triangle) {
-        expect(finite(triangle.a) && finite(triangle.b) && finite(triangle.c), "position must be finite");
-        if (is_dark(triangle.radiance)) return no_emitter;
+    /// 0 <= inner < outer <= π/2. The error says which light it is by its name, or by the number of lights
+    /// before it if it has none. O(1), amortized.
+    std::uint32_t add(const EmissiveTriangle& triangle, std::string_view name = {}) {
+        expect(finite(triangle.a) && finite(triangle.b) && finite(triangle.c), name,
+               "position must be finite");
+        if (is_dark(triangle.radiance, name)) return no_emitter;
         if (!(length2(triangle.normal()) > 0)) return ++without_area_, no_emitter;
         return append(triangle);
     }
     std::uint32_t add(const PointLight& light) {
-        expect(finite(Vec3f(light.position)), "position must be finite");
-        if (is_dark(light.intensity)) return no_emitter;
+        expect(finite(Vec3f(light.position)), light.name, "position must be finite");
+        if (is_dark(light.intensity, light.name)) return no_emitter;
         return append(PointEmitter{Vec3f(light.position), light.intensity});
     }
     std::uint32_t add(const SpotLight& light) {
-        expect(finite(Vec3f(light.position)), "position must be finite");
+        expect(finite(Vec3f(light.position)), light.name, "position must be finite");
         // π/2 in float is above π/2.
-        expect(0 <= light.inner && light.inner < light.outer && light.outer <= 1.5707964,
+        expect(0 <= light.inner && light.inner < light.outer && light.outer <= 1.5707964, light.name,
                "angles must satisfy 0 <= inner < outer <= π/2");
-        const Vec3f axis = unit(light.direction);
-        if (is_dark(light.intensity)) return no_emitter;
+        const Vec3f axis = unit(light.direction, light.name);
+        if (is_dark(light.intensity, light.name)) return no_emitter;
         return append(SpotEmitter{Vec3f(light.position), axis, light.intensity, light.inner, light.outer,
                                   cosine(light.inner), cosine(light.outer)});
     }
     std::uint32_t add(const DirectionalLight& light) {
-        const Vec3f toward = -unit(light.direction);
-        if (is_dark(light.illuminance)) return no_emitter;
+        const Vec3f toward = -unit(light.direction, light.name);
+        if (is_dark(light.illuminance, light.name)) return no_emitter;
         return append(SunEmitter{toward, light.illuminance});
     }
     std::uint32_t add(const Light& light) {
@@ -158,20 +161,23 @@ private:
             return disc * detail::brightness(sun->illuminance);
         return 4 * pi * disc * detail::brightness(environment_->mean());
     }
-    void expect(bool sound, const char* what) const {
-        if (!sound) throw InputError("light " + std::to_string(emitters_.size()) + ": its " + what);
+    void expect(bool sound, std::string_view name, const char* what) const {
+        if (sound) return;
+        const std::string which =
+            name.empty() ? std::to_string(emitters_.size()) : "'" + std::string(name) + "'";
+        throw InputError("light " + which + ": its " + what);
     }
     /// Counts emission of 0. Refuses emission that is no light.
-    bool is_dark(const Vec3f& emission) {
-        expect(finite(emission) && emission[0] >= 0 && emission[1] >= 0 && emission[2] >= 0,
+    bool is_dark(const Vec3f& emission, std::string_view name) {
+        expect(finite(emission) && emission[0] >= 0 && emission[1] >= 0 && emission[2] >= 0, name,
                "emission must be finite and not negative in all colours");
         if (emission != Vec3f()) return false;
         ++dark_;
         return true;
     }
-    Vec3f unit(const Vec3d& direction) const {
+    Vec3f unit(const Vec3d& direction, std::string_view name) const {
         const Vec3f d(normalized(direction));
-        expect(finite(d) && length2(d) > 0.5f, "direction must be finite and longer than 0");
+        expect(finite(d) && length2(d) > 0.5f, name, "direction must be finite and longer than 0");
         return d;
     }
     std::uint32_t append(const Emitter& emitter) {

@@ -133,7 +133,8 @@ private:
         if (placed.mirrors()) std::swap(emissive.a, emissive.c);
         const bool varies = bool(m.emission_texture);
         if (varies) emissive.radiance = tinted(emissive.radiance, lookups_.mean_of(m.emission_texture));
-        const std::uint32_t emitter = emitters_.add(emissive);
+        const std::uint32_t emitter =
+            emitters_.add(emissive, m.name.empty() ? lookups_.object(hit).name : m.name);
         note(emitter, {varies, placed.mirrors(), hit.instance, hit.element});
         return emitter;
     }
