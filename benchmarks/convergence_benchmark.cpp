@@ -26,6 +26,12 @@ constexpr std::size_t colours = 10;  // of plots; the same colours follow, dashe
 
 using Errors = std::vector<std::pair<double, double>>;  // by samples a pixel
 
+/// The errors over the ordinals of their numbers of samples, whose logarithms are evenly apart.
+Errors over_ordinals(Errors errors) {
+    for (std::size_t i = 0; i < errors.size(); ++i) errors[i].first = static_cast<double>(i);
+    return errors;
+}
+
 /// The slope of the line through the logarithms, with the least squares.
 double slope(const Errors& errors) {
     double x_mean = 0, y_mean = 0, products = 0, squares = 0;
@@ -66,8 +72,8 @@ void measure_scene(const std::string& name, int size, cli::LinePlot& plot) {
         fmt::print(" | {:.2f} |\n", slope(errors));
         std::fflush(stdout);
         const std::string kind = name.starts_with("gen:") ? name.substr(4, name.find(':', 4) - 4) : "file";
-        plot.series.push_back({fmt::format("{}, {:.2f}", kind, slope(errors)),
-                               sampler == Sampler::sobol ? colour : colour + colours, errors});
+        plot.series.push_back({fmt::format("{}, slope −{:.2f}", kind, -slope(errors)),
+                               sampler == Sampler::sobol ? colour : colour + colours, over_ordinals(errors)});
     }
 }
 
@@ -83,11 +89,12 @@ int main(int count, char** arguments) try {
     fmt::print("| scene | samples |");
     for (const std::uint32_t samples : counts) fmt::print(" {} |", samples);
     fmt::print(" slope |\n|---|---|---|---|---|---|---|---|\n");
-    cli::LinePlot plot{"Error over samples a pixel, with slopes: Sobol, and dashed independent",
+    cli::LinePlot plot{"√relMSE over samples a pixel: Sobol (solid), independent (dashed)",
                        "samples a pixel",
-                       cli::Unit::number,
+                       cli::Unit::percent,
                        {},
                        {}};
+    for (const std::uint32_t samples : counts) plot.x_names.push_back(std::to_string(samples));
     for (const auto& name : names) measure_scene(name, size, plot);
     if (!output.empty()) save_text(output, cli::svg_of(plot));
 } catch (const std::exception& error) {

@@ -7,7 +7,8 @@
 
 namespace hedgerow::cli {
 
-enum class Unit { number, seconds, bytes };
+/// What values are. Those in `percent` are shares, of which 1 is shown as 100%.
+enum class Unit { number, percent, seconds, bytes };
 
 struct Series {
     std::string name;

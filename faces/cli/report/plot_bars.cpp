@@ -50,8 +50,6 @@ public:
         const double head = top + 26;
         const double high = head + panel_high * static_cast<double>(plot_.panels.size());
         std::string svg = opened(plot_.title, wide_, high);
-        // Fill the background with white, for viewers that have another.
-        svg.insert(svg.find("<text"), filled(0, 0, wide_, high, "#ffffff"));
         for (std::size_t i = 0; i < plot_.notes.size(); ++i)
             svg += small(4, 35 + 16 * static_cast<double>(i), "start", plot_.notes[i], 12, "#555");
         // Draw the legend in a row, and the panels below.

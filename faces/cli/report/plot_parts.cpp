@@ -24,6 +24,8 @@ std::string tick_text(double value, Unit unit) {
             return measure::seconds_text(value);
         case Unit::bytes:
             return measure::bytes_text(value);
+        case Unit::percent:
+            return fmt::format("{:g}%", 100 * value);
         case Unit::number:
             break;
     }
@@ -36,6 +38,7 @@ std::string opened(const std::string& title, double wide, double high) {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
         "role=\"img\" "
         "font-family=\"sans-serif\" font-size=\"12\">\n<title>{2}</title>\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         "<text x=\"4\" y=\"18\" font-size=\"14\" font-weight=\"bold\">{2}</text>\n",
         wide, high, escaped(title));
 }

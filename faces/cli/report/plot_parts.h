@@ -36,9 +36,9 @@ public:
     std::vector<double> ticks() const {
         const double decades = std::log10(most() / least());
         const int apart = decades < 7 ? 1 : 2;
-        const std::vector<double> digits = decades < 1     ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7}
-                                           : decades < 2.5 ? std::vector<double>{1, 2, 5}
-                                                           : std::vector<double>{1};
+        const std::vector<double> digits = decades < 1   ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7}
+                                           : decades < 3 ? std::vector<double>{1, 2, 5}
+                                                         : std::vector<double>{1};
         std::vector<double> all;
         for (int p = static_cast<int>(std::floor(std::log10(least()))); p <= std::log10(most()); ++p)
             for (const double digit : digits) {
@@ -63,6 +63,7 @@ private:
     double least_ = std::numeric_limits<double>::infinity(), most_ = 0;
 };
 
+/// The begin of a plot: its title on white, for viewers that have another background.
 std::string opened(const std::string& title, double wide, double high);
 std::string text(double x, double y, const char* anchor, const std::string& words,
                  const char* colour = "#222");
