@@ -133,7 +133,8 @@ TEST(Samplers, LightsOfASceneHaveTheDensityOfTheirHits) {
         // The density of a direction is a sum over all that lies in it, since nothing blocks a sample.
         const Vec3f point(0.1f, 0.2f, 0);
         const auto density = [&](const Vec3f& d) {
-            double sum = double(lights.density_of_sky(point, normal, d));
+            double sum =
+                double(lights.environment()->density(d)) * double(lights.probability_of_sky(point, normal));
             Ray<float, 3> ray{point, d};
             for (int k = 0; k < 20; ++k) {
                 Hit<float> hit;

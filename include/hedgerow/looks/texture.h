@@ -44,6 +44,10 @@ struct Texture {
 
     /// The linear value of a texel, which exists. O(1).
     Rgba texel(int x, int y) const;
+    /// Calls `use(texel)`, where `texel(x, y)` returns the linear value of a texel, and returns its result.
+    /// Several texels cost less so than one by one.
+    template <class Use>
+    auto with_texels(const Use& use) const;
     /// The linear value at a texture coordinate. The filter `bilinear` interpolates linear values between
     /// the centres of four texels. A coordinate that is not finite counts as 0. O(1).
     Rgba at(const Vec2f& coordinate) const { return at(coordinate, {}); }
@@ -84,7 +88,7 @@ inline double in_texels(float coordinate, int size) {
 /// 1; longer ones count as 1. With sides of 1 it interpolates between the centres of four texels. The centre
 /// of texel i is i + 1/2. `texel(column, row)` returns a value for any whole numbers.
 template <class Texel>
-Rgba bilinear(double x, double y, const Vec2f& sides, const Texel& texel) {
+auto bilinear(double x, double y, const Vec2f& sides, const Texel& texel) {
     const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
     // The share of a side that lies beyond the border between two texels.
     const auto beyond = [](double from_border, float side) {
@@ -92,7 +96,7 @@ Rgba bilinear(double x, double y, const Vec2f& sides, const Texel& texel) {
         return side >= 1 ? inside + 0.5f : std::clamp(inside / std::max(side, 1e-6f) + 0.5f, 0.0f, 1.0f);
     };
     const float right_share = beyond(x - 1 - left, sides[0]), bottom_share = beyond(y - 1 - top, sides[1]);
-    const auto between = [](const Rgba& a, const Rgba& b, float share) {
+    const auto between = [](const auto& a, const auto& b, float share) {
         return a * (1 - share) + b * share;
     };
     return between(between(texel(left, top), texel(left + 1, top), right_share),
@@ -101,38 +105,42 @@ Rgba bilinear(double x, double y, const Vec2f& sides, const Texel& texel) {
 
 }  // namespace detail
 
-inline Rgba Texture::texel(int x, int y) const {
+template <class Use>
+auto Texture::with_texels(const Use& use) const {
+    const auto width = static_cast<std::size_t>(pixels->width),
+               channels = static_cast<std::size_t>(pixels->channels);
+    const bool encoded = space == ColourSpace::srgb;
     return std::visit(
         [&](const auto& samples) {
-            const int channels = pixels->channels;
-            const auto first = (static_cast<std::size_t>(y) * static_cast<std::size_t>(pixels->width) +
-                                static_cast<std::size_t>(x)) *
-                               static_cast<std::size_t>(channels);
-            const bool encoded = space == ColourSpace::srgb;
-            const auto colour = [&](int k) {
-                return detail::linear_sample(samples[first + static_cast<std::size_t>(k)], encoded);
-            };
-            const auto opacity = [&](int k) {
-                return detail::linear_sample(samples[first + static_cast<std::size_t>(k)], false);
-            };
-            Rgba value{channels < 3 ? Vec3f::all(colour(0)) : Vec3f(colour(0), colour(1), colour(2)), 1};
-            if (channels % 2 == 0) value.alpha = opacity(channels - 1);
-            return value;
+            return use([=, all = samples.data()](int x, int y) {
+                const auto* const first =
+                    all + (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)) * channels;
+                const auto colour = [&](int k) { return detail::linear_sample(first[k], encoded); };
+                Rgba value{channels < 3 ? Vec3f::all(colour(0)) : Vec3f(colour(0), colour(1), colour(2)), 1};
+                if (channels % 2 == 0) value.alpha = detail::linear_sample(first[channels - 1], false);
+                return value;
+            });
         },
         pixels->samples);
+}
+
+inline Rgba Texture::texel(int x, int y) const {
+    return with_texels([&](const auto& texel) { return texel(x, y); });
 }
 
 inline Rgba Texture::at(const Vec2f& coordinate, const Vec2f& sides) const {
     if (!pixels || pixels->width <= 0 || pixels->height <= 0) return {Vec3f::all(1), 1};
     const int width = pixels->width, height = pixels->height;
     const double x = detail::in_texels(coordinate[0], width), y = detail::in_texels(coordinate[1], height);
-    const auto wrapped_texel = [&](double column, double row) {
-        return texel(detail::wrapped(static_cast<std::int64_t>(column), width, wrap_s),
-                     detail::wrapped(static_cast<std::int64_t>(row), height, wrap_t));
-    };
     const bool nearest = filter == TextureFilter::nearest;
-    if (nearest && sides == Vec2f()) return wrapped_texel(std::floor(x), std::floor(y));
-    return detail::bilinear(x, y, nearest ? sides : Vec2f(1, 1), wrapped_texel);
+    return with_texels([&](const auto& texel) {
+        const auto wrapped_texel = [&](double column, double row) {
+            return texel(detail::wrapped(static_cast<std::int64_t>(column), width, wrap_s),
+                         detail::wrapped(static_cast<std::int64_t>(row), height, wrap_t));
+        };
+        if (nearest && sides == Vec2f()) return wrapped_texel(std::floor(x), std::floor(y));
+        return detail::bilinear(x, y, nearest ? sides : Vec2f(1, 1), wrapped_texel);
+    });
 }
 
 }  // namespace hedgerow

@@ -71,10 +71,8 @@ public:
     /// Arrives where `front()` returns the normal that PathSurfaces::front has at the hit.
     template <class Front>
     std::optional<PathVertex<T>> arrive(PathState<T>& path, const Hit<T>& hit, const Front& front) const {
-        const Vec3f direction(path.ray.direction);
         if (!hit) {
-            if (const EnvironmentMap* const sky = world_.lights.environment())
-                add(path, sky->radiance(direction), weight_of_hit(path, density_of_sky(path)));
+            meet_sky(path);
             return std::nullopt;
         }
         absorb(path, static_cast<float>(hit.t));
@@ -172,9 +170,14 @@ private:
         if (at.material.transmission > 0) return 1;
         return share_at_terminator(at.shading.normal(), at.geometric, direction);
     }
-    float density_of_sky(const PathState<T>& path) const {
-        if (path.density == 0) return 0;
-        return world_.lights.density_of_sky(path.left_at, path.left_normal, Vec3f(path.ray.direction));
+    void meet_sky(PathState<T>& path) const {
+        const EnvironmentMap* const sky = world_.lights.environment();
+        if (!sky) return;
+        const Vec3f direction(path.ray.direction);
+        if (path.density == 0) return add(path, sky->radiance(direction), 1);
+        const EnvironmentSample from = sky->at(direction);
+        const float chosen = world_.lights.probability_of_sky(path.left_at, path.left_normal);
+        add(path, from.radiance, weight_of_hit(path, product(from.density, chosen)));
     }
     float density_of_light(const PathState<T>& path, const Hit<T>& hit) const {
         if (path.density == 0) return 0;

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,6 +14,7 @@
 #include <hedgerow/looks/light.h>
 #include <hedgerow/render/lighting/cumulative_table.h>
 #include <hedgerow/render/lighting/light_shapes.h>
+#include <hedgerow/render/lighting/panorama.h>
 
 namespace hedgerow {
 
@@ -36,35 +35,34 @@ struct EnvironmentSample {
     float density = 0;  ///< per solid angle
 };
 
-/// The environment is looked up between texels. Columns wrap around, and beyond a pole lies the meridian
-/// opposite. Whatever wrap modes the texture has do not matter.
-///
 /// Directions are sampled by a table over latitude and longitude, row first, then column, as in pbrt (Pharr,
 /// Jakob and Humphreys, Physically Based Rendering). The weight of a cell is its mean brightness times its
 /// solid angle, and within a cell directions are uniform in solid angle. Memory: 8 bytes a cell.
 class EnvironmentMap {
 public:
-    /// Makes the table. O(texels). Throws InputError for the first texel that is NaN, infinite or negative,
-    /// for a radiance that is, and for a matrix that is no rotation.
+    /// Makes the table. O(texels). Throws InputError as Panorama does, and for a matrix that is no rotation.
     explicit EnvironmentMap(const Environment& environment, const EnvironmentMapOptions& options = {})
-        : environment_(environment) {
-        check();
-        const Texture& panorama = environment_.panorama;
-        if (panorama.pixels && panorama.pixels->width > 0 && panorama.pixels->height > 0)
-            texel_columns_ = panorama.pixels->width, texel_rows_ = panorama.pixels->height;
-        columns_ = static_cast<std::size_t>(std::clamp(options.most_columns, 1, texel_columns_));
-        rows_ = static_cast<std::size_t>(std::clamp(options.most_rows, 1, texel_rows_));
-        for (std::size_t j = 0; j <= rows_; ++j) cosines_.push_back(cosine_of_row(j, rows_));
+        : panorama_(environment),
+          to_world_(environment.to_world),
+          columns_(static_cast<std::size_t>(std::clamp(options.most_columns, 1, panorama_.columns()))),
+          rows_(static_cast<std::size_t>(std::clamp(options.most_rows, 1, panorama_.rows()))) {
+        check_rotation();
+        for (std::size_t j = 0; j <= rows_; ++j) cosines_.push_back(Panorama::cosine_of_row(j, rows_));
         make_table(cell_means(), options.compensates);
     }
 
-    /// The radiance that arrives from a direction, of length 1. O(1).
-    Vec3f radiance(const Vec3f& direction) const {
-        const Vec3d local = to_local(direction);
-        return lookup(turns(local), latitude(local));
+    /// The radiance that arrives from a direction. O(1).
+    Vec3f radiance(const Vec3f& direction) const { return panorama_.radiance(place_of(direction)); }
+    /// The density with which `sample` chooses a direction, per solid angle. O(1).
+    float density(const Vec3f& direction) const { return density_at(place_of(direction)); }
+    /// The radiance and the density of a direction at once.
+    EnvironmentSample at(const Vec3f& direction) const {
+        const PanoramaPlace place = place_of(direction);
+        return {direction, panorama_.radiance(place), density_at(place)};
     }
-    /// Chooses a direction by two numbers in [0, 1). The density is 0 if the environment is black. O(log of
-    /// the columns and rows).
+    /// Chooses a direction by two numbers in [0, 1). Returns what `at` returns for it: the rounding to floats
+    /// puts one direction of 40,000 beyond the edge of its cell, and it counts where it lies. So the density
+    /// may be 0, and it is if the environment is black. O(log of the columns and rows).
     EnvironmentSample sample(float u, float v) const {
         if (!lit()) return {};
         const TableChoice row = choose_entry(row_sums_, static_cast<double>(v));
@@ -74,32 +72,15 @@ public:
         const double radius = std::sqrt(std::max(0.0, product(1 - height, 1 + height)));
         const auto turn =
             rounded_to<float>((static_cast<double>(column.entry) + column.u) / static_cast<double>(columns_));
-        const SineCosine<float> at = sine_cosine_of_turns(turn);
-        const Vec3d local(-product(radius, static_cast<double>(at.sine)), height,
-                          product(radius, static_cast<double>(at.cosine)));
-        return {to_world(local), lookup(static_cast<double>(turn), latitude(local)),
-                density_of(row.entry, product(row.probability, column.probability))};
-    }
-    /// The density with which `sample` chooses a direction of length 1, per solid angle. At the edge of two
-    /// cells it may be that of either. O(log of the rows).
-    float density(const Vec3f& direction) const {
-        if (!lit()) return 0;
-        const Vec3d local = to_local(direction);
-        // Rows lie between descending cosines.
-        const auto below =
-            std::upper_bound(cosines_.begin() + 1, cosines_.end() - 1, local[1], std::greater<double>());
-        const auto row = static_cast<std::size_t>(below - cosines_.begin()) - 1;
-        const double place = turns(local) * static_cast<double>(columns_);
-        const std::size_t column = std::min(columns_ - 1, static_cast<std::size_t>(place));
-        return density_of(row,
-                          product(share_of_entry(row_sums_, row), share_of_entry(sums_of_row(row), column)));
+        const SineCosine<float> around = sine_cosine_of_turns(turn);
+        return at(to_world(Vec3d(-product(radius, static_cast<double>(around.sine)), height,
+                                 product(radius, static_cast<double>(around.cosine)))));
     }
 
     /// The mean radiance over all directions.
-    const Vec3f& mean() const { return mean_; }
+    const Vec3f& mean() const { return panorama_.mean(); }
     /// Whether any light comes from the environment.
     bool lit() const { return !row_sums_.empty(); }
-    const Environment& environment() const { return environment_; }
     /// The size of the table of densities.
     std::size_t columns() const { return columns_; }
     std::size_t rows() const { return rows_; }
@@ -107,77 +88,32 @@ public:
 private:
     static constexpr double pi = 3.141592653589793;
 
-    void check() const {
-        if (!is_light(environment_.radiance))
-            throw InputError("environment: the radiance must be finite and not negative in all colours");
-        const auto& m = environment_.to_world;
+    void check_rotation() const {
+        const auto& m = to_world_;
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t j = 0; j <= i; ++j)
                 if (!(std::abs(dot(m[i], m[j]) - (i == j)) < 1e-4))
                     throw InputError("environment: its matrix must be a rotation, without scale or shear");
     }
-    static bool is_light(const Vec3f& c) { return finite(c) && c[0] >= 0 && c[1] >= 0 && c[2] >= 0; }
-    static double cosine_of_row(std::size_t row, std::size_t rows) {
-        if (row == 0 || row == rows) return row == 0 ? 1 : -1;
-        return cosine(product(pi, static_cast<double>(row) / static_cast<double>(rows)));
-    }
-
-    /// Texel (column, row) times the radiance of the environment. The column may be one outside, and so may
-    /// the row: that is a texel across the pole.
-    Vec3f texel(std::int64_t column, std::int64_t row) const {
-        if (row < 0 || row >= texel_rows_) {
-            row = row < 0 ? 0 : texel_rows_ - 1;
-            column += texel_columns_ / 2;
-        }
-        column += column < 0 ? texel_columns_ : column >= texel_columns_ ? -texel_columns_ : 0;
-        const Texture& panorama = environment_.panorama;
-        if (!panorama.pixels || panorama.pixels->width <= 0 || panorama.pixels->height <= 0)
-            return environment_.radiance;
-        return tinted(panorama.texel(static_cast<int>(column), static_cast<int>(row)).colour,
-                      environment_.radiance);
-    }
-    /// The radiance at a place of the panorama, from 0 to 1 across and down.
-    Vec3f lookup(double across, double down) const {
-        if (texel_columns_ == 1 && texel_rows_ == 1) return texel(0, 0);
-        const double x = product(across, static_cast<double>(texel_columns_)),
-                     y = product(down, static_cast<double>(texel_rows_));
-        const auto texel_at = [&](double column, double row) {
-            return Rgba{texel(static_cast<std::int64_t>(column), static_cast<std::int64_t>(row)), 1};
-        };
-        if (interpolates()) return detail::bilinear(x, y, {1, 1}, texel_at).colour;
-        const auto last = static_cast<double>(texel_rows_ - 1);
-        return texel_at(std::floor(x), std::min(last, std::floor(y))).colour;
-    }
-    bool interpolates() const { return environment_.panorama.filter == TextureFilter::bilinear; }
-
     Vec3f to_world(const Vec3d& local) const {
-        const auto& m = environment_.to_world;
+        const auto& m = to_world_;
         return Vec3f(normalized(Vec3d(dot(m[0], local), dot(m[1], local), dot(m[2], local))));
     }
-    Vec3d to_local(const Vec3f& direction) const {
-        const auto& m = environment_.to_world;
+    PanoramaPlace place_of(const Vec3f& direction) const {
+        const auto& m = to_world_;
         const Vec3d d(direction);
-        return m[0] * d[0] + m[1] * d[1] + m[2] * d[2];
-    }
-    /// How far around the panorama a direction is, from the left edge: 0 to 1. At a pole it is the middle.
-    static double turns(const Vec3d& local) {
-        if (local[0] == 0 && local[2] == 0) return 0.5;
-        const double share = 0.5 + arc_tangent(local[0], -local[2]) / (2 * pi);
-        return std::clamp(share, 0.0, 1.0);
-    }
-    /// How far down the panorama a direction is: 0 at the zenith to 1.
-    static double latitude(const Vec3d& local) {
-        const double radius = std::sqrt(product(local[0], local[0]) + product(local[2], local[2]));
-        if (radius == 0) return local[1] < 0 ? 1 : 0;
-        return std::clamp(arc_tangent(radius, local[1]) / pi, 0.0, 1.0);
+        return panorama_place(m[0] * d[0] + m[1] * d[1] + m[2] * d[2]);
     }
 
     std::span<const double> sums_of_row(std::size_t row) const {
         return std::span(column_sums_).subspan(row * (columns_ + 1), columns_ + 1);
     }
-    float density_of(std::size_t row, double probability) const {
-        if (!(probability > 0)) return 0;
-        return detail::bounded_density(probability / solid_angle(row));
+    float density_at(const PanoramaPlace& place) const {
+        if (!lit()) return 0;
+        const auto row = static_cast<std::size_t>(place.row(static_cast<int>(rows_))),
+                   column = static_cast<std::size_t>(place.column(static_cast<int>(columns_)));
+        const double share = share_of_entry(sums_of_row(row), column);
+        return share > 0 ? detail::bounded_density(share * row_densities_[row]) : 0;
     }
     /// The solid angle of a cell.
     double solid_angle(std::size_t row) const {
@@ -185,11 +121,11 @@ private:
     }
 
     /// The brightness of the texels of a row, averaged over each texel as lookups interpolate it across.
-    std::vector<double> brightness_of_row(std::int64_t row) const {
-        std::vector<double> values(static_cast<std::size_t>(texel_columns_)), smooth(values.size());
+    std::vector<double> brightness_of_row(int row) const {
+        std::vector<double> values(static_cast<std::size_t>(panorama_.columns())), smooth(values.size());
         for (std::size_t x = 0; x < values.size(); ++x)
-            values[x] = detail::brightness(texel(static_cast<std::int64_t>(x), row));
-        if (!interpolates()) return values;
+            values[x] = detail::brightness(panorama_.texel(static_cast<int>(x), row));
+        if (!panorama_.interpolates()) return values;
         for (std::size_t x = 0; x < values.size(); ++x)
             smooth[x] = over_texel(values[x == 0 ? values.size() - 1 : x - 1], values[x],
                                    values[x + 1 == values.size() ? 0 : x + 1]);
@@ -200,20 +136,19 @@ private:
         return (before + product(6.0, value) + after) / 8;
     }
 
-    /// Checks all texels. Returns the mean brightness of each cell, row by row.
-    std::vector<double> cell_means() {
+    /// The mean brightness of each cell, row by row.
+    std::vector<double> cell_means() const {
         std::vector<double> cells(columns_ * rows_);
-        sum_texels();
         std::vector<double> above = brightness_of_row(-1), here = brightness_of_row(0);
-        for (int y = 0; y < texel_rows_; ++y) {
+        for (int y = 0; y < panorama_.rows(); ++y) {
             std::vector<double> below = brightness_of_row(y + 1);
             std::vector<double> smooth = here;
-            if (interpolates())
+            if (panorama_.interpolates())
                 for (std::size_t x = 0; x < smooth.size(); ++x)
                     smooth[x] = over_texel(above[x], here[x], below[x]);
-            for_each_cell(y, texel_rows_, rows_, [&](std::size_t row, double share) {
-                for (int x = 0; x < texel_columns_; ++x)
-                    for_each_cell(x, texel_columns_, columns_, [&](std::size_t column, double part) {
+            for_each_cell(y, panorama_.rows(), rows_, [&](std::size_t row, double share) {
+                for (int x = 0; x < panorama_.columns(); ++x)
+                    for_each_cell(x, panorama_.columns(), columns_, [&](std::size_t column, double part) {
                         cells[row * columns_ + column] +=
                             product(smooth[static_cast<std::size_t>(x)], product(share, part));
                     });
@@ -235,32 +170,6 @@ private:
             visit(static_cast<std::size_t>(j), static_cast<double>(overlap) / texels);
         }
     }
-    /// Computes the mean radiance. Throws InputError for the first bad texel.
-    void sum_texels() {
-        Vec3d sum;
-        double above = 1;
-        for (int y = 0; y < texel_rows_; ++y) {
-            Vec3d of_row;
-            for (int x = 0; x < texel_columns_; ++x) {
-                const Vec3f value = texel(x, y);
-                if (!is_light(value)) refuse_texel(x, y);
-                of_row += Vec3d(value);
-            }
-            const double below =
-                cosine_of_row(static_cast<std::size_t>(y) + 1, static_cast<std::size_t>(texel_rows_));
-            sum += of_row * ((above - below) / 2 / texel_columns_);
-            above = below;
-        }
-        mean_ = Vec3f(sum);
-    }
-    [[noreturn]] void refuse_texel(int x, int y) const {
-        const std::string& name = environment_.panorama.name;
-        throw InputError("environment" + (name.empty() ? "" : " " + name) + ": texel (column " +
-                         std::to_string(x) + ", row " + std::to_string(y) +
-                         ") is not a finite radiance >= 0: mend it in the image, or scale the image down if "
-                         "its values are too large");
-    }
-
     /// Makes the sums of rows and columns. A map without any light gets none.
     void make_table(std::vector<double> means, bool compensates) {
         if (compensates) lessen(means);
@@ -273,6 +182,8 @@ private:
             row_sums_[row + 1] = product(accumulate_shares(sums), solid_angle(row));
         }
         if (!(accumulate_shares(row_sums_) > 0)) row_sums_.clear();
+        for (std::size_t row = 0; lit() && row < rows_; ++row)
+            row_densities_.push_back(share_of_entry(row_sums_, row) / solid_angle(row));
     }
     /// Subtracts the mean, where that leaves enough. What it leaves of a map that is almost flat would be
     /// noise.
@@ -292,13 +203,13 @@ private:
         for (double& m : means) m = std::max(0.0, m - mean);
     }
 
-    Environment environment_;
-    int texel_columns_ = 1, texel_rows_ = 1;
-    std::size_t columns_ = 1, rows_ = 1;
-    std::vector<double> cosines_;      // of the angles from the zenith of the rows' edges
-    std::vector<double> column_sums_;  // of each row, columns + 1
-    std::vector<double> row_sums_;
-    Vec3f mean_;
+    Panorama panorama_;
+    Rows<3> to_world_;
+    std::size_t columns_, rows_;
+    std::vector<double> cosines_;        // of the angles from the zenith of the rows' edges
+    std::vector<double> column_sums_;    // of each row, columns + 1
+    std::vector<double> row_sums_;       // none: the map is black
+    std::vector<double> row_densities_;  // the density of a cell that had all samples of its row
 };
 
 }  // namespace hedgerow

@@ -86,9 +86,10 @@ public:
         const float density = emitters_.density_toward(emitter, direction, static_cast<float>(hit.t));
         return density > 0 ? product(density, tree_.probability(point, normal, emitter)) : 0;
     }
-    float density_of_sky(const Vec3f& point, const Vec3f& normal, const Vec3f& direction) const {
-        if (sky_ == no_emitter) return 0;
-        return product(emitters_.density_toward(sky_, direction, 0), tree_.probability(point, normal, sky_));
+    /// The probability with which `sample` chooses the environment at a point; 0 if there is none. O(log
+    /// lights).
+    float probability_of_sky(const Vec3f& point, const Vec3f& normal) const {
+        return sky_ == no_emitter ? 0 : tree_.probability(point, normal, sky_);
     }
 
 private:
