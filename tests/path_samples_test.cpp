@@ -6,7 +6,8 @@
 #include <vector>
 
 #include <hedgerow/base/instruction_set.h>
-#include <hedgerow/render/sampling/vertex_sample_batch.h>
+#include <hedgerow/render/integrators/path_camera.h>
+#include <hedgerow/render/sampling/sample_batch.h>
 
 namespace hedgerow {
 namespace {
@@ -123,6 +124,13 @@ TEST(PathSamples, HaveTheseNumbersOnEveryProcessor) {
     EXPECT_EQ(sum, 2973681719u);
 }
 
+template <class Samples>
+void expect_same(const Samples& a, const Samples& b) {
+    for (std::size_t k = 0; k < Samples::count; ++k) {
+        ASSERT_EQ(a.pairs[k].x, b.pairs[k].x) << "pair " << k;
+        ASSERT_EQ(a.pairs[k].y, b.pairs[k].y) << "pair " << k;
+    }
+}
 /// Numbers of a batch, with each instruction set and for sizes that fill no vector, are those of single
 /// paths.
 TEST(PathSamples, BatchesHaveTheNumbersOfSinglePaths) {
@@ -130,33 +138,64 @@ TEST(PathSamples, BatchesHaveTheNumbersOfSinglePaths) {
         use_instruction_set(set);
         SCOPED_TRACE(set);
         for (const Sampler sampler : {Sampler::sobol, Sampler::independent}) {
-            VertexSampleBatch batch(100);
+            SampleBatch vertices(100, VertexSamples::count), cameras(100, CameraSamples::count),
+                pixels(100, 1);
             for (const std::uint32_t size : {100u, 0u, 1u, 37u}) {
                 const auto path = [&](std::uint32_t i) {
                     return PathSamples(PixelSequence(sampler, 3, i / 4), i + size);
                 };
-                batch.clear();
-                for (std::uint32_t i = 0; i < size; ++i) batch.add(path(i), 7 * i % 5);
-                batch.compute();
+                for (auto* batch : {&vertices, &cameras, &pixels}) batch->clear();
                 for (std::uint32_t i = 0; i < size; ++i) {
-                    const VertexSamples one = path(i).at(7 * i % 5), of_batch = batch[i];
-                    for (std::size_t k = 0; k < VertexSamples::count; ++k) {
-                        ASSERT_EQ(of_batch.pairs[k].x, one.pairs[k].x) << i << ", pair " << k;
-                        ASSERT_EQ(of_batch.pairs[k].y, one.pairs[k].y) << i << ", pair " << k;
-                    }
+                    vertices.add(path(i), PathSamples::dimension(7 * i % 5));
+                    cameras.add(path(i), 0), pixels.add(path(i), 0);
+                }
+                for (auto* batch : {&vertices, &cameras, &pixels}) batch->compute();
+                for (std::uint32_t i = 0; i < size; ++i) {
+                    SCOPED_TRACE(i);
+                    expect_same(vertices.at_vertex(i), path(i).at(7 * i % 5));
+                    CameraSamples camera = path(i).at_camera();
+                    expect_same(cameras.at_camera(i), camera);
+                    camera.pairs[1] = {0, 0};
+                    expect_same(pixels.at_camera(i), camera);
                 }
             }
         }
     }
     use_instruction_set(instruction_sets().front());
 }
+
+TEST(PathSamples, StartsOfABatchAreThoseOfSinglePaths) {
+    for (const float lens_radius : {0.0f, 0.3f})
+        for (const PixelFilter filter : {PixelFilter::box, PixelFilter::gaussian}) {
+            Camera from{{1, 2, 3}, {0, 0, 0}, {0, 0, 1}, 40};
+            from.lens_radius = lens_radius;
+            const PathCamera camera(from, 20, 10, filter, Sampler::sobol, 4);
+            const auto sample = [](int i) {
+                return PixelSample{i % 20, i / 20, static_cast<std::uint32_t>(i % 2), 7};
+            };
+            PathStartBatch<float> batch(camera, 200);
+            for (const int size : {200, 1, 33}) {
+                batch.clear();
+                for (int i = 0; i < size; ++i) batch.add(sample(i));
+                batch.compute();
+                for (int i = 0; i < size; ++i) {
+                    const auto one = camera.start<float>(sample(i)), of_batch = batch[std::size_t(i)];
+                    ASSERT_EQ(of_batch.ray.origin, one.ray.origin) << i;
+                    ASSERT_EQ(of_batch.ray.direction, one.ray.direction) << i;
+                    ASSERT_EQ(of_batch.samples.pixel().seed(), one.samples.pixel().seed()) << i;
+                    ASSERT_EQ(of_batch.samples.sample(), one.samples.sample()) << i;
+                }
+            }
+        }
+}
+
 TEST(PathSamples, APathTakesEachPairOnce) {
     const PixelSequence pixel(Sampler::independent, 5, 6);
     const PathSamples path(pixel, 7);
     std::set<float> seen;
     std::size_t taken = 0;
     const auto take = [&](const UnitPair& p) { seen.insert(p.x), seen.insert(p.y), taken += 2; };
-    take(path.in_pixel()), take(path.on_lens());
+    take(path.at_camera().in_pixel()), take(path.at_camera().on_lens());
     for (std::uint32_t v = 0; v < 50; ++v) {
         const VertexSamples at = path.at(v);
         take(at.light_point()), take(at.direction());

@@ -144,7 +144,7 @@ std::size_t bright_paths(const Room& room, const Material& walls, bool smooth, A
     std::size_t bright = 0;
     PathWavefront<T>(world, scene.tracer())
         .follow(
-            paths, [&](std::size_t i) { return start_in<T>(room, aim, i); },
+            paths, [](std::size_t, std::size_t) {}, [&](std::size_t i) { return start_in<T>(room, aim, i); },
             [&](std::size_t, const PathLight& light) { bright += light.all != Vec3f(); });
     return bright;
 }

@@ -91,7 +91,9 @@ struct Run {
     std::uint32_t begin;
     std::size_t first;
 
-    std::uint32_t sample(std::size_t path) const { return begin + static_cast<std::uint32_t>(path - first); }
+    PixelSample sample(std::size_t path) const {
+        return {x, y, static_cast<std::uint32_t>(half), begin + static_cast<std::uint32_t>(path - first)};
+    }
 };
 /// The run of a path. `current` is that of a path before it, and becomes its own.
 const Run& run_of(const std::vector<Run>& runs, std::size_t path, std::size_t& current) {
@@ -158,16 +160,20 @@ private:
             }
         // Parts of so many paths, so that the light of all takes little memory.
         std::vector<PathLight> light;
+        PathStartBatch<T> starts(camera_, std::max<std::size_t>(1, o_.in_flight));
         std::size_t started = 0, added = 0;  // runs, since paths are started in order
         for (std::size_t first = 0; first < all; first += light.size()) {
             light.resize(std::min(all - first, paths_of_tile));
+            std::size_t prepared = 0;
             follow(
                 light.size(),
-                [&](std::size_t i) {
-                    const Run& run = run_of(runs, first + i, started);
-                    return camera_.start<T>(run.x, run.y, static_cast<std::uint32_t>(run.half),
-                                            run.sample(first + i));
+                [&](std::size_t from, std::size_t to) {
+                    starts.clear(), prepared = from;
+                    for (std::size_t path = first + from; path < first + to; ++path)
+                        starts.add(run_of(runs, path, started).sample(path));
+                    starts.compute();
                 },
+                [&](std::size_t i) { return starts[i - prepared]; },
                 [&](std::size_t i, const PathLight& found) { light[i] = found; });
             for (std::size_t i = 0; i < light.size(); ++i) {
                 const Run& run = run_of(runs, first + i, added);
@@ -176,12 +182,14 @@ private:
         }
         return all;
     }
-    template <class OfNumber, class Finish>
-    void follow(std::size_t count, const OfNumber& start, const Finish& finish) const {
+    template <class Prepare, class OfNumber, class Finish>
+    void follow(std::size_t count, const Prepare& prepare, const OfNumber& start,
+                const Finish& finish) const {
         if (o_.in_flight > 0)
-            return PathWavefront<T>(world_, tracer_, o_.in_flight).follow(count, start, finish);
+            return PathWavefront<T>(world_, tracer_, o_.in_flight).follow(count, prepare, start, finish);
         const PathReference<T> reference(world_, tracer_);
         for (std::size_t i = 0; i < count; ++i) {
+            prepare(i, i + 1);
             const auto path = start(i);
             finish(i, reference.light(path.ray, path.samples));
         }
@@ -239,7 +247,7 @@ std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPi
                 for (std::uint32_t k = 0; k < samples; ++k) {
                     const auto [half, sample] = half_sample(o.division, k);
                     const FirstSurface one =
-                        first_surface(world, scene.tracer, camera.start<T>(x, y, half, sample));
+                        first_surface(world, scene.tracer, camera.start<T>({x, y, half, sample}));
                     if (k == 0) mean = one;
                     albedo = albedo + Vec3d(one.albedo), normal = normal + Vec3d(one.normal);
                 }

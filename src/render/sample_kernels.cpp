@@ -1,4 +1,4 @@
-/// The random numbers of many vertices, compiled for each instruction set: Highway's foreach_target includes
+/// The random numbers of many paths, compiled for each instruction set: Highway's foreach_target includes
 /// this file once for each.
 #include "sample_kernels.h"
 
@@ -14,10 +14,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-inline void fill_rows_in_lanes(Sampler sampler, const VertexKeys& of, const VertexRows& rows) {
-    fill_rows(sampler, of, rows);
+inline void fill_pairs_in_lanes(Sampler sampler, const PairKeys& of, std::uint32_t pair, std::uint32_t* x,
+                                std::uint32_t* y) {
+    fill_pairs(sampler, of, pair, x, y);
 }
-inline constexpr SampleKernels sample_kernels{fill_rows_in_lanes};
+inline constexpr SampleKernels sample_kernels{fill_pairs_in_lanes};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,4 +1,4 @@
-/// The numbers of many vertices, as a plain loop that the compiler puts into vectors: one source gives the
+/// The numbers of many paths, as a plain loop that the compiler puts into vectors: one source gives the
 /// numbers of one path and of many.
 #pragma once
 
@@ -6,31 +6,30 @@
 #include <cstdint>
 
 #include <hedgerow/base/instruction_set.h>
-#include <hedgerow/render/sampling/vertex_sample_batch.h>
+#include <hedgerow/render/sampling/sample_batch.h>
 
 namespace hedgerow {
 
-/// Writes a pair of each vertex.
+/// Writes a pair of each path: that of its dimension, or one that follows it.
 template <Sampler sampler>
-[[gnu::always_inline]] inline void fill_pair(const VertexKeys& of, std::uint32_t pair,
-                                             std::uint32_t* __restrict x, std::uint32_t* __restrict y) {
+[[gnu::always_inline]] inline void fill_pairs_of(const PairKeys& of, std::uint32_t pair,
+                                                 std::uint32_t* __restrict x, std::uint32_t* __restrict y) {
     for (std::size_t i = 0; i < of.count; ++i) {
-        const FractionPair p = PixelSequence::fractions(sampler, of.seeds[i], of.samples[i],
-                                                        PathSamples::dimension(of.vertices[i], pair));
+        const FractionPair p =
+            PixelSequence::fractions(sampler, of.seeds[i], of.samples[i], of.dimensions[i] + pair);
         x[i] = p.x, y[i] = p.y;
     }
 }
-/// Writes all rows of numbers.
-[[gnu::always_inline]] inline void fill_rows(Sampler sampler, const VertexKeys& of, const VertexRows& rows) {
-    for (std::uint32_t pair = 0; pair < VertexSamples::count; ++pair)
-        if (sampler == Sampler::sobol)
-            fill_pair<Sampler::sobol>(of, pair, rows[2 * pair], rows[2 * pair + 1]);
-        else
-            fill_pair<Sampler::independent>(of, pair, rows[2 * pair], rows[2 * pair + 1]);
+[[gnu::always_inline]] inline void fill_pairs(Sampler sampler, const PairKeys& of, std::uint32_t pair,
+                                              std::uint32_t* x, std::uint32_t* y) {
+    if (sampler == Sampler::sobol)
+        fill_pairs_of<Sampler::sobol>(of, pair, x, y);
+    else
+        fill_pairs_of<Sampler::independent>(of, pair, x, y);
 }
 
 struct SampleKernels {
-    void (*fill_rows)(Sampler, const VertexKeys&, const VertexRows&);
+    void (*fill_pairs)(Sampler, const PairKeys&, std::uint32_t pair, std::uint32_t* x, std::uint32_t* y);
 };
 
 /// The kernels in use, or nullptr.

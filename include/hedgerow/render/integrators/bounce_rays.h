@@ -68,7 +68,7 @@ std::vector<BounceRays<T>> rays_by_bounce(const PathScene<T>& scene, const PathP
         const std::uint64_t path = all / count * i + all % count * i / count, pixel = path / o.samples;
         const auto [half, sample] = half_sample(o.division, static_cast<std::uint32_t>(path % o.samples));
         const PathStart<T> start =
-            camera.start<T>(static_cast<int>(pixel % width), static_cast<int>(pixel / width), half, sample);
+            camera.start<T>({static_cast<int>(pixel % width), static_cast<int>(pixel / width), half, sample});
         recorded.clear();
         reference.light(start.ray, start.samples);
         detail::add_path(recorded, bounces);

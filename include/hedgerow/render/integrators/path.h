@@ -5,6 +5,7 @@
 /// same bits.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -13,7 +14,7 @@
 #include <hedgerow/render/integrators/normal_cache.h>
 #include <hedgerow/render/integrators/path_camera.h>
 #include <hedgerow/render/integrators/path_step.h>
-#include <hedgerow/render/sampling/vertex_sample_batch.h>
+#include <hedgerow/render/sampling/sample_batch.h>
 #include <hedgerow/render/tracer.h>
 
 namespace hedgerow {
@@ -31,13 +32,16 @@ public:
 
     /// Follows paths 0 to count − 1. `start(i)` returns path i, and `finish(i, light)` takes the PathLight
     /// that comes along its ray; paths are started in order and finish in any. Neighbours in order should
-    /// have neighbouring rays.
-    template <class OfNumber, class Finish>
-    void follow(std::size_t count, const OfNumber& start, const Finish& finish) const {
+    /// have neighbouring rays. `prepare(first, last)` is called before paths from `first` to before `last`
+    /// are started.
+    template <class Prepare, class OfNumber, class Finish>
+    void follow(std::size_t count, const Prepare& prepare, const OfNumber& start,
+                const Finish& finish) const {
         Flight flight(in_flight_);
         std::size_t next = 0;
         while (next < count || flight.size > 0) {
             const std::size_t old = flight.size;
+            prepare(next, std::min(count, next + (in_flight_ - old)));
             for (; flight.size < in_flight_ && next < count; ++next) {
                 Path& path = flight.paths[flight.size++];
                 const PathStart<T> s = start(next);
@@ -65,7 +69,7 @@ private:
         explicit Flight(std::size_t most)
             : paths(most, Path{{}, PathSamples(PixelSequence(Sampler::sobol, 0, 0), 0), 0}),
               hits(most),
-              numbers(most),
+              numbers(most, VertexSamples::count),
               goes_on(std::make_unique<bool[]>(most)),
               shadows(most),
               shaded(most),
@@ -74,7 +78,7 @@ private:
         std::vector<Path> paths;
         std::vector<Hit<T>> hits;
         NormalCache<T> normals;
-        VertexSampleBatch numbers;
+        SampleBatch numbers;
         std::unique_ptr<bool[]> goes_on;
         std::vector<ShadowRay<T>> shadows;
         std::vector<std::size_t> shaded;  // whose shadow rays these are
@@ -99,7 +103,9 @@ private:
     void meet_surfaces(Flight& flight) const {
         flight.numbers.clear();
         for (std::size_t i = 0; i < flight.size; ++i)
-            if (flight.hits[i]) flight.numbers.add(flight.paths[i].samples, flight.paths[i].state.vertex);
+            if (flight.hits[i])
+                flight.numbers.add(flight.paths[i].samples,
+                                   PathSamples::dimension(flight.paths[i].state.vertex));
         flight.numbers.compute();
         flight.shadow_count = 0;
         std::size_t hit_count = 0;
@@ -117,7 +123,7 @@ private:
         const auto vertex = steps_.arrive(path.state, hit, front);
         if (!vertex) return false;
         const Scattering scattering = steps_.scattering_at(*vertex);
-        const VertexSamples numbers = flight.numbers[place];
+        const VertexSamples numbers = flight.numbers.at_vertex(place);
         if (const auto shadow = steps_.look_for_light(path.state, *vertex, scattering, numbers)) {
             flight.shadows[flight.shadow_count] = *shadow;
             flight.shaded[flight.shadow_count++] = i;

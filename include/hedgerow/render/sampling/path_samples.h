@@ -32,8 +32,7 @@ public:
 
     /// Pair `dimension` of a sample. O(1): integers alone.
     UnitPair pair(std::uint32_t sample, std::uint32_t dimension) const {
-        const FractionPair p = fractions(sample, dimension);
-        return {unit(p.x), unit(p.y)};
+        return unit(fractions(sample, dimension));
     }
     /// The pair with all its bits.
     FractionPair fractions(std::uint32_t sample, std::uint32_t dimension) const {
@@ -54,10 +53,21 @@ public:
     static constexpr float unit(std::uint32_t fraction) {
         return static_cast<float>(fraction >> 8) * 0x1p-24f;
     }
+    static constexpr UnitPair unit(const FractionPair& p) { return {unit(p.x), unit(p.y)}; }
 
 private:
     std::uint32_t seed_;
     Sampler sampler_;
+};
+
+/// The numbers that a path takes at the camera: `count` pairs. A camera without a lens takes the first alone.
+struct CameraSamples {
+    static constexpr std::uint32_t count = 2;
+
+    FractionPair pairs[count];
+
+    UnitPair in_pixel() const { return PixelSequence::unit(pairs[0]); }
+    UnitPair on_lens() const { return PixelSequence::unit(pairs[1]); }
 };
 
 /// The numbers that a path takes at a vertex: `count` pairs.
@@ -66,53 +76,47 @@ struct VertexSamples {
 
     FractionPair pairs[count];
 
-    UnitPair light_point() const { return unit(pairs[0]); }
-    UnitPair direction() const { return unit(pairs[1]); }
+    UnitPair light_point() const { return PixelSequence::unit(pairs[0]); }
+    UnitPair direction() const { return PixelSequence::unit(pairs[1]); }
     /// The number that chooses a light, with 32 bits, since there may be many; and one that chooses a lobe.
     double light_choice() const { return static_cast<double>(pairs[2].x) * 0x1p-32; }
     float lobe_choice() const { return PixelSequence::unit(pairs[2].y); }
     /// The number that decides whether the path goes on.
     float end() const { return PixelSequence::unit(pairs[3].x); }
-
-private:
-    static UnitPair unit(const FractionPair& p) {
-        return {PixelSequence::unit(p.x), PixelSequence::unit(p.y)};
-    }
 };
 
-/// The numbers of one path, in the order in which it takes them: two pairs of the camera, then those of each
+/// The numbers of one path, in the order in which it takes them: those of the camera, then those of each
 /// vertex.
 class PathSamples {
 public:
-    static constexpr std::uint32_t of_camera = 2;
-
     PathSamples(const PixelSequence& pixel, std::uint32_t sample) : pixel_(pixel), sample_(sample) {}
 
     const PixelSequence& pixel() const { return pixel_; }
     std::uint32_t sample() const { return sample_; }
 
-    UnitPair in_pixel() const { return pixel_.pair(sample_, 0); }
-    UnitPair on_lens() const { return pixel_.pair(sample_, 1); }
+    CameraSamples at_camera() const { return from<CameraSamples>(0); }
     /// Vertex 0 is the first hit of the camera's ray.
-    VertexSamples at(std::uint32_t vertex) const {
-        VertexSamples s;
-        for (std::uint32_t pair = 0; pair < VertexSamples::count; ++pair)
-            s.pairs[pair] = pixel_.fractions(sample_, dimension(vertex, pair));
-        return s;
-    }
+    VertexSamples at(std::uint32_t vertex) const { return from<VertexSamples>(dimension(vertex)); }
     /// 32 random bits for the ray to a vertex and for the one to the light there.
     std::uint32_t ray_key(std::uint32_t vertex) const {
-        return pixel_.fractions(sample_, dimension(vertex, 3)).y;
+        return pixel_.fractions(sample_, dimension(vertex) + 3).y;
     }
     std::uint32_t shadow_key(std::uint32_t vertex) const {
         return scattered32(ray_key(vertex) + 0x9E3779B9u);
     }
-    /// The dimension of a pair of a vertex.
-    static constexpr std::uint32_t dimension(std::uint32_t vertex, std::uint32_t pair) {
-        return of_camera + VertexSamples::count * vertex + pair;
+    /// The dimension of the first pair of a vertex.
+    static constexpr std::uint32_t dimension(std::uint32_t vertex) {
+        return CameraSamples::count + VertexSamples::count * vertex;
     }
 
 private:
+    template <class Samples>
+    Samples from(std::uint32_t first) const {
+        Samples s;
+        for (std::uint32_t k = 0; k < Samples::count; ++k) s.pairs[k] = pixel_.fractions(sample_, first + k);
+        return s;
+    }
+
     PixelSequence pixel_;
     std::uint32_t sample_;
 };
