@@ -375,12 +375,14 @@ TEST_F(Cli, PathsGoOnAfterAnInterruption) {
     expect_bad("render gen:cornell-box:500 --shading path --size 64x48 -o " + file("x.png") + " --resume " +
                    file("state"),
                "another scene");
-    // An adaptive picture goes on with the same shares of its pixels.
-    const std::string small = "render gen:cornell-box --shading path --size 20x20 --adaptive -o ";
-    ASSERT_EQ(run(small + file("at_once.png") + " --spp 100").code, 0);
-    for (const char* spp : {" --spp 40", " --spp 100"})
-        ASSERT_EQ(run(small + file("resumed.png") + spp + " --resume " + file("adaptive")).code, 0);
-    EXPECT_EQ(pixels_of(file("at_once.png")), pixels_of(file("resumed.png")));
+    // Pictures in halves go on with both, and adaptive ones with the same shares of their pixels.
+    for (const std::string halves : {"--denoise", "--adaptive"}) {
+        const std::string small = "render gen:cornell-box --shading path --size 20x20 " + halves + " -o ";
+        ASSERT_EQ(run(small + file("at_once.png") + " --spp 100").code, 0);
+        for (const char* spp : {" --spp 40", " --spp 100"})
+            ASSERT_EQ(run(small + file("resumed.png") + spp + " --resume " + file(halves)).code, 0);
+        EXPECT_EQ(pixels_of(file("at_once.png")), pixels_of(file("resumed.png"))) << halves;
+    }
     const auto timed =
         run("render gen:cornell-box --shading path --size 64x48 --time 0.5s --json -o " + file("timed.png"));
     ASSERT_EQ(timed.code, 0);

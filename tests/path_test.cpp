@@ -255,11 +255,11 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
     EXPECT_EQ(in_steps.samples, 20u);
     std::size_t stops = 0;
     while (in_steps.samples < 23) {
-        // Stop after a tile.
+        // Stop at the first report, which is of a tile that had not all samples before.
         std::atomic<bool> stop{false};
         add_samples(in_steps, 23, parts, options, serial_executor(),
-                    {[&](std::uint64_t done, std::uint64_t) { stop = done > 0; }, &stop});
-        ++stops;
+                    {[&](std::uint64_t, std::uint64_t) { stop = true; }, &stop});
+        ASSERT_LT(++stops, 100u) << "work that is stopped again and again goes on";
     }
     EXPECT_GT(stops, 1u);
     expect_same<T>(at_once, in_steps);
@@ -267,6 +267,26 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
         ASSERT_EQ(at_once.light.standard_error(i), in_steps.light.standard_error(i));
     options.width = 8;
     EXPECT_THROW(add_samples(in_steps, 30, parts, options, serial_executor()), InputError);
+}
+
+/// A single tile may take long, so work ends within it, too.
+TEST(PathSteps, EndWithinATile) {
+    const auto model = model_of<float>({{square<float>(1, 0), matte(Vec3f::all(0.5f))}});
+    const ModelScene<float> scene(model, serial_executor());
+    const SceneLights<float> lights(scene);
+    const PathScene<float> parts{scene, lights, scene.tracer()};
+    const PathPictureOptions options = few_pixels(camera_at({0, -1, 2}, {0, 0, 0}), 4096);
+    const PathPicture at_once = trace_paths(parts, options, serial_executor());
+    PathPicture in_steps(options.width, options.height);
+    add_samples(in_steps, 2048, parts, options, serial_executor());
+    std::atomic<bool> stop{false};
+    add_samples(in_steps, 4096, parts, options, serial_executor(),
+                {[&](std::uint64_t, std::uint64_t) { stop = true; }, &stop});
+    EXPECT_EQ(in_steps.samples, 2048u);
+    EXPECT_GT(in_steps.mean_samples(), 2048);
+    EXPECT_LT(in_steps.mean_samples(), 4096);
+    add_samples(in_steps, 4096, parts, options, default_executor());
+    expect_same<float>(at_once, in_steps);
 }
 
 /// Colour and normal of what scatters first, straight ahead and in a mirror, and nothing where the sky is.

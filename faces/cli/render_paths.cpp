@@ -2,25 +2,20 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstring>
-#include <filesystem>
 #include <limits>
-#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/io/exr.h>
-#include <hedgerow/io/state_file.h>
-#include <hedgerow/looks/fingerprint.h>
 #include <hedgerow/render/film/colour.h>
 #include <hedgerow/render/film/tone.h>
 #include <hedgerow/render/integrators/denoise_paths.h>
 #include <hedgerow/render/integrators/path_picture.h>
-#include <hedgerow/version.h>
 
 #include "path_layers.h"
+#include "path_state.h"
 #include "picture_notes.h"
 #include "render_looks.h"
 #include "saved_rays.h"
@@ -80,88 +75,6 @@ std::vector<Vec3f> without_noise(const RenderArguments& a, const PathPicture& pi
     return denoised(picture, first_surfaces, {}, default_executor(), progress);
 }
 
-/// All that the light of a picture depends on, but for the number of samples.
-using Lines = std::vector<std::pair<std::string, std::string>>;
-template <class T>
-Lines what_it_is_of(const RenderArguments& a, const ShownModel<T>& shown) {
-    const Camera& c = shown.options.camera;
-    const auto vector = [](const Vec3f& v) { return fmt::format("{} {} {}", v[0], v[1], v[2]); };
-    return {{"version", std::string(version)},
-            {"precision", sizeof(T) == sizeof(float) ? "float" : "double"},  // another scene, too
-            {"scene", fmt::format("{:016x}", fingerprint(shown.model))},
-            {"camera",
-             fmt::format(
-                 "eye {}, target {}, up {}, projection {}, field of view {}, height {}, lens {}, focus {}",
-                 vector(c.eye), vector(c.target), vector(c.up), static_cast<int>(c.projection),
-                 c.field_of_view, c.height, c.lens_radius, c.focus)},
-            {"size", fmt::format("{}x{}", shown.options.width, shown.options.height)},
-            {"seed", std::to_string(a.seed)},
-            {"sampler", a.sampler},
-            {"filter", a.filter},
-            {"division", std::string(division_names[static_cast<std::size_t>(division_of(a))])},
-            {"bounces", std::to_string(a.bounces)}};
-}
-constexpr std::uint32_t state_version = 3;
-
-/// The state of a picture: its samples, whether it keeps direct light and has spreads, and then the sums of
-/// both halves of its light and of its direct light, and its spreads.
-void save_paths(const std::string& file, const Lines& lines, const PathPicture& picture) {
-    std::vector<std::byte> bytes;
-    const auto append = [&bytes](const auto& numbers) {
-        const auto more = std::as_bytes(std::span(numbers));
-        bytes.insert(bytes.end(), more.begin(), more.end());
-    };
-    append(
-        std::array<std::uint64_t, 3>{picture.samples, picture.keeps_direct(), !picture.spreads[0].empty()});
-    for (const LightHalves* const light : {&picture.light, &picture.direct})
-        for (const int half : {0, 1}) append(light->half(half).pixels());
-    for (const auto& spreads : picture.spreads) append(spreads);
-    save_state(file, "paths", state_version, {lines, std::move(bytes)});
-}
-PathPicture load_paths(const std::string& file, const Lines& lines, int width, int height) {
-    const WorkState state = load_state(file, "paths", state_version, lines);
-    const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    std::span<const std::byte> rest = state.bytes;
-    const auto take = [&rest](auto& numbers) {
-        const auto into = std::as_writable_bytes(std::span(numbers));
-        std::memcpy(into.data(), rest.data(), into.size());
-        rest = rest.subspan(into.size());
-    };
-    const auto take_light = [&take, pixels](LightHalves& light) {
-        for (const int half : {0, 1}) {
-            std::vector<LightSums::Pixel> all(pixels);
-            take(all);
-            light.half(half) = LightSums(std::move(all));
-        }
-    };
-    std::array<std::uint64_t, 3> head{};
-    if (rest.size() > sizeof(head)) take(head);
-    const bool keeps_direct = head[1] != 0, has_spreads = head[2] != 0;
-    if (rest.size() !=
-        2 * pixels * (sizeof(LightSums::Pixel) * (keeps_direct ? 2 : 1) + (has_spreads ? sizeof(float) : 0)))
-        throw InputError(file + ": has another number of pixels than its size says");
-    PathPicture picture(width, height, keeps_direct);
-    picture.samples = static_cast<std::uint32_t>(head[0]);
-    take_light(picture.light);
-    if (keeps_direct) take_light(picture.direct);
-    if (has_spreads)
-        for (auto& spreads : picture.spreads) spreads.resize(pixels), take(spreads);
-    return picture;
-}
-/// The picture that work goes on from: that of the state, if there is one. If that has no direct light, the
-/// options no longer ask for it.
-PathPicture begun(const RenderArguments& a, const Lines& lines, PathPictureOptions& options) {
-    if (a.resume.empty() || !std::filesystem::exists(a.resume))
-        return {options.width, options.height, options.keeps_direct};
-    PathPicture picture = load_paths(a.resume, lines, options.width, options.height);
-    if (options.keeps_direct && !picture.keeps_direct())
-        fmt::print(stderr,
-                   "hedgerow: warning: {} was begun for a .png, so {} lacks the layers direct and indirect\n",
-                   a.resume, a.output);
-    options.keeps_direct = picture.keeps_direct();
-    return picture;
-}
-
 /// How many samples a pixel the picture should have next, by its noise; as many as it has if it is finished.
 std::uint32_t next_samples(const RenderArguments& a, const PathPicture& picture, double noise) {
     const auto most = static_cast<std::uint32_t>(a.spp);
@@ -173,22 +86,45 @@ std::uint32_t next_samples(const RenderArguments& a, const PathPicture& picture,
     return std::min(most, std::max(2 * pilot_samples, static_cast<std::uint32_t>(needed) + 1));
 }
 
-/// Follows paths until the picture has all samples or little noise, the time is over, or Ctrl-C. Every few
-/// seconds the picture is saved, and the state, if there is a file for it. Returns whether it was not
-/// interrupted.
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// Something that is saved again and again while other work waits, with pauses that are at least so many
+/// times as long as it took, and at least so many seconds.
+class Saving {
+public:
+    Saving(bool wanted, double times, double least_pause)
+        : times_(times), least_(least_pause), next_(wanted ? now() + least_pause : never) {}
+    /// When it is saved next, on the clock of now().
+    double next() const { return next_; }
+    template <class Save>
+    void if_due(const Save& save) {
+        const double began = now();
+        if (began < next_) return;
+        save();
+        next_ = now() + std::max(times_ * (now() - began), least_);
+    }
+
+private:
+    double times_, least_, next_;
+};
+
+/// Follows paths until the picture has all samples or little noise, the time is over, or Ctrl-C. Meanwhile
+/// the picture is saved, and the state, if there is a file for it. Returns whether it was not interrupted.
 template <class T>
 bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictureOptions& options,
-            const Lines& lines, const std::vector<FirstSurface>& first, PathPicture& picture) {
+            const std::vector<FirstSurface>& first, PathState& state, PathPicture& picture) {
     ProgressLine line("following paths", a.quiet, "samples");
     const Progress shown = line.progress();
     std::atomic<bool> stops{false};
     const double start = now();
-    // When the picture is saved next, and when it is shown, in seconds.
-    double save_at = start + 10, show_at = a.preview ? start + 1 : std::numeric_limits<double>::infinity();
+    // A kill loses what was done since the last state that is written. Pictures are for looking at alone.
+    Saving of_state(state.has_file(), 50, 20), of_picture(true, 200, 10);
+    double show_at = a.preview ? start + 1 : never;
     const auto over = [&] { return shown.cancelled() || (a.seconds > 0 && now() - start > a.seconds); };
     const Progress watched{[&](std::uint64_t done, std::uint64_t total) {
                                shown(done, total);
-                               if (over() || now() > std::min(save_at, show_at)) stops = true;
+                               if (over() || now() > std::min({of_state.next(), of_picture.next(), show_at}))
+                                   stops = true;
                            },
                            &stops};
     for (;;) {
@@ -204,12 +140,10 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
         if (goal == picture.samples || over()) break;
         stops = false;
         add_samples(picture, goal, scene, options, default_executor(), watched);
-        if (now() < save_at || picture.samples == 0) continue;
-        const double began = now();
-        if (!a.resume.empty()) save_paths(a.resume, lines, picture);
-        save_picture(a, picture, first);
-        // Saving takes at most a fiftieth of the time, and no more than half a minute can be lost.
-        save_at = now() + std::clamp(50 * (now() - began), 10.0, 25.0);
+        of_state.if_due([&] { state.begin_to_save(picture); });
+        of_picture.if_due([&] {
+            if (picture.samples > 0) save_picture(a, picture, first);
+        });
     }
     return !shown.cancelled();
 }
@@ -229,7 +163,7 @@ void check_paths_memory(const RenderArguments& a) {
     const std::size_t of_work = of_sums + (a.layers || a.denoises ? sizeof(FirstSurface) : 0);
     const std::size_t of_picture =
         a.layers ? 3 * sizeof(Vec3f) + sizeof(float) + sizeof(std::uint32_t) : sizeof(Image::Pixel);
-    const std::size_t of_state = a.resume.empty() ? 0 : 2 * of_sums;  // and its file
+    const std::size_t of_state = a.resume.empty() ? 0 : of_sums;  // a copy
     check_memory_of_pixels(a.view.size, of_work + std::max(of_picture, of_state));
 }
 
@@ -243,17 +177,17 @@ int render_paths(const RenderArguments& a) {
     if (lights.has_default_sky() && !a.quiet)
         fmt::print(stderr, "hedgerow: {}: has no lights, so it gets a sky\n", a.scene);
     PathPictureOptions options = path_options(a, shown.options);
-    const Lines lines = a.resume.empty() ? Lines() : what_it_is_of(a, shown);
-    PathPicture picture = begun(a, lines, options);
+    PathState state(a, shown, options);
+    PathPicture picture = state.begun(a, options);
     const PathScene<T> scene{shown.scene, lights, shown.scene.tracer()};
     std::vector<FirstSurface> first;
     if (a.layers || a.denoises)
         first = first_surfaces(scene, options, std::min(options.samples, 16u), default_executor());
     const double before = picture.mean_samples();
     const double start = now();
-    const bool finished = follow(a, scene, options, lines, first, picture);
+    const bool finished = follow(a, scene, options, first, state, picture);
     const double seconds = now() - start;
-    if (!a.resume.empty()) save_paths(a.resume, lines, picture);
+    if (state.has_file()) state.save(picture);
     const double samples = picture.mean_samples(), noise = picture.light.noise();
     if (samples == 0) throw Cancelled("no pixel has a sample");
     save_picture(a, picture, first, without_noise(a, picture, first));

@@ -17,6 +17,17 @@ inline std::uint64_t checksum(const void* bytes, std::size_t size) {
     return XXH3_64bits(bytes, size);
 }
 
+/// The checksum of bytes that are added one after the other.
+class RunningChecksum {
+public:
+    RunningChecksum() { XXH3_64bits_reset(&state_); }
+    void add(const void* bytes, std::size_t size) { XXH3_64bits_update(&state_, bytes, size); }
+    std::uint64_t value() const { return XXH3_64bits_digest(&state_); }
+
+private:
+    XXH3_state_t state_;
+};
+
 inline constexpr std::size_t checksum_piece = std::size_t(1) << 20;
 constexpr std::uint64_t checksum_pieces(std::uint64_t bytes) {
     return (bytes + checksum_piece - 1) / checksum_piece;

@@ -23,10 +23,11 @@ constexpr const char* byte_order = std::endian::native == std::endian::little ? 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
     throw InputError(path.string() + ": " + what + "; name another file, or remove this one and start anew");
 }
-std::string head_of(const std::string& kind, std::uint32_t version, const WorkState& state) {
+std::string head_of(const std::string& kind, std::uint32_t version,
+                    std::span<const std::pair<std::string, std::string>> of, std::size_t bytes) {
     std::string head = "hedgerow state " + kind + " " + std::to_string(version) + " " + byte_order + " " +
-                       std::to_string(state.of.size()) + " " + std::to_string(state.bytes.size()) + "\n";
-    for (const auto& [name, value] : state.of) head += name + "=" + value + "\n";
+                       std::to_string(of.size()) + " " + std::to_string(bytes) + "\n";
+    for (const auto& [name, value] : of) head += name + "=" + value + "\n";
     return head + "\n";
 }
 /// The text up to the next line break, which is passed over. Nothing if there is none.
@@ -41,15 +42,22 @@ std::string_view next_line(std::string_view& rest) {
 }  // namespace
 
 void save_state(const std::filesystem::path& path, const std::string& kind, std::uint32_t version,
-                const WorkState& state) {
-    for (const auto& [name, value] : state.of)
+                std::span<const std::pair<std::string, std::string>> of,
+                std::span<const std::span<const std::byte>> parts) {
+    for (const auto& [name, value] : of)
         if ((name + value).find('\n') != std::string::npos || name.find('=') != std::string::npos)
             throw InputError("a line of a state has no line breaks, and its name no =");
-    std::string all = head_of(kind, version, state);
-    all.append(reinterpret_cast<const char*>(state.bytes.data()), state.bytes.size());
+    std::size_t bytes = 0;
+    for (const auto& part : parts) bytes += part.size();
     detail::OutputFile file(path);
-    file.write(all);
-    file.little(detail::checksum(all.data(), all.size()));
+    detail::RunningChecksum checksum;
+    const auto write = [&](std::string_view text) {
+        checksum.add(text.data(), text.size());
+        file.write(text);
+    };
+    write(head_of(kind, version, of, bytes));
+    for (const auto& part : parts) write({reinterpret_cast<const char*>(part.data()), part.size()});
+    file.little(checksum.value());
     file.commit();
 }
 

@@ -1,8 +1,8 @@
 /// The fast multipole method in float, compiled for each instruction set: Highway's foreach_target includes
 /// this file once for each. The tables of kernels.cpp point to it.
 #if HEDGEROW_HAS_HIGHWAY
-// Low orders are unrolled into one piece of code, which is a sixth faster; it takes a compiler that sanitizes half
-// an hour.
+// Low orders are unrolled into one piece of code, which is a sixth faster; it takes a compiler that sanitizes
+// half an hour.
 #ifdef HEDGEROW_SANITIZED
 #define HEDGEROW_UNROLLED HWY_ATTR
 #else

@@ -128,11 +128,12 @@ public:
             const Tiles tiles(o_, until - picture_.samples);
             std::atomic<std::size_t> finished{0};
             executor.for_each_piece(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i) {
-                    const std::uint64_t now = done += add(tiles[i], goal);
-                    progress(now, std::max(now, all));
-                    ++finished;
-                }
+                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i)
+                    finished += add(tiles[i], goal, [&](std::size_t added) {
+                        const std::uint64_t now = done += added;
+                        progress(now, std::max(now, all));
+                        return !progress.cancelled();
+                    });
             });
             if (finished == tiles.size()) picture_.samples = until;
         }
@@ -145,9 +146,11 @@ private:
             picture_.spreads[static_cast<std::size_t>(half)] =
                 spreads(picture_.light.half(1 - half), picture_.width);
     }
-    /// Adds samples to the pixels of a tile until each half has so many, in their order. Returns how many
-    /// were added.
-    std::size_t add(const PixelBox& tile, const Goal& goal) {
+    /// Adds samples to the pixels of a tile until each half has so many, in their order. `goes_on` is told
+    /// how many were added after each part of them, and may end the work there. Returns whether all were
+    /// added.
+    template <class GoesOn>
+    bool add(const PixelBox& tile, const Goal& goal, const GoesOn& goes_on) {
         std::vector<Run> runs;
         std::size_t all = 0;
         for (std::size_t i = 0; i < tile.size(); ++i)
@@ -158,7 +161,8 @@ private:
                 const std::uint32_t wants = goal(pixel, half);
                 if (has < wants) runs.push_back({x, y, half, has, all}), all += wants - has;
             }
-        // Parts of so many paths, so that the light of all takes little memory.
+        // Parts of so many paths, so that the light of all takes little memory, and work ends soon where it
+        // should.
         std::vector<PathLight> light;
         PathStartBatch<T> starts(camera_, std::max<std::size_t>(1, o_.in_flight));
         std::size_t started = 0, added = 0;  // runs, since paths are started in order
@@ -179,8 +183,9 @@ private:
                 const Run& run = run_of(runs, first + i, added);
                 picture_.add(camera_.number(run.x, run.y), run.half, light[i]);
             }
+            if (!goes_on(light.size()) && first + light.size() < all) return false;
         }
-        return all;
+        return true;
     }
     template <class Prepare, class OfNumber, class Finish>
     void follow(std::size_t count, const Prepare& prepare, const OfNumber& start,

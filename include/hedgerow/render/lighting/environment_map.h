@@ -60,9 +60,9 @@ public:
         const PanoramaPlace place = place_of(direction);
         return {direction, panorama_.radiance(place), density_at(place)};
     }
-    /// Chooses a direction by two numbers in [0, 1). Returns what `at` returns for it: rounding to floats puts
-    /// about one direction of 30,000 beyond the edge of its cell, and it counts where it lies. So the density
-    /// may be 0, and it is if the environment is black. O(log of the columns and rows).
+    /// Chooses a direction by two numbers in [0, 1). Returns what `at` returns for it: rounding to floats
+    /// puts about one direction of 30,000 beyond the edge of its cell, and it counts where it lies. So the
+    /// density may be 0, and it is if the environment is black. O(log of the columns and rows).
     EnvironmentSample sample(float u, float v) const {
         if (!lit()) return {};
         const TableChoice row = choose_entry(row_sums_, static_cast<double>(v));
