@@ -11,7 +11,8 @@ file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
 set(ENV{PATH} "${TOOL_DIR}:$ENV{PATH}")
 
-# How long `compare` and `bench` measure, and how much they ask, is cut to what shows that they work.
+# How long `compare` and `bench` measure, how much they ask, and large pictures of paths are cut to what shows that
+# they work.
 function(run command)
   if(command MATCHES "^hedgerow compare ")
     string(REGEX REPLACE " --(time|queries) [0-9.]+" "" command "${command}")
@@ -19,6 +20,9 @@ function(run command)
   elseif(command MATCHES "^hedgerow bench")
     string(REPLACE " --quick" "" command "${command}")
     string(APPEND command " --quick --rounds 1")
+  elseif(command MATCHES "^hedgerow render .* --shading path ")
+    string(REGEX REPLACE " --size [0-9][0-9][0-9]+x[0-9]+" " --size 64x48" command "${command}")
+    string(REGEX REPLACE " --spp [0-9][0-9][0-9]+" " --spp 8" command "${command}")
   endif()
   execute_process(COMMAND sh -c "${command}" WORKING_DIRECTORY ${WORK} RESULT_VARIABLE result
                   OUTPUT_VARIABLE output ERROR_VARIABLE output)
@@ -35,7 +39,8 @@ function(run command)
   message(STATUS "${DOCUMENT}:${line}: ${command}")
 endfunction()
 
-# The documents' names for a reader's own files.
+# The documents' own scenes, where a reader of the repository has them, and names for a reader's own files.
+file(COPY ${CMAKE_CURRENT_LIST_DIR}/../../docs/scenes DESTINATION ${WORK}/docs)
 set(line 0)
 run("hedgerow generate gen:teapot:5000 -o dragon.ply")
 
