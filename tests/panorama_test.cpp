@@ -34,9 +34,9 @@ long double apart(long double a, long double b) {
 
 /// Directions of all sizes, many of them near the axes, the planes between them and the diagonals.
 std::vector<Vec3d> directions() {
-    std::vector<Vec3d> all;
+    std::vector<Vec3d> all(20000);
     Random random(1);
-    for (int i = 0; i < 20000; ++i) all.push_back(random.direction<3>());
+    for (Vec3d& d : all) d = random.direction<3>();
     const float denormal = std::numeric_limits<float>::denorm_min(), inf = INFINITY;
     const float values[] = {0,
                             denormal,

@@ -177,9 +177,11 @@ PathPicture pots_and_lamps() {
         stretched{Vec3d(0.6, 0, 0), Vec3d(0, 0.6, 0), Vec3d(0, 0, 1.5)};
     const std::array forms{turned, mirrored, stretched};
     for (int row = -1; row <= 1; ++row)
-        for (int column = -1; column <= 1; ++column)
-            place(model, static_cast<std::uint32_t>((row + column) & 1),
-                  {forms[static_cast<std::size_t>(column + 1)], Vec3d(7 * column, 7 * row, 0)});
+        for (std::size_t column = 0; column < forms.size(); ++column) {
+            const int x = static_cast<int>(column) - 1;
+            place(model, static_cast<std::uint32_t>((row + x) & 1),
+                  {forms[column], Vec3d(7 * x, 7 * row, 0)});
+        }
     for (std::uint32_t i = 0; i < 15; ++i) {
         Random random(3, i);
         const Vec3f colour(random.in_cube<3>());
