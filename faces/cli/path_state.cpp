@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <hedgerow/base/error.h>
 #include <hedgerow/io/state_file.h>
 #include <hedgerow/looks/fingerprint.h>
 #include <hedgerow/version.h>
