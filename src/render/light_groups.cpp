@@ -5,9 +5,8 @@
 hedgerow::LightGroups::Lanes hedgerow::LightGroups::importances(const Vec3f& point,
                                                                 const Vec3f& receiver) const {
     Lanes found;
-    if (const LightKernels* const kernels = light_kernels())
-        kernels->write_importances(*this, point, receiver, found.data());
-    else
-        write_importances(*this, point, receiver, found.data());
+    const LightKernels* const kernels = light_kernels();
+    const auto write = kernels ? kernels->write_importances : write_importances;
+    write(*this, point, receiver, found.data());
     return found;
 }

@@ -19,7 +19,6 @@ struct NormalCone {
 
     static NormalCone all() { return {{0, 0, 1}, -1, 0}; }
     bool is_all() const { return cosine <= -1; }
-    bool is_axis() const { return cosine == 1 && sine == 0; }
 };
 
 /// Bounds of lights that have a position. `LightBounds()` bounds none.

@@ -123,24 +123,30 @@ struct EmissiveTriangle {
         const auto [direction, distance] = detail::sight(point, at);
         s.direction = direction;
         s.distance = distance;
-        s.density = density_toward(direction, distance);
+        const Vec3d n = normal();
+        const double along = -dot(n, Vec3d(direction));
+        s.density = density_at(along, distance);
         if (!s) return s;
         s.radiance = radiance;
-        const Vec3d n = normal();
-        s.free = detail::free_way(point, distance, bounds(), std::abs(dot(n, Vec3d(direction))) / length(n));
+        s.free = detail::free_way(point, distance, bounds(), std::abs(along) / length(n));
         return s;
     }
     /// The density that `sample` returns for the place where a ray hits the triangle: a ray of this
     /// direction, of length 1, at this distance. 0 where no light comes from.
     float density_toward(const Vec3f& direction, float distance) const {
-        const double along = -dot(normal(), Vec3d(direction));
-        if (!(distance > 0) || !(both_sides ? along != 0 : along > 0)) return 0;
-        const auto d = static_cast<double>(distance);
-        return detail::bounded_density(2 * product(d, d) / (along < 0 ? -along : along));
+        return density_at(-dot(normal(), Vec3d(direction)), distance);
     }
     /// The radiance that a ray of this direction meets.
     Vec3f radiance_toward(const Vec3f& direction) const {
         return both_sides || dot(normal(), Vec3d(direction)) < 0 ? radiance : Vec3f();
+    }
+
+private:
+    /// The density of a hit where the normal, of twice the area's length, goes so far back along the ray.
+    float density_at(double along, float distance) const {
+        if (!(distance > 0) || !(both_sides ? along != 0 : along > 0)) return 0;
+        const auto d = static_cast<double>(distance);
+        return detail::bounded_density(2 * product(d, d) / (along < 0 ? -along : along));
     }
 };
 

@@ -55,21 +55,17 @@ public:
         if (near_.empty()) return {};
         left = in_unit_interval((left - far_share_) / (1 - far_share_));
         double probability = 1 - far_share_;
-        Place place = 0;
-        while (true) {
-            const Node& node = nodes_[place / width];
+        Child child;  // the root first
+        while (child.leaf_size == 0) {
+            const Node& node = nodes_[child.first];
             const Weights weights = weights_at(node, point, normal);
             if (!(weights.sum > 0)) return {};
             const std::size_t i = weights.choose(left);
             probability = product(probability, weights.of[i] / weights.sum);
-            const Child& child = node.children[i];
-            if (child.leaf_size == 0) {
-                place = child.first * width;
-                continue;
-            }
-            const auto at = static_cast<std::uint32_t>(left * child.leaf_size);
-            return {near_[tree_.items()[child.first + at]], leaf_probability(probability, child.leaf_size)};
+            child = node.children[i];
         }
+        const auto at = static_cast<std::uint32_t>(left * child.leaf_size);
+        return {near_[tree_.items()[child.first + at]], leaf_probability(probability, child.leaf_size)};
     }
     /// The probability with which `choose` chooses this emitter, in the same bits. O(depth).
     float probability(const Vec3f& point, const Vec3f& normal, std::uint32_t emitter) const {
@@ -96,7 +92,7 @@ private:
 
     /// A child of a node: its number times the width, plus the child's own.
     using Place = std::size_t;
-    /// A node, or a leaf: so many items of the binary tree from `first` on.
+    /// Node `first`; or a leaf: so many items of the binary tree from `first` on.
     struct Child {
         std::uint32_t first = 0, leaf_size = 0;
     };
