@@ -30,6 +30,32 @@ TEST(SmoothPaths, LoseNoLightInABall) {
     }
 }
 
+/// Directions below a triangle that is before the smooth surface are mirrored: of light that comes so, the
+/// three ways to look for light find the same.
+TEST(SmoothPaths, FindTheSameLightInAllWaysInABall) {
+    TriangleMesh<float> lamp = ball(100);
+    for (auto& p : lamp.vertices) p = p * 0.2f + Vec3f(0.3f, -0.2f, 0.4f);
+    for (const float roughness : {0.3f, 1.0f}) {
+        Material walls = matte(Vec3f::all(0.6f));
+        walls.roughness = roughness, walls.metallic = 1 - roughness;
+        auto model = smooth_ball(50, walls);
+        model.materials.push_back(matte({}, Vec3f::all(10)));
+        Object<float> source;
+        source.mesh = lamp, source.material = 1;
+        model.objects.push_back(source);
+        model.instances.push_back({"", 1, {}});
+        PathPictureOptions options = few_pixels(camera_at({0.3f, 0.1f, -0.6f}, {0.1f, 0.9f, 0}), 2048);
+        std::vector<Estimate> found;
+        for_each_way([&](PathOptions& paths, const char*) {
+            options.paths = paths;
+            found.push_back(estimate(trace(model, options)));
+        });
+        for (std::size_t i = 1; i < 3; ++i)
+            EXPECT_NEAR(found[i].mean, found[0].mean, 3 * std::hypot(found[i].error, found[0].error)) << i;
+        EXPECT_LT(found[0].error, 0.01 * found[0].mean);
+    }
+}
+
 /// The ball from afar, in light from the side: pixels of which the sphere shows the height of the light over
 /// the horizon, and their light.
 struct LitPixel {

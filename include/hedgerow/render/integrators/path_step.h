@@ -98,9 +98,7 @@ public:
             world_.lights.sample(point, side_of_light(at), samples.light_choice(), samples.light_point());
         if (!sampled) return std::nullopt;
         const LightSample& light = sampled.light;
-        const Vec3f i = at.shading.to_local(light.direction);
-        if (!same_side(at, light.direction, i)) return std::nullopt;
-        const ScatteredLight scattered = scattering.at(i);
+        const ScatteredLight scattered = scattered_by_horizon(at, scattering, light.direction);
         if (!(max_component(scattered.value) > 0)) return std::nullopt;
         const float density = product(light.density, sampled.probability);
         float share = 1 / sampled.probability;
@@ -109,7 +107,6 @@ public:
             if (world_.options.material_sampling) share *= power_heuristic(density, scattered.density);
         }
         ShadowRay<T> shadow;
-        share *= shown_share(at, light.direction);
         shadow.light =
             limited(path, tinted(tinted(path.throughput, scattered.value), light.radiance) * share, 1);
         shadow.vertex = path.vertex;
@@ -129,7 +126,7 @@ public:
         const UnitPair p = samples.direction();
         const auto next = scattering.sample(samples.lobe_choice(), p.x, p.y);
         if (!next) return false;
-        const Vec3f direction = normalized(at.shading.to_world(next->direction));
+        Vec3f direction = normalized(at.shading.to_world(next->direction));
         if (!same_side(at, direction, next->direction)) return false;
         path.throughput = tinted(path.throughput, next->weight);
         if (!next->specular) path.throughput = path.throughput * shown_share(at, direction);
@@ -138,9 +135,14 @@ public:
             path.spread *= eta * eta;
             path.absorption = at.front ? at.absorption : Vec3f();
         }
+        path.density = next->specular ? 0 : next->density;
+        const Vec3f image = at.mirrored(direction);
+        const bool below = at.is_below_horizon(direction);
+        if (path.density > 0 && (below || at.is_below_horizon(image)))
+            path.density += scattered(at, scattering, image).density;
+        if (below) direction = image;
         const bool beyond = dot(direction, at.geometric) < 0;
         path.ray = {beyond ? at.beyond : at.before, Vec<T, 3>(direction)};
-        path.density = next->specular ? 0 : next->density;
         path.left_at = Vec3f(at.before), path.left_normal = side_of_light(at);
         return goes_on(path, samples);
     }
@@ -164,6 +166,29 @@ private:
     /// Others would let light through walls, or are reflections into the surface.
     static bool same_side(const PathVertex<T>& at, const Vec3f& direction, const Vec3f& local) {
         return (dot(direction, at.geometric) > 0) == (local[2] > 0) && local[2] != 0;
+    }
+    /// What the surface does with light of a direction; nothing where it must not.
+    static ScatteredLight scattered(const PathVertex<T>& at, const Scattering& scattering,
+                                    const Vec3f& direction) {
+        const Vec3f i = at.shading.to_local(direction);
+        if (!same_side(at, direction, i)) return {};
+        ScatteredLight s = scattering.at(i);
+        s.value = s.value * shown_share(at, direction);
+        return s;
+    }
+    /// What it does with light that a ray of this direction meets. Directions between the smooth surface and
+    /// the triangle before it are mirrored in the triangle, as if it were the surface next to the point: rays
+    /// that begin below a triangle could get through a wall at its edge, and without their light a closed
+    /// room would be too dark.
+    static ScatteredLight scattered_by_horizon(const PathVertex<T>& at, const Scattering& scattering,
+                                               const Vec3f& direction) {
+        if (at.is_below_horizon(direction)) return {};
+        ScatteredLight s = scattered(at, scattering, direction);
+        if (const Vec3f image = at.mirrored(direction); at.is_below_horizon(image)) {
+            const ScatteredLight more = scattered(at, scattering, image);
+            s.value += more.value, s.density += more.density;
+        }
+        return s;
     }
     /// The share of light from a direction that an opaque surface shows.
     static float shown_share(const PathVertex<T>& at, const Vec3f& direction) {

@@ -21,6 +21,9 @@ struct PathVertex {
     /// The normal of the surface, on the side of the ray's origin: that of the triangle, or of the smooth
     /// surface over it that normals of its corners mean.
     Vec3f geometric;
+    /// No ray begins at `before` below the plane of this normal: that of the triangle, where the smooth
+    /// surface lies behind it.
+    Vec3f horizon;
     Frame shading{Vec3f(0, 0, 1)};  ///< around the normal by which it scatters, on the same side
     bool front = true;              ///< whether the ray came to the front
     bool unlit = false;             ///< shows its colour, and ends the path
@@ -30,6 +33,16 @@ struct PathVertex {
     Vec3f absorption;
     Vec<T, 3> before;  ///< where rays begin that leave the surface on this side
     Vec<T, 3> beyond;  ///< and on the other side, if the surface lets light through
+
+    /// Whether a direction lies above the smooth surface, and below the triangle that is before it. A ray
+    /// would meet the surface anew, at once.
+    bool is_below_horizon(const Vec3f& direction) const {
+        return dot(direction, geometric) > 0 && !(dot(direction, horizon) > 0);
+    }
+    /// The mirror image of a direction in the plane of the horizon.
+    Vec3f mirrored(const Vec3f& direction) const {
+        return direction - horizon * (2 * dot(direction, horizon));
+    }
 };
 
 /// Finds the vertices of paths through a model. Borrows all.
@@ -80,9 +93,10 @@ public:
         v.material.thin = m.thin;
         if (v.front || m.double_sided) v.emission = looks.emission(hit, {});
         v.absorption = absorptions_[looks.object(hit).material_of(hit.element)];
+        const Vec3f smooth = looks.smooth_normal(hit);
         Hit<T> met = hit;
-        met.t -= static_cast<T>(meet_smooth(hit, v));
-        v.shading = Frame(shading_normal(hit, v));
+        met.t -= static_cast<T>(meet_smooth(hit, smooth, v));
+        v.shading = Frame(shading_normal(m.normal_texture ? looks.own_normal(hit, {}) : smooth, v));
         v.before = scene_.surfaces().origin(ray, met, geometric);
         if (v.material.transmission > 0) v.beyond = scene_.surfaces().origin(ray, hit, -geometric);
         return v;
@@ -91,25 +105,23 @@ public:
 private:
     /// Takes the smooth surface that normals of corners mean for the surface, if that lets no light through.
     /// Returns how much nearer to the ray's origin it is than the triangle. So faces do not end in steps
-    /// where light goes past them; and no light goes through walls, since rays begin where this one came.
-    /// Where the smooth surface is behind the triangle, directions below the triangle's horizon meet it
-    /// again.
-    float meet_smooth(const Hit<T>& hit, PathVertex<T>& v) const {
-        if (v.material.transmission > 0) return 0;
-        const Vec3f smooth = scene_.lookups().smooth_normal(hit);
-        if (length2(smooth) == 0) return 0;
-        const float side = dot(smooth, v.geometric) < 0 ? -1.0f : 1.0f;
+    /// where light goes past them; and rays begin where this one came, so as not to get through walls.
+    float meet_smooth(const Hit<T>& hit, const Vec3f& smooth, PathVertex<T>& v) const {
         const Vec3f facet = v.geometric;
+        v.horizon = facet;
+        if (v.material.transmission > 0 || length2(smooth) == 0) return 0;
+        const float side = dot(smooth, facet) < 0 ? -1.0f : 1.0f;
         v.geometric = usable_normal(smooth * side, facet, v.toward_origin);
         const float height = dot(scene_.lookups().way_to_smooth(hit, static_cast<double>(side)), facet);
-        return height > 0 ? height / std::max(dot(facet, v.toward_origin), least_cosine) : 0;
+        if (!(height > 0)) return 0;
+        v.horizon = v.geometric;
+        return height / std::max(dot(facet, v.toward_origin), least_cosine);
     }
     /// Rays that come in flat are not followed back beyond this, since the smooth surface is known over the
     /// hit alone.
     static constexpr float least_cosine = 0.25f;
 
-    Vec3f shading_normal(const Hit<T>& hit, const PathVertex<T>& v) const {
-        Vec3f own = scene_.lookups().own_normal(hit, {});
+    static Vec3f shading_normal(Vec3f own, const PathVertex<T>& v) {
         if (length2(own) == 0) return v.geometric;
         if (!v.front) own = -own;
         return usable_normal(dot(own, v.geometric) < 0 ? v.geometric : own, v.geometric, v.toward_origin);
