@@ -247,7 +247,7 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
     const SceneLights<T> lights(scene);
     const PathScene<T> parts{scene, lights, scene.tracer()};
     PathPictureOptions options = few_pixels(*camera_for("cornell-box"), 23);
-    options.width = 330, options.height = 20;
+    options.width = 330, options.height = 80;
     const PathPicture at_once = trace_paths(parts, options, default_executor());
     PathPicture in_steps(options.width, options.height);
     for (const std::uint32_t until : {1u, 2u, 2u, 7u, 20u})
@@ -255,7 +255,7 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
     EXPECT_EQ(in_steps.samples, 20u);
     std::size_t stops = 0;
     while (in_steps.samples < 23) {
-        // Stop at the first report, which is of a tile that had not all samples before.
+        // Stop at the first report, which is of pixels that had not all samples before.
         std::atomic<bool> stop{false};
         add_samples(in_steps, 23, parts, options, serial_executor(),
                     {[&](std::uint64_t, std::uint64_t) { stop = true; }, &stop});

@@ -14,8 +14,11 @@ namespace {
 
 /// The side of blocks of pixels whose rays go together.
 constexpr int block_side = 8;
-/// Paths of a tile: many beside those in flight, so that few rounds of a tile are short.
-constexpr std::size_t paths_of_tile = std::size_t{1} << 16;
+/// Paths of a tile, at most: few, so that all threads have work to the end.
+constexpr std::size_t paths_of_tile = std::size_t{1} << 10;
+/// Paths that a thread follows in one go: many beside those in flight, so that few rounds are short; and few
+/// enough for their light to take little memory, and for work to end soon where it should.
+constexpr std::size_t paths_of_part = std::size_t{1} << 16;
 
 /// Pixel i of a tile, block by block.
 std::pair<int, int> place(const PixelBox& tile, std::size_t i) {
@@ -30,18 +33,21 @@ std::pair<int, int> place(const PixelBox& tile, std::size_t i) {
             tile.top + static_cast<int>(row * block_side + in_block / wide)};
 }
 
-/// The tiles of a picture: squares of whole blocks, which have about as many paths as a tile should.
+/// The tiles of a picture: squares of whole blocks. Only those of a single block may have more paths than a
+/// tile should.
 class Tiles {
 public:
     Tiles(const PathPictureOptions& o, std::uint32_t samples) : width_(o.width), height_(o.height) {
-        while (side_ < 256 &&
-               std::size_t(4) * std::size_t(side_) * std::size_t(side_) * samples <= paths_of_tile)
-            side_ *= 2;
+        const auto paths = [&](int side) { return std::size_t(side) * std::size_t(side) * samples; };
+        while (paths(2 * side_) <= paths_of_tile) side_ *= 2;
         columns_ = (o.width + side_ - 1) / side_;
+        of_part_ = std::max<std::size_t>(1, paths_of_part / paths(side_));
     }
     std::size_t size() const {
         return static_cast<std::size_t>(columns_) * static_cast<std::size_t>((height_ + side_ - 1) / side_);
     }
+    /// Tiles that make a part.
+    std::size_t of_part() const { return of_part_; }
     PixelBox operator[](std::size_t i) const {
         const int left = static_cast<int>(i) % columns_ * side_, top = static_cast<int>(i) / columns_ * side_;
         return {left, top, std::min(left + side_, width_) - 1, std::min(top + side_, height_) - 1};
@@ -49,6 +55,7 @@ public:
 
 private:
     int width_, height_, side_ = block_side, columns_;
+    std::size_t of_part_;
 };
 
 void check(std::uint32_t samples, const PathPictureOptions& o) {
@@ -95,11 +102,24 @@ struct Run {
         return {x, y, static_cast<std::uint32_t>(half), begin + static_cast<std::uint32_t>(path - first)};
     }
 };
-/// The run of a path. `current` is that of a path before it, and becomes its own.
-const Run& run_of(const std::vector<Run>& runs, std::size_t path, std::size_t& current) {
-    while (current + 1 < runs.size() && runs[current + 1].first <= path) ++current;
-    return runs[current];
-}
+/// The runs of some pixels, in the order of their paths.
+class Runs {
+public:
+    /// Adds the samples from one number to before another, if there are any.
+    void add(int x, int y, int half, std::uint32_t begin, std::uint32_t end) {
+        if (begin < end) all_.push_back({x, y, half, begin, paths_}), paths_ += end - begin;
+    }
+    std::size_t paths() const { return paths_; }
+    /// The run of a path. `current` is that of a path before it, and becomes its own.
+    const Run& of(std::size_t path, std::size_t& current) const {
+        while (current + 1 < all_.size() && all_[current + 1].first <= path) ++current;
+        return all_[current];
+    }
+
+private:
+    std::vector<Run> all_;
+    std::size_t paths_ = 0;
+};
 
 template <class T>
 class PathTracing {
@@ -128,12 +148,15 @@ public:
             const Tiles tiles(o_, until - picture_.samples);
             std::atomic<std::size_t> finished{0};
             executor.for_each_piece(tiles.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end && !progress.cancelled(); ++i)
-                    finished += add(tiles[i], goal, [&](std::size_t added) {
+                for (std::size_t i = begin; i < end && !progress.cancelled(); i += tiles.of_part()) {
+                    const std::size_t last = std::min(end, i + tiles.of_part());
+                    const bool all_added = add(runs_of(tiles, i, last, goal), [&](std::size_t added) {
                         const std::uint64_t now = done += added;
                         progress(now, std::max(now, all));
                         return !progress.cancelled();
                     });
+                    if (all_added) finished += last - i;
+                }
             });
             if (finished == tiles.size()) picture_.samples = until;
         }
@@ -146,44 +169,45 @@ private:
             picture_.spreads[static_cast<std::size_t>(half)] =
                 spreads(picture_.light.half(1 - half), picture_.width);
     }
-    /// Adds samples to the pixels of a tile until each half has so many, in their order. `goes_on` is told
-    /// how many were added after each part of them, and may end the work there. Returns whether all were
-    /// added.
+    /// The samples that the pixels of some tiles lack until each half has so many, in the order of paths.
+    Runs runs_of(const Tiles& tiles, std::size_t begin, std::size_t end, const Goal& goal) const {
+        Runs runs;
+        for (std::size_t k = begin; k < end; ++k) {
+            const PixelBox tile = tiles[k];
+            for (std::size_t i = 0; i < tile.size(); ++i)
+                for (const int half : {0, 1}) {
+                    const auto [x, y] = place(tile, i);
+                    const std::size_t pixel = camera_.number(x, y);
+                    runs.add(x, y, half, picture_.light.half(half).samples(pixel), goal(pixel, half));
+                }
+        }
+        return runs;
+    }
+    /// Adds samples to their pixels, in their order, by parts. `goes_on` is told how many were added after
+    /// each part, and may end the work there. Returns whether all were added.
     template <class GoesOn>
-    bool add(const PixelBox& tile, const Goal& goal, const GoesOn& goes_on) {
-        std::vector<Run> runs;
-        std::size_t all = 0;
-        for (std::size_t i = 0; i < tile.size(); ++i)
-            for (const int half : {0, 1}) {
-                const auto [x, y] = place(tile, i);
-                const std::size_t pixel = camera_.number(x, y);
-                const std::uint32_t has = picture_.light.half(half).samples(pixel);
-                const std::uint32_t wants = goal(pixel, half);
-                if (has < wants) runs.push_back({x, y, half, has, all}), all += wants - has;
-            }
-        // Parts of so many paths, so that the light of all takes little memory, and work ends soon where it
-        // should.
+    bool add(const Runs& runs, const GoesOn& goes_on) {
         std::vector<PathLight> light;
         PathStartBatch<T> starts(camera_, std::max<std::size_t>(1, o_.in_flight));
         std::size_t started = 0, added = 0;  // runs, since paths are started in order
-        for (std::size_t first = 0; first < all; first += light.size()) {
-            light.resize(std::min(all - first, paths_of_tile));
+        for (std::size_t first = 0; first < runs.paths(); first += light.size()) {
+            light.resize(std::min(runs.paths() - first, paths_of_part));
             std::size_t prepared = 0;
             follow(
                 light.size(),
                 [&](std::size_t from, std::size_t to) {
                     starts.clear(), prepared = from;
                     for (std::size_t path = first + from; path < first + to; ++path)
-                        starts.add(run_of(runs, path, started).sample(path));
+                        starts.add(runs.of(path, started).sample(path));
                     starts.compute();
                 },
                 [&](std::size_t i) { return starts[i - prepared]; },
                 [&](std::size_t i, const PathLight& found) { light[i] = found; });
             for (std::size_t i = 0; i < light.size(); ++i) {
-                const Run& run = run_of(runs, first + i, added);
+                const Run& run = runs.of(first + i, added);
                 picture_.add(camera_.number(run.x, run.y), run.half, light[i]);
             }
-            if (!goes_on(light.size()) && first + light.size() < all) return false;
+            if (!goes_on(light.size()) && first + light.size() < runs.paths()) return false;
         }
         return true;
     }
