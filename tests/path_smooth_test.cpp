@@ -38,12 +38,8 @@ TEST(SmoothPaths, FindTheSameLightInAllWaysInABall) {
     for (const float roughness : {0.3f, 1.0f}) {
         Material walls = matte(Vec3f::all(0.6f));
         walls.roughness = roughness, walls.metallic = 1 - roughness;
-        auto model = smooth_ball(50, walls);
-        model.materials.push_back(matte({}, Vec3f::all(10)));
-        Object<float> source;
-        source.mesh = lamp, source.material = 1;
-        model.objects.push_back(source);
-        model.instances.push_back({"", 1, {}});
+        auto model = model_of<float>({{ball(50), walls}, {lamp, matte({}, Vec3f::all(10))}});
+        model.objects[0].attributes.normals.values = model.objects[0].mesh.vertices;
         PathPictureOptions options = few_pixels(camera_at({0.3f, 0.1f, -0.6f}, {0.1f, 0.9f, 0}), 2048);
         std::vector<Estimate> found;
         for_each_way([&](PathOptions& paths, const char*) {

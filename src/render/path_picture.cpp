@@ -174,12 +174,12 @@ private:
         Runs runs;
         for (std::size_t k = begin; k < end; ++k) {
             const PixelBox tile = tiles[k];
-            for (std::size_t i = 0; i < tile.size(); ++i)
-                for (const int half : {0, 1}) {
-                    const auto [x, y] = place(tile, i);
-                    const std::size_t pixel = camera_.number(x, y);
+            for (std::size_t i = 0; i < tile.size(); ++i) {
+                const auto [x, y] = place(tile, i);
+                const std::size_t pixel = camera_.number(x, y);
+                for (const int half : {0, 1})
                     runs.add(x, y, half, picture_.light.half(half).samples(pixel), goal(pixel, half));
-                }
+            }
         }
         return runs;
     }

@@ -9,6 +9,7 @@
 #include <hedgerow/render/model_scene.h>
 #include <hedgerow/render/sampling/path_samples.h>
 #include <hedgerow/render/scattering/frame.h>
+#include <hedgerow/render/scattering/fresnel.h>
 #include <hedgerow/render/scattering/scattering.h>
 #include <hedgerow/surface.h>
 
@@ -40,9 +41,7 @@ struct PathVertex {
         return dot(direction, geometric) > 0 && !(dot(direction, horizon) > 0);
     }
     /// The mirror image of a direction in the plane of the horizon.
-    Vec3f mirrored(const Vec3f& direction) const {
-        return direction - horizon * (2 * dot(direction, horizon));
-    }
+    Vec3f mirrored(const Vec3f& direction) const { return -reflected(direction, horizon); }
 };
 
 /// Finds the vertices of paths through a model. Borrows all.
