@@ -12,6 +12,8 @@
 
 #include <hwy/highway.h>
 
+#include "core/caches.h"
+
 #include "prefetch-inl.h"
 #include "reader-inl.h"
 #include "tests-inl.h"
@@ -30,6 +32,7 @@ public:
         : scene_(scene),
           nodes_(scene.tree.nodes.data()),
           prefetch_(scene),
+          prefetches_(scene.tree.nodes.bytes() > nodes_at_hand()),
           asked_(rays),
           next_(begin),
           end_(end) {
@@ -117,7 +120,7 @@ private:
     HWY_INLINE void pop(int s, Stack& stack) {
         word_[s] = stack.pop();
         top_[s] = stack.top();
-        prefetch_(word_[s]);
+        if (prefetches_) prefetch_(word_[s]);
     }
     HWY_INLINE void open_node(int s) {
         const std::byte* const node = nodes_ + word_[s] * WideNodes<float, 3>::stride_of(W);
@@ -145,6 +148,7 @@ private:
     const WideScene& scene_;
     const std::byte* const nodes_;
     const Prefetch<W> prefetch_;
+    const bool prefetches_;
     RayReader asked_;
     std::size_t next_, end_;
     int slots_, room_;
