@@ -68,7 +68,7 @@ TEST(Samplers, PointsHaveTheirDensity) {
         EXPECT_LT(cells.score(density), 4) << name;
     };
     const auto disc = [](const Vec2d& p) { return length2(p) < 1 ? 1 / pi : 0; };
-    expect("disc", -1, 1, disc_point, disc);
+    expect("disc", -1, 1, disc_point<float>, disc);
     expect(
         "lens", -1, 1,
         [](float u, float v) {
@@ -76,7 +76,8 @@ TEST(Samplers, PointsHaveTheirDensity) {
             return Vec2f(p.right, p.up);
         },
         disc);
-    expect("triangle", 0, 1, triangle_point, [](const Vec2d& p) { return p[0] + p[1] < 1 ? 2.0 : 0.0; });
+    expect("triangle", 0, 1, triangle_point<float>,
+           [](const Vec2d& p) { return p[0] + p[1] < 1 ? 2.0 : 0.0; });
     expect(
         "box filter", 0, 1, [](float u, float v) { return place_in_pixel(PixelFilter::box, u, v); },
         [](const Vec2d&) { return 1.0; });
@@ -106,9 +107,9 @@ TEST(Samplers, DirectionsHaveTheirDensity) {
         }
         EXPECT_LT(chi_square_score(counts, probabilities, samples), 4) << name;
     };
-    expect("cosine", cosine_direction, cosine_direction_density);
+    expect("cosine", cosine_direction<float>, cosine_direction_density<float>);
     expect("sphere", sphere_direction, [](float) { return sphere_direction_density; });
-    expect("hemisphere", hemisphere_direction,
+    expect("hemisphere", hemisphere_direction<float>,
            [](float z) { return z > 0 ? hemisphere_direction_density : 0; });
     for (const float height : {0.3f, 1.0f, 1.9f})
         expect(

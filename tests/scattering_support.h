@@ -123,7 +123,7 @@ inline Vec3d albedo(const Surface& s, const Vec3f& o, int samples) {
     for (int k = 0; k < samples; ++k) {
         const auto [choice, u, v] = even_point(k);
         if (const auto to = scattering.sample(choice, u, v))
-            sum += Vec3d(to->weight) * (to->transmitted ? eta2 : 1.0);
+            sum += Vec3d(to.weight) * (to.transmitted ? eta2 : 1.0);
     }
     return sum / static_cast<double>(samples);
 }

@@ -98,8 +98,8 @@ TEST_P(Surfaces, SamplesFollowTheDensity) {
         for (int k = 0; k < samples; ++k) {
             const float choice = number(), u = number(), v = number();
             const auto to = scattering.sample(choice, u, v);
-            const bool broad = to && !to->specular;
-            histogram.counts[broad ? Histogram::cell(around, to->direction) : Histogram::cells] += 1;
+            const bool broad = to && !to.specular;
+            histogram.counts[broad ? Histogram::cell(around, to.direction) : Histogram::cells] += 1;
         }
         EXPECT_GT(histogram.probability(samples), significance) << "cosine " << cosine;
     }
@@ -115,17 +115,17 @@ TEST_P(Surfaces, WeightsAreValueOverDensity) {
             const auto to = scattering.sample(choice, u, v);
             if (!to) continue;
             ++found;
-            const Vec3f& i = to->direction;
+            const Vec3f& i = to.direction;
             EXPECT_NEAR(length(i), 1, 1e-5);
-            EXPECT_EQ(to->transmitted, i[2] < 0);
-            EXPECT_TRUE(finite_and_positive(to->weight));
-            if (to->specular) {
-                EXPECT_EQ(to->density, 0);
+            EXPECT_EQ(to.transmitted, i[2] < 0);
+            EXPECT_TRUE(finite_and_positive(to.weight));
+            if (to.specular) {
+                EXPECT_EQ(to.density, 0);
                 continue;
             }
             EXPECT_FALSE(scattering.only_specular());
-            EXPECT_EQ(to->density, scattering.density(i));
-            const Vec3f value = scattering.value(i), of_weight = to->weight * to->density;
+            EXPECT_EQ(to.density, scattering.density(i));
+            const Vec3f value = scattering.value(i), of_weight = to.weight * to.density;
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], of_weight[c], 1e-5f * value[c]);
         }
         EXPECT_GT(found, 250);
@@ -152,7 +152,7 @@ TEST_P(Surfaces, ValuesIntegrateToTheAlbedo) {
     for (int k = 0; k < samples; ++k) {
         const auto [choice, u, v] = even_point(k);
         const auto to = scattering.sample(choice, u, v);
-        if (to && !to->specular) weights += static_cast<double>(to->weight[1]) / samples;
+        if (to && !to.specular) weights += static_cast<double>(to.weight[1]) / samples;
     }
     EXPECT_NEAR(sum, weights, 0.01 * sum + 0.002);
 }
@@ -169,7 +169,7 @@ TEST_P(Surfaces, AreReciprocal) {
         Vec3f i = direction(2 * number() - 1, number());
         const Scattering there = s.at(o);
         const auto [choice, u, v] = even_point(k);
-        if (const auto to = there.sample(choice, u, v); to && k % 2 == 0) i = to->direction;
+        if (const auto to = there.sample(choice, u, v); to && k % 2 == 0) i = to.direction;
         if (std::abs(i[2]) < 0.02f) continue;
         const bool through = i[2] < 0;
         const Scattering back = s.at({i[0], i[1], std::abs(i[2])}, s.inside != through);
@@ -206,7 +206,7 @@ TEST_P(Surfaces, ExtremeDirectionsGiveFiniteNumbers) {
                 for (const float choice : {0.0f, 0.5f, 0x1.fffffep-1f}) {
                     const auto to = scattering.sample(choice, x, y);
                     EXPECT_FALSE(to && height <= 0);
-                    EXPECT_TRUE(!to || (finite_and_positive(to->weight) && finite(to->direction)));
+                    EXPECT_TRUE(!to || (finite_and_positive(to.weight) && finite(to.direction)));
                 }
     }
 }
@@ -249,8 +249,7 @@ TEST(Scattering, IsFiniteForAnyMaterial) {
             RC_ASSERT(finite_and_positive(s.value(i)));
             RC_ASSERT(s.density(i) >= 0 && std::isfinite(s.density(i)));
             const auto to = s.sample(share(), share(), share());
-            RC_ASSERT(!to ||
-                      (finite_and_positive(to->weight) && std::abs(length(to->direction) - 1) < 1e-4f));
+            RC_ASSERT(!to || (finite_and_positive(to.weight) && std::abs(length(to.direction) - 1) < 1e-4f));
             RC_ASSERT(o[2] > 0 || !to);
         }
     }));
@@ -269,7 +268,7 @@ TEST(Scattering, HasTheSameBitsEverywhere) {
             const Vec3f i = sphere_direction(u, choice);
             add_all(scattering.value(i));
             add(scattering.density(i));
-            if (const auto to = scattering.sample(choice, u, v)) add_all(to->direction), add_all(to->weight);
+            if (const auto to = scattering.sample(choice, u, v)) add_all(to.direction), add_all(to.weight);
         }
     for (int k = 0; k < 200; ++k) {
         const auto [r, c, e] = even_point(k);

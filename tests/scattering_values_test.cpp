@@ -58,7 +58,7 @@ TEST(Furnace, OneReflectionLosesWhatQuadratureSays) {
         EXPECT_NEAR(average(roughness), expected, 0.0015);
         EXPECT_NEAR(tables().ggx_average(roughness).white, expected, 0.0015);
     }
-    EXPECT_NEAR(tables().ggx(1, 1).white, 0.307, 0.001);
+    EXPECT_NEAR(tables().ggx(1.0f, 1.0f).white, 0.307, 0.001);
 }
 
 TEST(Furnace, NoMaterialGivesMoreLightThanItGets) {
@@ -157,14 +157,14 @@ TEST(Values, SmoothGlassRefractsBySnell) {
         const Scattering s(glass(0), o, inside, &tables());
         EXPECT_TRUE(s.only_specular());
         const auto to = s.sample(0.999f, 0.3f, 0.3f);
-        ASSERT_TRUE(to && to->specular && to->transmitted);
+        ASSERT_TRUE(to && to.specular && to.transmitted);
         const float eta = inside ? 1 / 1.5f : 1.5f;
-        EXPECT_NEAR(to->direction[0], -o[0] / eta, 1e-6);
-        EXPECT_NEAR(to->weight[0], 1 / (eta * eta), 1e-6) << "radiance is greater in the denser body";
-        EXPECT_EQ(s.value(to->direction), Vec3f());
+        EXPECT_NEAR(to.direction[0], -o[0] / eta, 1e-6);
+        EXPECT_NEAR(to.weight[0], 1 / (eta * eta), 1e-6) << "radiance is greater in the denser body";
+        EXPECT_EQ(s.value(to.direction), Vec3f());
     }
     const Scattering straight(thin(0), direction(0.9), false, &tables());
-    EXPECT_EQ(straight.sample(0.999f, 0.3f, 0.3f)->direction, -direction(0.9));
+    EXPECT_EQ(straight.sample(0.999f, 0.3f, 0.3f).direction, -direction(0.9));
 }
 
 /// The mean of f over the unit square, by midpoints.
@@ -195,8 +195,8 @@ TEST(Warps, HaveTheMomentsOfTheirDensities) {
     const auto flat = [](const Vec2f& p) { return Vec3f(p[0], p[1], 0); };
     const double third = 1.0 / 3;
     expect([&](float u, float v) { return flat(disc_point(u, v)); }, {0, 0.25, 0, 0, 0}, "disc");
-    expect(cosine_direction, {0, 0.25, 0, 2 * third, 0.5}, "cosine");
-    expect(hemisphere_direction, {0, third, 0, 0.5, third}, "hemisphere");
+    expect(cosine_direction<float>, {0, 0.25, 0, 2 * third, 0.5}, "cosine");
+    expect(hemisphere_direction<float>, {0, third, 0, 0.5, third}, "hemisphere");
     expect(sphere_direction, {0, third, 0, 0, third}, "sphere");
     expect([&](float u, float v) { return flat(triangle_point(u, v)); }, {third, 1.0 / 6, 1.0 / 12, 0, 0},
            "triangle");
@@ -254,10 +254,10 @@ TEST(Frames, UsableNormalsReflectAboveTheSurface) {
 }
 
 TEST(Fresnel, IsKnownAtSomeAngles) {
-    EXPECT_NEAR(dielectric_reflectance(1, 1.5f), 0.04, 1e-7);
-    EXPECT_NEAR(dielectric_reflectance(1, 1 / 1.5f), 0.04, 1e-7);
-    EXPECT_EQ(dielectric_reflectance(0, 1.5f), 1);
-    EXPECT_EQ(dielectric_reflectance(0, 1), 1);
+    EXPECT_NEAR(dielectric_reflectance(1.0f, 1.5f), 0.04, 1e-7);
+    EXPECT_NEAR(dielectric_reflectance(1.0f, 1 / 1.5f), 0.04, 1e-7);
+    EXPECT_EQ(dielectric_reflectance(0.0f, 1.5f), 1);
+    EXPECT_EQ(dielectric_reflectance(0.0f, 1), 1);
     EXPECT_EQ(dielectric_reflectance(0.5f, 1), 0);
     EXPECT_EQ(dielectric_reflectance(0.5f, 1 / 1.5f), 1) << "total reflection";
     // At Brewster's angle, tan θ = η, all reflected light is polarised: half of ((η² − 1)/(η² + 1))².

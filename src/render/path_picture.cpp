@@ -247,10 +247,10 @@ FirstSurface first_surface(const PathWorld<T>& world, const Tracer<T>& tracer, c
             found.depth = static_cast<float>(hit.t), found.primitive = hit.primitive,
             found.instance = hit.instance, found.uv = world.surfaces.texture_coordinates(hit);
         const PathVertex<T> vertex = world.surfaces.at(path.ray, hit);
-        const Scattering scattering = steps.scattering_at(vertex);
+        const PointScattering<float> scattering = steps.scattering_at(vertex);
         if (!scattering.only_specular() || vertex.unlit) {
             found.albedo = min(tinted(path.throughput, vertex.material.base_colour), Vec3f::all(1));
-            found.normal = vertex.shading.normal();
+            found.normal = vertex.shading;
             return found;
         }
         if (!steps.leave(path, vertex, scattering, start.samples)) return found;

@@ -1,11 +1,13 @@
 /// Elementary functions in single precision, in float operations alone, so that they can be written for
-/// vector lanes without change. Included by elementary.h, which states the method.
+/// lanes without change. Those with a type F take FloatLanes, too. Included by elementary.h, which states the
+/// method.
 #pragma once
 
 #include <cmath>
 #include <limits>
 
 #include <hedgerow/geometry/elementary_parts.h>
+#include <hedgerow/geometry/number_lanes.h>
 #include <hedgerow/geometry/rounding.h>
 
 namespace hedgerow {
@@ -17,23 +19,24 @@ struct SineCosine {
 };
 
 /// The sine and cosine of 2πu, within 2 units in the last place for every u: the reduction is exact. NaN for
-/// an infinite u.
-inline SineCosine<float> sine_cosine_of_turns(float u) {
-    const float turns = std::abs(u), fraction = turns - std::floor(turns);
-    if (!(fraction < 1)) return {fraction, fraction};
+/// an infinite u. Of lanes, |u| must be below 2³¹.
+template <class F>
+SineCosine<F> sine_cosine_of_turns(F u) {
+    const F turns = magnitude(u), fraction = turns - floored(turns);
     // The fraction is n quarters and a rest of at most an eighth.
-    const float n = std::floor(4 * fraction + 0.5f), rest = fraction - n / 4, z = product(rest, rest);
-    const float to_sine = detail::polynomial(z, -0x1.4abbbep+5f, 0x1.465facp+6f, -0x1.2db59cp+6f);
-    const float to_cosine =
-        detail::polynomial(z, -0x1.3bd3ccp+4f, 0x1.03c1b0p+6f, -0x1.55b2b6p+6f, 0x1.d4f7fap+5f);
+    const F n = floored(4 * fraction + 0.5f), rest = fraction - n / 4, z = product(rest, rest);
+    const F to_sine = detail::polynomial(z, F(-0x1.4abbbep+5f), F(0x1.465facp+6f), F(-0x1.2db59cp+6f));
+    const F to_cosine =
+        detail::polynomial(z, F(-0x1.3bd3ccp+4f), F(0x1.03c1b0p+6f), F(-0x1.55b2b6p+6f), F(0x1.d4f7fap+5f));
     // The factor 2π has two parts, of which the second is added with the polynomial.
-    const float s = product(rest, 0x1.921fb6p+2f) + product(rest, product(z, to_sine) - 0x1.777a5cp-23f);
-    const float c = 1 + product(z, to_cosine);
-    const int quarter = static_cast<int>(n) & 3;
-    const float sine = (quarter & 1) != 0 ? c : s, cosine = (quarter & 1) != 0 ? s : c;
-    const bool sine_negative = quarter >= 2, cosine_negative = quarter == 1 || quarter == 2;
-    const float of_turns = sine_negative ? 0 - sine : sine;
-    return {std::signbit(u) ? -of_turns : of_turns, cosine_negative ? 0 - cosine : cosine};
+    const F s = product(rest, F(0x1.921fb6p+2f)) + product(rest, product(z, to_sine) - 0x1.777a5cp-23f);
+    const F c = 1 + product(z, to_cosine);
+    const auto first = equal(n, 1), second = equal(n, 2), third = equal(n, 3);  // 0 and 4 are one quarter
+    const F sine = select(first || third, c, s), cosine = select(first || third, s, c);
+    const F of_turns = select(second || third, 0 - sine, sine);
+    const auto is_finite = fraction < 1;
+    return {select(is_finite, select(has_minus(u), -of_turns, of_turns), fraction),
+            select(is_finite, select(first || second, 0 - cosine, cosine), fraction)};
 }
 
 /// e to the power x, within 2 units in the last place; infinity above 88.8, 0 below −104.

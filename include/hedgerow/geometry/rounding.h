@@ -19,21 +19,27 @@
 
 namespace hedgerow {
 
+namespace detail {
+/// Makes the optimiser take x for a number that it knows nothing of. Emits no instruction with g++ or clang
+/// on x86-64 and AArch64.
+template <class T>
+void hide(T& x) {
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__SSE2__))
+    asm("" : "+x"(x));
+#elif defined(__GNUC__) && defined(__aarch64__)
+    asm("" : "+w"(x));
+#else
+    volatile T hidden = x;
+    x = hidden;
+#endif
+}
+}  // namespace detail
+
 /// Returns x as it is, but hides from the optimiser that x is a product, so that no multiply-add is formed
-/// with it. Emits no instruction with g++ or clang on x86-64 and AArch64. (g++ contracts across statements
-/// and ignores the pragma against that.)
+/// with it. (g++ contracts across statements and ignores the pragma against that.)
 template <std::floating_point T>
 constexpr T rounded(T x) {
-    if (!std::is_constant_evaluated()) {
-#if defined(__GNUC__) && (defined(__x86_64__) || defined(__SSE2__))
-        asm("" : "+x"(x));
-#elif defined(__GNUC__) && defined(__aarch64__)
-        asm("" : "+w"(x));
-#else
-        volatile T hidden = x;
-        x = hidden;
-#endif
-    }
+    if (!std::is_constant_evaluated()) detail::hide(x);
     return x;
 }
 

@@ -12,9 +12,15 @@
 
 namespace hedgerow {
 
+/// What components may be: float, double, and whatever else is computed with like these (number_lanes.h).
+template <class T>
+inline constexpr bool is_number = std::floating_point<T>;
+template <class T>
+concept Number = is_number<T>;
+
 /// A point or direction with D components of type T (float or double). D is 2 or 3, or 1 on a line, where
 /// only points exist.
-template <std::floating_point T, int D>
+template <Number T, int D>
 struct Vec {
     using Scalar = T;
     static constexpr int dimension = D;

@@ -25,8 +25,9 @@ struct Rgba {
 };
 
 /// Light after a surface or a body of a colour: products by component.
-constexpr Vec3f tinted(const Vec3f& light, const Vec3f& colour) {
-    return {product(light[0], colour[0]), product(light[1], colour[1]), product(light[2], colour[2])};
+template <class F>
+constexpr Vec<F, 3> tinted(const Vec<F, 3>& light, const Vec<F, 3>& colour) {
+    return map(light, colour, [](F a, F b) { return product(a, b); });
 }
 
 /// The linear value of an encoded value from 0 to 1 (IEC 61966-2-1:1999).

@@ -72,35 +72,51 @@ inline float linear_sample(float x, bool) {
 
 /// The column (or row) of `size` that stands for any column.
 inline int wrapped(std::int64_t i, int size, Wrap wrap) {
-    if (wrap == Wrap::clamp) return static_cast<int>(i < 0 ? 0 : i >= size ? size - 1 : i);
+    if (i >= 0 && i < size) return static_cast<int>(i);
+    if (wrap == Wrap::clamp) return i < 0 ? 0 : size - 1;
     const std::int64_t period = wrap == Wrap::mirror ? 2 * static_cast<std::int64_t>(size) : size;
-    const std::int64_t rest = (i % period + period) % period;
+    // Many processors divide 32 bits in half the time of 64.
+    const bool is_short = i == static_cast<std::int32_t>(i) && period == static_cast<std::int32_t>(period);
+    const std::int64_t left =
+        is_short ? static_cast<std::int32_t>(i) % static_cast<std::int32_t>(period) : i % period;
+    const std::int64_t rest = left < 0 ? left + period : left;
     return static_cast<int>(rest < size ? rest : period - 1 - rest);
 }
+/// The greatest whole number up to x, for |x| up to 2^53.
+inline std::int64_t whole_part(double x) {
+    const auto toward_zero = static_cast<std::int64_t>(x);
+    return toward_zero - (static_cast<double>(toward_zero) > x ? 1 : 0);
+}
 
-/// A coordinate in texels, within 2^53 so that it has a whole part.
+/// A coordinate in texels, within 2^51 so that it and its neighbours have halves.
 inline double in_texels(float coordinate, int size) {
     const double x = std::isfinite(coordinate) ? static_cast<double>(coordinate) * size : 0.0;
-    return x > 0x1p53 ? 0x1p53 : x < -0x1p53 ? -0x1p53 : x;
+    return x > 0x1p51 ? 0x1p51 : x < -0x1p51 ? -0x1p51 : x;
 }
 
 /// The mean of the texels around a place over a rectangle about it. All lengths are in texels, sides at most
 /// 1; longer ones count as 1. With sides of 1 it interpolates between the centres of four texels. The centre
-/// of texel i is i + 1/2. `texel(column, row)` returns a value for any whole numbers.
-template <class Texel>
-auto bilinear(double x, double y, const Vec2f& sides, const Texel& texel) {
-    const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
+/// of texel i is i + 1/2. `column(i)` and `row(j)` say which texels stand for those of any whole numbers, and
+/// `texel(column, row)` returns the value of one.
+template <class Column, class Row, class Texel>
+auto bilinear(double x, double y, const Vec2f& sides, const Column& column, const Row& row,
+              const Texel& texel) {
+    const std::int64_t left = whole_part(x - 0.5), top = whole_part(y - 0.5);
     // The share of a side that lies beyond the border between two texels.
     const auto beyond = [](double from_border, float side) {
         const auto inside = static_cast<float>(from_border);
         return side >= 1 ? inside + 0.5f : std::clamp(inside / std::max(side, 1e-6f) + 0.5f, 0.0f, 1.0f);
     };
-    const float right_share = beyond(x - 1 - left, sides[0]), bottom_share = beyond(y - 1 - top, sides[1]);
+    const float right_share = beyond(x - 1 - static_cast<double>(left), sides[0]),
+                bottom_share = beyond(y - 1 - static_cast<double>(top), sides[1]);
     const auto between = [](const auto& a, const auto& b, float share) {
         return a * (1 - share) + b * share;
     };
-    return between(between(texel(left, top), texel(left + 1, top), right_share),
-                   between(texel(left, top + 1), texel(left + 1, top + 1), right_share), bottom_share);
+    const auto before = column(left), after = column(left + 1);
+    const auto in_row = [&](const auto& r) {
+        return between(texel(before, r), texel(after, r), right_share);
+    };
+    return between(in_row(row(top)), in_row(row(top + 1)), bottom_share);
 }
 
 }  // namespace detail
@@ -134,12 +150,11 @@ inline Rgba Texture::at(const Vec2f& coordinate, const Vec2f& sides) const {
     const double x = detail::in_texels(coordinate[0], width), y = detail::in_texels(coordinate[1], height);
     const bool nearest = filter == TextureFilter::nearest;
     return with_texels([&](const auto& texel) {
-        const auto wrapped_texel = [&](double column, double row) {
-            return texel(detail::wrapped(static_cast<std::int64_t>(column), width, wrap_s),
-                         detail::wrapped(static_cast<std::int64_t>(row), height, wrap_t));
-        };
-        if (nearest && sides == Vec2f()) return wrapped_texel(std::floor(x), std::floor(y));
-        return detail::bilinear(x, y, nearest ? sides : Vec2f(1, 1), wrapped_texel);
+        const auto column = [&](std::int64_t i) { return detail::wrapped(i, width, wrap_s); };
+        const auto row = [&](std::int64_t i) { return detail::wrapped(i, height, wrap_t); };
+        if (nearest && sides == Vec2f())
+            return texel(column(detail::whole_part(x)), row(detail::whole_part(y)));
+        return detail::bilinear(x, y, nearest ? sides : Vec2f(1, 1), column, row, texel);
     });
 }
 

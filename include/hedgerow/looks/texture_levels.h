@@ -150,11 +150,9 @@ private:
         const Level& level = levels_[static_cast<std::size_t>(k - 1)];
         return detail::bilinear(
             detail::in_texels(coordinate[0], level.width), detail::in_texels(coordinate[1], level.height),
-            {1, 1}, [&](double column, double row) {
-                return level.at(
-                    detail::wrapped(static_cast<std::int64_t>(column), level.width, texture.wrap_s),
-                    detail::wrapped(static_cast<std::int64_t>(row), level.height, texture.wrap_t));
-            });
+            {1, 1}, [&](std::int64_t i) { return detail::wrapped(i, level.width, texture.wrap_s); },
+            [&](std::int64_t i) { return detail::wrapped(i, level.height, texture.wrap_t); },
+            [&](int column, int row) { return level.at(column, row); });
     }
 
     std::vector<Level> levels_;  // from half the size down to one texel

@@ -79,6 +79,9 @@ private:
         std::vector<Hit<T>> hits;
         NormalCache<T> normals;
         SampleBatch numbers;
+        PathGroup<T> group;
+        std::size_t members[PathGroup<T>::most];  // of the group: which paths they are
+        LeavingPaths<T> leaving;
         std::unique_ptr<bool[]> goes_on;
         std::vector<ShadowRay<T>> shadows;
         std::vector<std::size_t> shaded;  // whose shadow rays these are
@@ -98,8 +101,9 @@ private:
         tracer_.closest_hits(RayArray<T, 3>(rays), std::span(flight.hits).subspan(first, last - first), {},
                              filter(keep));
     }
-    /// Takes the three steps of each path before its shadow ray is answered, while its vertex is in registers
-    /// and in the first-level cache.
+    /// Takes the three steps of each path before its shadow ray is answered, while its vertex is in the
+    /// first-level cache. Each arrives alone, since surfaces are looked up here and there. Four at a time go
+    /// on from there, and four at a time meet the sky.
     void meet_surfaces(Flight& flight) const {
         flight.numbers.clear();
         for (std::size_t i = 0; i < flight.size; ++i)
@@ -110,25 +114,35 @@ private:
         flight.shadow_count = 0;
         std::size_t hit_count = 0;
         for (std::size_t i = 0; i < flight.size; ++i) {
-            flight.goes_on[i] = meets_surface(flight, i, hit_count);
-            hit_count += flight.hits[i] ? 1 : 0;
+            flight.goes_on[i] = false;
+            if (flight.hits[i])
+                arrive(flight, i, hit_count++);
+            else if (flight.leaving.add(flight.paths[i].state))
+                steps_.meet_sky(flight.leaving);
         }
+        if (flight.group.count > 0) scatter(flight);
+        if (flight.leaving.count > 0) steps_.meet_sky(flight.leaving);
     }
-    /// One path arrives, looks for light and leaves. Returns whether it goes on. `place`: that of its
-    /// numbers.
-    bool meets_surface(Flight& flight, std::size_t i, std::size_t place) const {
-        Path& path = flight.paths[i];
+    /// A path arrives at its hit. `place`: that of its numbers.
+    void arrive(Flight& flight, std::size_t i, std::size_t place) const {
         const Hit<T>& hit = flight.hits[i];
         const auto front = [&] { return flight.normals.at(hit, [&] { return world_.surfaces.front(hit); }); };
-        const auto vertex = steps_.arrive(path.state, hit, front);
-        if (!vertex) return false;
-        const Scattering scattering = steps_.scattering_at(*vertex);
-        const VertexSamples numbers = flight.numbers.at_vertex(place);
-        if (const auto shadow = steps_.look_for_light(path.state, *vertex, scattering, numbers)) {
-            flight.shadows[flight.shadow_count] = *shadow;
-            flight.shaded[flight.shadow_count++] = i;
-        }
-        return steps_.leave(path.state, *vertex, scattering, numbers);
+        PathGroup<T>& group = flight.group;
+        PathState<T>& path = flight.paths[i].state;
+        const int k = group.count;
+        if (!steps_.arrive(path, hit, group.vertices[k], front)) return;
+        group.paths[k] = &path, group.samples[k] = flight.numbers.at_vertex(place);
+        flight.members[k] = i;
+        if (++group.count == PathGroup<T>::most) scatter(flight);
+    }
+    /// The paths of the group look for light, and leave.
+    void scatter(Flight& flight) const {
+        const LaneMask go_on = steps_.scatter(flight.group, [&](int k, const ShadowRay<T>& ray) {
+            flight.shadows[flight.shadow_count] = ray;
+            flight.shaded[flight.shadow_count++] = flight.members[k];
+        });
+        for (int k = 0; k < flight.group.count; ++k) flight.goes_on[flight.members[k]] = go_on[k];
+        flight.group.count = 0;
     }
     /// Adds the light that shadow rays bring.
     void add_light(Flight& flight) const {

@@ -52,14 +52,14 @@ public:
         path.ray = ray;
         for (;;) {
             const Hit<T> hit = rays_.closest_hit(path.ray, samples.ray_key(path.vertex));
-            const auto vertex = steps_.arrive(path, hit);
-            if (!vertex) return path.light;
-            const Scattering scattering = steps_.scattering_at(*vertex);
+            PathVertex<T> vertex;
+            if (!steps_.arrive(path, hit, vertex)) return path.light;
+            const PointScattering<float> scattering = steps_.scattering_at(vertex);
             const VertexSamples numbers = samples.at(path.vertex);
-            if (const auto shadow = steps_.look_for_light(path, *vertex, scattering, numbers))
+            if (const auto shadow = steps_.look_for_light(path, vertex, scattering, numbers))
                 if (!rays_.is_blocked(shadow->ray, samples.shadow_key(path.vertex)))
                     steps_.add_light(path, *shadow);
-            if (!steps_.leave(path, *vertex, scattering, numbers)) return path.light;
+            if (!steps_.leave(path, vertex, scattering, numbers)) return path.light;
         }
     }
 

@@ -5,49 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
+#include <hedgerow/render/integrators/path_group.h>
 #include <hedgerow/render/integrators/path_options.h>
-#include <hedgerow/render/integrators/path_vertex.h>
 #include <hedgerow/render/lighting/scene_lights.h>
 
 namespace hedgerow {
-
-/// The light that a path brings to the eye.
-struct PathLight {
-    Vec3f all;
-    /// The part that is scattered at most once between its source and the eye. The rest is indirect.
-    Vec3f direct;
-
-    static constexpr bool is_direct(std::uint32_t scatterings) { return scatterings <= 1; }
-    /// Adds light that is scattered so often.
-    void add(const Vec3f& light, std::uint32_t scatterings) {
-        all = all + light;
-        if (is_direct(scatterings)) direct = direct + light;
-    }
-};
-
-/// A path between two vertices. Directions have length 1.
-template <std::floating_point T>
-struct PathState {
-    Ray<T, 3> ray;
-    Vec3f throughput = Vec3f::all(1);  ///< the share of light that gets to the eye
-    PathLight light;                   ///< that has been found
-    Vec3f absorption;                  ///< of the body that the ray is in
-    /// The density of the ray's direction where it left a surface; 0 for the camera and for directions that a
-    /// surface has a single one of. Light that it meets is then found in no other way.
-    float density = 0;
-    Vec3f left_at, left_normal;  ///< where that was, for the density of light sampling
-    float spread = 1;          ///< of radiance by refraction: the product of η² over the path's boundaries
-    std::uint32_t vertex = 0;  ///< the number of the next vertex
-};
-
-/// A ray that brings light to the eye, unless something is in its way.
-template <std::floating_point T>
-struct ShadowRay {
-    Ray<T, 3> ray;
-    Vec3f light;
-    std::uint32_t vertex = 0;  ///< the number of the vertex where the ray begins
-};
 
 /// What paths go through, and how.
 template <std::floating_point T>
@@ -63,57 +27,54 @@ class PathSteps {
 public:
     explicit PathSteps(const PathWorld<T>& world) : world_(world) {}
 
-    /// Adds the light that a ray meets: of the environment, or of the surface that it hits. Returns the
-    /// vertex if the path may go on from there.
-    std::optional<PathVertex<T>> arrive(PathState<T>& path, const Hit<T>& hit) const {
-        return arrive(path, hit, [&] { return world_.surfaces.front(hit); });
+    /// Adds the light that a ray meets: of the environment, or of the surface that it hits. Returns whether
+    /// the path may go on from there, and sets the vertex.
+    bool arrive(PathState<T>& path, const Hit<T>& hit, PathVertex<T>& vertex) const {
+        const bool arrives = arrive(path, hit, vertex, [&] { return world_.surfaces.front(hit); });
+        if (arrives) vertex.set_origins(path.ray);
+        return arrives;
     }
-    /// Arrives where `front()` returns the normal that PathSurfaces::front has at the hit.
+    /// Arrives where `front()` returns the normal that PathSurfaces::front has at the hit. The vertex does
+    /// not get the origins of rays: `scatter` sets them.
     template <class Front>
-    std::optional<PathVertex<T>> arrive(PathState<T>& path, const Hit<T>& hit, const Front& front) const {
-        if (!hit) {
-            meet_sky(path);
-            return std::nullopt;
-        }
+    bool arrive(PathState<T>& path, const Hit<T>& hit, PathVertex<T>& vertex, const Front& front) const {
+        if (!hit) return meet_sky(path), false;
         absorb(path, static_cast<float>(hit.t));
-        PathVertex<T> vertex = world_.surfaces.at(path.ray, hit, front());
+        world_.surfaces.find(path.ray, hit, front(), vertex);
         if (max_component(vertex.emission) > 0)
             add(path, vertex.emission, weight_of_hit(path, density_of_light(path, hit)));
         if (vertex.unlit) add(path, vertex.material.base_colour, 1);
-        if (vertex.unlit || path.vertex >= world_.options.bounces) return std::nullopt;
-        return vertex;
+        return !vertex.unlit && path.vertex < world_.options.bounces;
     }
 
-    Scattering scattering_at(const PathVertex<T>& at) const {
-        return {at.material, at.shading.to_local(at.toward_origin), !at.front, world_.compensation};
+    /// Adds the light of the environment to a path whose ray meets nothing else.
+    void meet_sky(PathState<T>& path) const {
+        const EnvironmentMap* const sky = world_.lights.environment();
+        if (sky) meet_sky(path, *sky, sky->place_of(Vec3f(path.ray.direction)));
     }
+    /// The same of several paths, which are let go.
+    void meet_sky(LeavingPaths<T>& leaving) const {
+        const int count = std::exchange(leaving.count, 0);
+        const EnvironmentMap* const sky = world_.lights.environment();
+        if (!sky) return;
+        const auto directions = each_vector<FloatLanes>(
+            [&](int k) { return Vec3f(leaving.paths[k < count ? k : 0]->ray.direction); });
+        const auto places = sky->place_of(directions);
+        for (int k = 0; k < count; ++k) meet_sky(*leaving.paths[k], *sky, lane(places, k));
+    }
+
+    PointScattering<float> scattering_at(const PathVertex<T>& at) const { return {at, world_.compensation}; }
 
     /// A ray to a light, with what it brings; nothing if no light may come from there.
     std::optional<ShadowRay<T>> look_for_light(const PathState<T>& path, const PathVertex<T>& at,
-                                               const Scattering& scattering,
+                                               const PointScattering<float>& scattering,
                                                const VertexSamples& samples) const {
         if (!world_.options.light_sampling || scattering.only_specular()) return std::nullopt;
-        const Vec3f point(at.before);
-        const SampledLight sampled =
-            world_.lights.sample(point, side_of_light(at), samples.light_choice(), samples.light_point());
-        if (!sampled) return std::nullopt;
-        const LightSample& light = sampled.light;
-        const ScatteredLight scattered = scattered_by_horizon(at, scattering, light.direction);
-        if (!(max_component(scattered.value) > 0)) return std::nullopt;
-        const float density = product(light.density, sampled.probability);
-        float share = 1 / sampled.probability;
-        if (!light.single) {
-            share = 1 / density;
-            if (world_.options.material_sampling) share *= power_heuristic(density, scattered.density);
-        }
-        ShadowRay<T> shadow;
-        shadow.light =
-            limited(path, tinted(tinted(path.throughput, scattered.value), light.radiance) * share, 1);
-        shadow.vertex = path.vertex;
-        const bool beyond = dot(light.direction, at.geometric) < 0;
-        shadow.ray = {beyond ? at.beyond : at.before, Vec<T, 3>(light.direction), T(0),
-                      static_cast<T>(light.free)};
-        return shadow;
+        const SampledLight light = light_at(at, samples);
+        if (!light) return std::nullopt;
+        const LightToEye<float> s = to_eye(carried(path), scattering, light);
+        if (!s.exists) return std::nullopt;
+        return shadow_ray(path, at, light.light.direction, light.light.free, s.light);
     }
     /// May come after `leave`, and comes before the path arrives anew.
     void add_light(PathState<T>& path, const ShadowRay<T>& shadow) const {
@@ -121,88 +82,137 @@ public:
     }
 
     /// Chooses where the path goes on. False: it ends.
-    bool leave(PathState<T>& path, const PathVertex<T>& at, const Scattering& scattering,
+    bool leave(PathState<T>& path, const PathVertex<T>& at, const PointScattering<float>& scattering,
                const VertexSamples& samples) const {
-        const UnitPair p = samples.direction();
-        const auto next = scattering.sample(samples.lobe_choice(), p.x, p.y);
-        if (!next) return false;
-        Vec3f direction = normalized(at.shading.to_world(next->direction));
-        if (!same_side(at, direction, next->direction)) return false;
-        path.throughput = tinted(path.throughput, next->weight);
-        if (!next->specular) path.throughput = path.throughput * shown_share(at, direction);
-        if (next->transmitted && !at.material.thin) {
-            const float eta = at.front ? at.material.ior : 1 / at.material.ior;
-            path.spread *= eta * eta;
-            path.absorption = at.front ? at.absorption : Vec3f();
-        }
-        path.density = next->specular ? 0 : next->density;
-        const Vec3f image = at.mirrored(direction);
-        const bool below = at.is_below_horizon(direction);
-        if (path.density > 0 && (below || at.is_below_horizon(image)))
-            path.density += scattered(at, scattering, image).density;
-        if (below) direction = image;
-        const bool beyond = dot(direction, at.geometric) < 0;
-        path.ray = {beyond ? at.beyond : at.before, Vec<T, 3>(direction)};
-        path.left_at = Vec3f(at.before), path.left_normal = side_of_light(at);
-        return goes_on(path, samples);
+        CarriedLight<float> carrying = carried(path);
+        const Departure<float> next = depart(carrying, at, scattering, numbers(samples));
+        if (next.exists) go(path, at, next, carrying.throughput, carrying.spread);
+        return next.exists;
     }
-    bool leave(PathState<T>& path, const PathVertex<T>& at, const Scattering& scattering,
+    bool leave(PathState<T>& path, const PathVertex<T>& at, const PointScattering<float>& scattering,
                const PathSamples& samples) const {
         return leave(path, at, scattering, samples.at(path.vertex));
     }
 
+    /// Looks for light at the vertices of all paths of a group, and leaves. `shadow(k, ray)` takes the
+    /// shadow ray of path k, if there is one. Returns which paths go on. The bits are those of the steps of
+    /// single paths.
+    template <class Shadow>
+    LaneMask scatter(PathGroup<T>& group, const Shadow& shadow) const {
+        group.fill();
+        group.set_origins();
+        const auto at = points_in_lanes([&](int k) -> const auto& { return group.vertices[k]; });
+        const PointScattering<FloatLanes> scattering(at, world_.compensation);
+        CarriedLight<FloatLanes> carrying = carried(group);
+        if (world_.options.light_sampling) {
+            const SampledLightOf<FloatLanes> lights = lights_at(group, at, !scattering.only_specular());
+            const LightToEye<FloatLanes> found = to_eye(carrying, scattering, lights);
+            for (int k = 0; k < group.count; ++k)
+                if (found.exists[k])
+                    shadow(k, shadow_ray(*group.paths[k], group.vertices[k], lane(lights.light.direction, k),
+                                         lights.light.free[k], lane(found.light, k)));
+        }
+        const Departure<FloatLanes> next = depart(carrying, at, scattering, numbers(group));
+        for (int k = 0; k < group.count; ++k)
+            if (next.exists[k])
+                go(*group.paths[k], group.vertices[k], lane(next, k), lane(carrying.throughput, k),
+                   carrying.spread[k]);
+        return next.exists;
+    }
+
 private:
+    CarriedLight<float> carried(const PathState<T>& path) const {
+        return {path.throughput, path.spread, PathLight::is_direct(path.vertex + 1),
+                path.vertex >= world_.options.roulette_from};
+    }
+    CarriedLight<FloatLanes> carried(const PathGroup<T>& group) const {
+        using S = CarriedLight<float>;
+        const auto of = [&](int k) { return carried(*group.paths[k]); };
+        return {in_lanes(of, &S::throughput), in_lanes(of, &S::spread), in_lanes(of, &S::direct),
+                in_lanes(of, &S::may_end)};
+    }
+    static WayNumbers<float> numbers(const VertexSamples& s) {
+        return {s.lobe_choice(), s.direction().x, s.direction().y, s.end()};
+    }
+    static WayNumbers<FloatLanes> numbers(const PathGroup<T>& group) {
+        using S = WayNumbers<float>;
+        const auto of = [&](int k) { return numbers(group.samples[k]); };
+        return {in_lanes(of, &S::lobe), in_lanes(of, &S::u), in_lanes(of, &S::v), in_lanes(of, &S::end)};
+    }
+
+    SampledLight light_at(const PathVertex<T>& at, const VertexSamples& samples) const {
+        return world_.lights.sample(Vec3f(at.before), at.side_of_light(), samples.light_choice(),
+                                    samples.light_point());
+    }
+    SampledLightOf<FloatLanes> lights_at(const PathGroup<T>& group, const SurfacePoint<FloatLanes>& at,
+                                         LaneMask asks) const {
+        const auto& samples = group.samples;
+        return world_.lights.sample_four(
+            asks, each_vector<FloatLanes>([&](int k) { return Vec3f(group.vertices[k].before); }),
+            at.side_of_light(), DoubleLanes::each([&](int k) { return samples[k].light_choice(); }),
+            in_lanes([&](int k) { return samples[k].light_point(); }, &UnitPair::x),
+            in_lanes([&](int k) { return samples[k].light_point(); }, &UnitPair::y));
+    }
+    /// What light from a source becomes that is scattered here.
+    template <class F>
+    LightToEye<F> to_eye(const CarriedLight<F>& path, const PointScattering<F>& scattering,
+                         const SampledLightOf<F>& sampled) const {
+        const LightSampleOf<F>& light = sampled.light;
+        const ScatteredLightOf<F> scattered = scattering.at(light.direction);
+        const F density = product(light.density, sampled.probability);
+        F share = 1 / density;
+        if (world_.options.material_sampling) share *= power_heuristic(density, scattered.density);
+        share = select(light.single, 1 / sampled.probability, share);
+        const auto all = tinted(tinted(path.throughput, scattered.value), light.radiance) * share;
+        return {sampled.arrives() && max_component(scattered.value) > 0, limited(all, path.direct)};
+    }
+    ShadowRay<T> shadow_ray(const PathState<T>& path, const PathVertex<T>& at, const Vec3f& direction,
+                            float free, const Vec3f& to_eye) const {
+        Ray<T, 3> ray = ray_from(at, direction);
+        ray.t_max = static_cast<T>(free);
+        return {ray, to_eye, path.vertex};
+    }
+    static Ray<T, 3> ray_from(const PathVertex<T>& at, const Vec3f& direction) {
+        return {dot(direction, at.geometric) < 0 ? at.beyond : at.before, Vec<T, 3>(direction)};
+    }
+    /// Chooses where paths go on, and what they carry there. Roulette and cut may end them.
+    template <class F>
+    Departure<F> depart(CarriedLight<F>& path, const SurfacePoint<F>& at,
+                        const PointScattering<F>& scattering, const WayNumbers<F>& numbers) const {
+        Departure<F> next = scattering.sample(numbers.lobe, numbers.u, numbers.v);
+        path.throughput = tinted(path.throughput, next.weight) * next.shown;
+        const F eta = select(at.front, at.material.ior, 1 / at.material.ior);
+        path.spread = select(next.transmitted && !at.material.thin, path.spread * (eta * eta), path.spread);
+
+        const F left = max_component(path.throughput), stays = left * path.spread;
+        const MaskOf<F> sure = !path.may_end || stays >= 1;
+        next.exists = next.exists && left > world_.options.least_throughput && (sure || numbers.end < stays);
+        path.throughput = select(sure, path.throughput, path.throughput / stays);
+        return next;
+    }
+    static void go(PathState<T>& path, const PathVertex<T>& at, const Departure<float>& next,
+                   const Vec3f& throughput, float spread) {
+        path.throughput = throughput, path.spread = spread;
+        if (next.transmitted && !at.material.thin) path.absorption = at.front ? at.absorption : Vec3f();
+        path.density = next.density;
+        path.ray = ray_from(at, next.direction);
+        path.left_at = Vec3f(at.before), path.left_normal = at.side_of_light();
+        ++path.vertex;
+    }
+
     /// Veach's heuristic for two ways to find light, with squares: the weight of the first.
-    static float power_heuristic(float first, float second) {
+    template <class F>
+    static F power_heuristic(F first, F second) {
         // By the ratio, whose square may be infinite.
-        const float ratio = second / first;
+        const F ratio = second / first;
         return 1 / (1 + product(ratio, ratio));
     }
-    /// The normal on whose side the light is that a surface scatters; 0: on both.
-    static Vec3f side_of_light(const PathVertex<T>& at) {
-        return at.material.transmission > 0 ? Vec3f() : at.geometric;
-    }
-    /// Whether a direction lies on the same side of the surface as of the plane across the shading normal.
-    /// Others would let light through walls, or are reflections into the surface.
-    static bool same_side(const PathVertex<T>& at, const Vec3f& direction, const Vec3f& local) {
-        return (dot(direction, at.geometric) > 0) == (local[2] > 0) && local[2] != 0;
-    }
-    /// What the surface does with light of a direction; nothing where it must not.
-    static ScatteredLight scattered(const PathVertex<T>& at, const Scattering& scattering,
-                                    const Vec3f& direction) {
-        const Vec3f i = at.shading.to_local(direction);
-        if (!same_side(at, direction, i)) return {};
-        ScatteredLight s = scattering.at(i);
-        s.value = s.value * shown_share(at, direction);
-        return s;
-    }
-    /// What it does with light that a ray of this direction meets. Directions between the smooth surface and
-    /// the triangle before it are mirrored in the triangle, as if it were the surface next to the point: rays
-    /// that begin below a triangle could get through a wall at its edge, and without their light a closed
-    /// room would be too dark.
-    static ScatteredLight scattered_by_horizon(const PathVertex<T>& at, const Scattering& scattering,
-                                               const Vec3f& direction) {
-        if (at.is_below_horizon(direction)) return {};
-        ScatteredLight s = scattered(at, scattering, direction);
-        if (const Vec3f image = at.mirrored(direction); at.is_below_horizon(image)) {
-            const ScatteredLight more = scattered(at, scattering, image);
-            s.value += more.value, s.density += more.density;
-        }
-        return s;
-    }
-    /// The share of light from a direction that an opaque surface shows.
-    static float shown_share(const PathVertex<T>& at, const Vec3f& direction) {
-        if (at.material.transmission > 0) return 1;
-        return share_at_terminator(at.shading.normal(), at.geometric, direction);
-    }
-    void meet_sky(PathState<T>& path) const {
-        const EnvironmentMap* const sky = world_.lights.environment();
-        if (!sky) return;
-        const Vec3f direction(path.ray.direction);
-        if (path.density == 0) return add(path, sky->radiance(direction), 1);
-        const EnvironmentSample from = sky->at(direction);
-        const float chosen = world_.lights.probability_of_sky(path.left_at, path.left_normal);
-        add(path, from.radiance, weight_of_hit(path, product(from.density, chosen)));
+    void meet_sky(PathState<T>& path, const EnvironmentMap& sky, const PanoramaPlace& place) const {
+        const float density = path.density == 0
+                                  ? 0
+                                  : product(sky.density(place),
+                                            world_.lights.probability_of_sky(path.left_at, path.left_normal));
+        add(path, sky.radiance(place), weight_of_hit(path, density));
     }
     float density_of_light(const PathState<T>& path, const Hit<T>& hit) const {
         if (path.density == 0) return 0;
@@ -215,31 +225,19 @@ private:
         return o.material_sampling ? power_heuristic(path.density, density) : 0;
     }
     void add(PathState<T>& path, const Vec3f& radiance, float weight) const {
-        if (weight > 0)
-            path.light.add(limited(path, tinted(path.throughput, radiance) * weight, 0), path.vertex);
+        if (!(weight > 0)) return;
+        const Vec3f light = tinted(path.throughput, radiance) * weight;
+        path.light.add(limited(light, PathLight::is_direct(path.vertex)), path.vertex);
     }
-    /// Indirect light counts up to a limit. `more`: how often light is scattered at the vertex where the path
-    /// is.
-    Vec3f limited(const PathState<T>& path, const Vec3f& light, std::uint32_t more) const {
-        const float brightest = max_component(light), limit = world_.options.brightest_indirect;
-        return !PathLight::is_direct(path.vertex + more) && brightest > limit ? light * (limit / brightest)
-                                                                              : light;
+    /// Indirect light counts up to a limit.
+    template <class F>
+    Vec<F, 3> limited(const Vec<F, 3>& light, MaskOf<F> direct) const {
+        const F brightest = max_component(light), limit = world_.options.brightest_indirect;
+        return select(direct || !(brightest > limit), light, light * (limit / brightest));
     }
     static void absorb(PathState<T>& path, float distance) {
         for (int k = 0; k < 3; ++k)
             if (path.absorption[k] > 0) path.throughput[k] *= exponential(-(path.absorption[k] * distance));
-    }
-    /// Roulette and cut, after the vertex; counts it.
-    bool goes_on(PathState<T>& path, const VertexSamples& samples) const {
-        const PathOptions& o = world_.options;
-        const float left = max_component(path.throughput);
-        const std::uint32_t vertex = path.vertex++;
-        if (!(left > o.least_throughput)) return false;
-        const float stays = left * path.spread;
-        if (vertex < o.roulette_from || stays >= 1) return true;
-        if (!(samples.end() < stays)) return false;
-        path.throughput = path.throughput / stays;
-        return true;
     }
 
     PathWorld<T> world_;

@@ -8,40 +8,46 @@
 #include <hedgerow/geometry/elementary.h>
 #include <hedgerow/render/model_scene.h>
 #include <hedgerow/render/sampling/path_samples.h>
-#include <hedgerow/render/scattering/frame.h>
-#include <hedgerow/render/scattering/fresnel.h>
-#include <hedgerow/render/scattering/scattering.h>
+#include <hedgerow/render/scattering/point_scattering.h>
 #include <hedgerow/surface.h>
 
 namespace hedgerow {
 
-/// A point of a surface as a path sees it. Directions have length 1.
+/// Where a ray meets a triangle, as far as the origins of rays from there depend on it. F is float, double,
+/// or lanes of these.
+template <class F>
+struct Landing {
+    Vec<F, 3> normal;     ///< of the triangle, on the side of the ray's origin
+    Vec<F, 3> low, high;  ///< the corners of the box of the triangle, or of its instance
+    F distance;           ///< along the ray
+    F smooth;             ///< that of the smooth surface
+
+    /// Where rays begin that leave the surface on this side, and on the other side.
+    Vec<F, 3> before(const Vec<F, 3>& origin, const Vec<F, 3>& direction, F begin) const {
+        return offset_origin(origin, direction, begin, smooth, hit_error(origin, low, high), normal, normal);
+    }
+    Vec<F, 3> beyond(const Vec<F, 3>& origin, const Vec<F, 3>& direction, F begin) const {
+        return offset_origin(origin, direction, begin, distance, hit_error(origin, low, high), -normal,
+                             -normal);
+    }
+};
+
+/// A point of a surface as a path sees it.
 template <std::floating_point T>
-struct PathVertex {
-    Vec3f toward_origin;  ///< back along the ray
-    /// The normal of the surface, on the side of the ray's origin: that of the triangle, or of the smooth
-    /// surface over it that normals of its corners mean.
-    Vec3f geometric;
-    /// No ray begins at `before` below the plane of this normal: that of the triangle, where the smooth
-    /// surface lies behind it.
-    Vec3f horizon;
-    Frame shading{Vec3f(0, 0, 1)};  ///< around the normal by which it scatters, on the same side
-    bool front = true;              ///< whether the ray came to the front
-    bool unlit = false;             ///< shows its colour, and ends the path
-    SurfaceMaterial material;
-    Vec3f emission;  ///< toward the ray's origin
+struct PathVertex : SurfacePoint<float> {
+    bool unlit = false;  ///< shows its colour, and ends the path
+    Vec3f emission;      ///< toward the ray's origin
     /// What light loses in the body beyond the front: exp(−absorption · distance) is left. 0 of none.
     Vec3f absorption;
+    Landing<T> landing;
     Vec<T, 3> before;  ///< where rays begin that leave the surface on this side
     Vec<T, 3> beyond;  ///< and on the other side, if the surface lets light through
 
-    /// Whether a direction lies above the smooth surface, and below the triangle that is before it. A ray
-    /// would meet the surface anew, at once.
-    bool is_below_horizon(const Vec3f& direction) const {
-        return dot(direction, geometric) > 0 && !(dot(direction, horizon) > 0);
+    /// Computes both for the ray that came here.
+    void set_origins(const Ray<T, 3>& ray) {
+        before = landing.before(ray.origin, ray.direction, ray.t_min);
+        if (material.transmission > 0) beyond = landing.beyond(ray.origin, ray.direction, ray.t_min);
     }
-    /// The mirror image of a direction in the plane of the horizon.
-    Vec3f mirrored(const Vec3f& direction) const { return -reflected(direction, horizon); }
 };
 
 /// Finds the vertices of paths through a model. Borrows all.
@@ -71,12 +77,16 @@ public:
     /// The normal of the front at a hit, of length 1. O(1).
     Vec<T, 3> front(const Hit<T>& hit) const { return normal(scene_.instances(), hit); }
     /// The vertex at a hit of a ray whose direction has length 1. O(1).
-    PathVertex<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const { return at(ray, hit, front(hit)); }
-    /// The vertex at a hit where the normal of the front is known.
-    PathVertex<T> at(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& front) const {
+    PathVertex<T> at(const Ray<T, 3>& ray, const Hit<T>& hit) const {
+        PathVertex<T> v;
+        find(ray, hit, front(hit), v);
+        v.set_origins(ray);
+        return v;
+    }
+    /// Sets the vertex at a hit where the normal of the front is known, but for where rays begin.
+    void find(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& front, PathVertex<T>& v) const {
         const ModelLookups<T>& looks = scene_.lookups();
         const Material& m = looks.material(hit);
-        PathVertex<T> v;
         const Vec3f direction(ray.direction);
         v.toward_origin = -direction;
         v.front = !(dot(front, ray.direction) > 0);
@@ -90,15 +100,13 @@ public:
         v.material.specular_colour = m.specular_colour;
         v.material.transmission = m.transmission * looks.number(m.transmission_texture, hit, {});
         v.material.thin = m.thin;
-        if (v.front || m.double_sided) v.emission = looks.emission(hit, {});
+        v.emission = v.front || m.double_sided ? looks.emission(hit, {}) : Vec3f();
         v.absorption = absorptions_[looks.object(hit).material_of(hit.element)];
         const Vec3f smooth = looks.smooth_normal(hit);
-        Hit<T> met = hit;
-        met.t -= static_cast<T>(meet_smooth(hit, smooth, v));
-        v.shading = Frame(shading_normal(m.normal_texture ? looks.own_normal(hit, {}) : smooth, v));
-        v.before = scene_.surfaces().origin(ray, met, geometric);
-        if (v.material.transmission > 0) v.beyond = scene_.surfaces().origin(ray, hit, -geometric);
-        return v;
+        const T nearer = static_cast<T>(meet_smooth(hit, smooth, v));
+        const Box<T, 3> bounds = scene_.surfaces().bounds(hit);
+        v.landing = {geometric, bounds.low, bounds.high, hit.t, hit.t - nearer};
+        v.shading = shading_normal(m.normal_texture ? looks.own_normal(hit, {}) : smooth, v);
     }
 
 private:

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include <hedgerow/geometry/vec.h>
+#include <hedgerow/geometry/number_lanes.h>
 
 namespace hedgerow {
 
@@ -21,9 +22,10 @@ struct TableChoice {
 /// The greatest double below 1.
 inline constexpr double below_one = 1 - 0x1p-53;
 
-/// u within [0, 1); 0 for NaN.
-inline double in_unit_interval(double u) {
-    return u > 0 ? (u < below_one ? u : below_one) : 0.0;
+/// u within [0, 1); 0 for NaN. D is double or DoubleLanes.
+template <class D>
+D in_unit_interval(D u) {
+    return only(u > 0, lesser(u, below_one));
 }
 
 /// Replaces weights, each >= 0 and finite, by their cumulative shares: sums[i] is the share of the entries
@@ -43,12 +45,27 @@ inline double share_of_entry(std::span<const double> sums, std::size_t entry) {
     return sums[entry + 1] - sums[entry];
 }
 
+/// The entries i in which places of [0, 1) lie, each in a table of its own: place in [sums[i], sums[i + 1]).
+/// All tables have `entries` entries, whose shares are not all 0. Halves the tables without branches, which
+/// random places would make hard to predict, and side by side, since each step waits for a load. O(log
+/// entries).
+template <std::size_t count>
+std::array<std::size_t, count> entries_at(const std::array<const double*, count>& sums, std::size_t entries,
+                                          const std::array<double, count>& places) {
+    std::array<std::size_t, count> first{};
+    for (std::size_t left = entries; left > 1;) {
+        const std::size_t half = left / 2;
+        for (std::size_t k = 0; k < count; ++k) first[k] += sums[k][first[k] + half] <= places[k] ? half : 0;
+        left -= half;
+    }
+    return first;
+}
+
 /// Chooses entry i where u is in [sums[i], sums[i + 1]), so never one whose share is 0. The shares must not
 /// all be 0. O(log entries).
 inline TableChoice choose_entry(std::span<const double> sums, double u) {
     const double place = in_unit_interval(u);
-    const auto above = std::upper_bound(sums.begin() + 1, sums.end() - 1, place);
-    const auto entry = static_cast<std::size_t>(above - sums.begin()) - 1;
+    const std::size_t entry = entries_at<1>({sums.data()}, sums.size() - 1, {place})[0];
     const double share = share_of_entry(sums, entry);
     return {static_cast<std::uint32_t>(entry), share, in_unit_interval((place - sums[entry]) / share)};
 }

@@ -91,9 +91,31 @@ public:
         if (const auto* light = std::get_if<PointEmitter>(&emitters_[i])) return light->sample(point);
         if (const auto* light = std::get_if<SpotEmitter>(&emitters_[i])) return light->sample(point);
         if (const auto* light = std::get_if<SunEmitter>(&emitters_[i])) return light->sample();
-        const auto [direction, radiance, density] = environment_->sample(u, v);
-        constexpr float infinity = std::numeric_limits<float>::infinity();
-        return {direction, infinity, infinity, radiance, density, false, {}};
+        return from_environment(environment_->sample(u, v));
+    }
+    /// The same at four points, of the emitters which(0) to which(3); no light for those that are
+    /// `no_emitter`. Triangles are sampled side by side, and so is the environment.
+    template <class Which>
+    LightSampleOf<FloatLanes> sample_four(const Which& which, const Vec<FloatLanes, 3>& point, FloatLanes u,
+                                          FloatLanes v) const {
+        LightSampleOf<FloatLanes> s;
+        const auto emitter = [&](int k) { return which(k) == no_emitter ? nullptr : &emitters_[which(k)]; };
+        const auto are = [&](auto has) {
+            return LaneMask::each([&](int k) { return emitter(k) && has(*emitter(k)); });
+        };
+        const LaneMask triangles =
+                           are([](const Emitter&e) { return std::holds_alternative<EmissiveTriangle>(e); }),
+                       skies =
+                           are([](const Emitter&e) { return std::holds_alternative<EnvironmentEmitter>(e); }),
+                       others = are([](const Emitter&) { return true; }) && !triangles && !skies;
+        if (any(triangles))
+            s = select(triangles, triangles_in_lanes(emitter, triangles).sample(point, u, v), s);
+        if (any(skies)) s = select(skies, from_environment(environment_->sample(u, v)), s);
+        for (int k = 0; k < FloatLanes::count && any(others); ++k)
+            if (others[k])
+                s = select(LaneMask::each([k](int i) { return i == k; }),
+                           in_all_lanes(sample(which(k), lane(point, k), u[k], v[k])), s);
+        return s;
     }
     /// The density per solid angle with which `sample` chooses a direction that a ray, not sampled from
     /// emitter i, has met it by. The direction has length 1; the distance is to the hit, and does not matter
@@ -160,6 +182,23 @@ private:
         if (const auto* sun = std::get_if<SunEmitter>(&emitters_[i]))
             return disc * detail::brightness(sun->illuminance);
         return 4 * pi * disc * detail::brightness(environment_->mean());
+    }
+    template <class F>
+    static LightSampleOf<F> from_environment(const EnvironmentSampleOf<F>& s) {
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        return {s.direction, infinity, infinity, s.radiance, s.density, MaskOf<F>(false), {}};
+    }
+    /// The triangles of four emitters; of those that are none, some triangle.
+    template <class Of>
+    static EmissiveTriangleOf<FloatLanes> triangles_in_lanes(const Of& emitter, LaneMask are) {
+        using S = EmissiveTriangle;
+        int some = 0;
+        while (!are[some]) ++some;
+        const auto triangle = [&](int k) -> const S& {
+            return *std::get_if<EmissiveTriangle>(emitter(are[k] ? k : some));
+        };
+        return {in_lanes(triangle, &S::a), in_lanes(triangle, &S::b), in_lanes(triangle, &S::c),
+                in_lanes(triangle, &S::radiance), in_lanes(triangle, &S::both_sides)};
     }
     void expect(bool sound, std::string_view name, const char* what) const {
         if (sound) return;

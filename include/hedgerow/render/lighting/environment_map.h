@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -28,12 +29,14 @@ struct EnvironmentMapOptions {
     int most_columns = 1024, most_rows = 512;
 };
 
-/// Light from a direction of an environment.
-struct EnvironmentSample {
-    Vec3f direction;  ///< toward the environment, of length 1
-    Vec3f radiance;
-    float density = 0;  ///< per solid angle
+/// Light from a direction of an environment; from four directions, of F = FloatLanes.
+template <class F>
+struct EnvironmentSampleOf {
+    Vec<F, 3> direction;  ///< toward the environment, of length 1
+    Vec<F, 3> radiance;
+    F density = 0;  ///< per solid angle
 };
+using EnvironmentSample = EnvironmentSampleOf<float>;
 
 /// Directions are sampled by a table over latitude and longitude, row first, then column, as in pbrt (Pharr,
 /// Jakob and Humphreys, Physically Based Rendering). The weight of a cell is its mean brightness times its
@@ -52,29 +55,55 @@ public:
     }
 
     /// The radiance that arrives from a direction. O(1).
-    Vec3f radiance(const Vec3f& direction) const { return panorama_.radiance(place_of(direction)); }
+    Vec3f radiance(const Vec3f& direction) const { return radiance(place_of(direction)); }
     /// The density with which `sample` chooses a direction, per solid angle. O(1).
-    float density(const Vec3f& direction) const { return density_at(place_of(direction)); }
-    /// The radiance and the density of a direction at once.
-    EnvironmentSample at(const Vec3f& direction) const {
-        const PanoramaPlace place = place_of(direction);
-        return {direction, panorama_.radiance(place), density_at(place)};
+    float density(const Vec3f& direction) const { return density(place_of(direction)); }
+    /// Where the panorama shows a direction, or four; and radiance and density there.
+    template <class F>
+    PanoramaPlaceOf<WideOf<F>> place_of(const Vec<F, 3>& direction) const {
+        using D = WideOf<F>;
+        const auto& m = to_world_;
+        const auto d = widened(direction);
+        const auto along = [&](int i) {
+            return product(D(m[0][i]), d[0]) + product(D(m[1][i]), d[1]) + product(D(m[2][i]), d[2]);
+        };
+        return panorama_place(Vec<D, 3>(along(0), along(1), along(2)));
     }
-    /// Chooses a direction by two numbers in [0, 1). Returns what `at` returns for it: rounding to floats
-    /// puts about one direction of 30,000 beyond the edge of its cell, and it counts where it lies. So the
-    /// density may be 0, and it is if the environment is black. O(log of the columns and rows).
-    EnvironmentSample sample(float u, float v) const {
+    Vec3f radiance(const PanoramaPlace& place) const { return panorama_.radiance(place); }
+    float density(const PanoramaPlace& place) const {
+        if (!lit()) return 0;
+        const auto row = static_cast<std::size_t>(place.row(static_cast<int>(rows_))),
+                   column = static_cast<std::size_t>(place.column(static_cast<int>(columns_)));
+        const double share = share_of_entry(sums_of_row(row), column);
+        return share > 0 ? in_float(detail::bounded_density(share * row_densities_[row])) : 0;
+    }
+    /// The radiance and the density of a direction, or of four, at once.
+    template <class F>
+    EnvironmentSampleOf<F> at(const Vec<F, 3>& direction) const {
+        const auto place = place_of(direction);
+        return {direction, each_vector<F>([&](int k) { return radiance(lane(place, k)); }),
+                each_lane<F>([&](int k) { return density(lane(place, k)); })};
+    }
+    /// Chooses a direction by two numbers in [0, 1), or four by two of each. Returns what `at` returns for
+    /// it: rounding to floats puts about one direction of 30,000 beyond the edge of its cell, and it counts
+    /// where it lies. So the density may be 0, and it is if the environment is black. O(log of the columns
+    /// and rows).
+    template <class F>
+    EnvironmentSampleOf<F> sample(F u, F v) const {
         if (!lit()) return {};
-        const TableChoice row = choose_entry(row_sums_, static_cast<double>(v));
-        const TableChoice column = choose_entry(sums_of_row(row.entry), static_cast<double>(u));
-        const double top = cosines_[row.entry], bottom = cosines_[row.entry + 1];
-        const double height = top + product(bottom - top, row.u);
-        const double radius = std::sqrt(std::max(0.0, product(1 - height, 1 + height)));
-        const auto turn =
-            rounded_to<float>((static_cast<double>(column.entry) + column.u) / static_cast<double>(columns_));
-        const SineCosine<float> around = sine_cosine_of_turns(turn);
-        return at(to_world(Vec3d(-product(radius, static_cast<double>(around.sine)), height,
-                                 product(radius, static_cast<double>(around.cosine)))));
+        using D = WideOf<F>;
+        const Cells<D> row = choose_cells([&](int) { return row_sums_.data(); }, rows_, D(v));
+        const Cells<D> column =
+            choose_cells([&](int k) { return sums_of_row(row.at(k)).data(); }, columns_, D(u));
+        const D top = each_lane<D>([&](int k) { return cosines_[row.at(k)]; }),
+                bottom = each_lane<D>([&](int k) { return cosines_[row.at(k) + 1]; });
+        const D height = top + product(bottom - top, row.within);
+        const D radius = root(greater(D(0), product(1 - height, 1 + height)));
+        const D first = each_lane<D>([&](int k) { return static_cast<double>(column.at(k)); });
+        const auto around =
+            sine_cosine_of_turns(in_float((first + column.within) / static_cast<double>(columns_)));
+        return at(
+            to_world(Vec<D, 3>(-product(radius, D(around.sine)), height, product(radius, D(around.cosine)))));
     }
 
     /// The mean radiance over all directions.
@@ -95,25 +124,42 @@ private:
                 if (!(std::abs(dot(m[i], m[j]) - (i == j)) < 1e-4))
                     throw InputError("environment: its matrix must be a rotation, without scale or shear");
     }
-    Vec3f to_world(const Vec3d& local) const {
-        const auto& m = to_world_;
-        return Vec3f(normalized(Vec3d(dot(m[0], local), dot(m[1], local), dot(m[2], local))));
+    template <class D>
+    auto to_world(const Vec<D, 3>& local) const {
+        const auto across = [&](std::size_t i) {
+            const Vec3d& row = to_world_[i];
+            return dot(Vec<D, 3>(row[0], row[1], row[2]), local);
+        };
+        return in_float(normalized(Vec<D, 3>(across(0), across(1), across(2))));
     }
-    PanoramaPlace place_of(const Vec3f& direction) const {
-        const auto& m = to_world_;
-        const Vec3d d(direction);
-        return panorama_place(m[0] * d[0] + m[1] * d[1] + m[2] * d[2]);
+    /// An entry for each number of D, and the place of the number within the entry's share.
+    template <class D>
+    struct Cells {
+        std::array<std::size_t, static_cast<std::size_t>(number_count<D>)> entries;
+        D within;
+
+        std::size_t at(int k) const { return entries[static_cast<std::size_t>(k)]; }
+    };
+    /// Chooses entries as choose_entry does, number k by the table `sums(k)`.
+    template <class D, class Sums>
+    static Cells<D> choose_cells(const Sums& sums, std::size_t entries, const D& u) {
+        constexpr auto count = static_cast<std::size_t>(number_count<D>);
+        const D place = in_unit_interval(u);
+        std::array<const double*, count> tables;
+        std::array<double, count> places;
+        for (std::size_t k = 0; k < count; ++k)
+            tables[k] = sums(static_cast<int>(k)), places[k] = lane(place, static_cast<int>(k));
+        Cells<D> c{entries_at<count>(tables, entries, places), {}};
+        const auto table_at = [&](std::size_t next) {
+            return each_lane<D>([&](int k) { return tables[static_cast<std::size_t>(k)][c.at(k) + next]; });
+        };
+        const D low = table_at(0);
+        c.within = in_unit_interval((place - low) / (table_at(1) - low));
+        return c;
     }
 
     std::span<const double> sums_of_row(std::size_t row) const {
         return std::span(column_sums_).subspan(row * (columns_ + 1), columns_ + 1);
-    }
-    float density_at(const PanoramaPlace& place) const {
-        if (!lit()) return 0;
-        const auto row = static_cast<std::size_t>(place.row(static_cast<int>(rows_))),
-                   column = static_cast<std::size_t>(place.column(static_cast<int>(columns_)));
-        const double share = share_of_entry(sums_of_row(row), column);
-        return share > 0 ? detail::bounded_density(share * row_densities_[row]) : 0;
     }
     /// The solid angle of a cell.
     double solid_angle(std::size_t row) const {

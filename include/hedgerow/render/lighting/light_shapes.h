@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <limits>
 
 #include <hedgerow/geometry/offset.h>
@@ -19,27 +20,45 @@ inline constexpr float most_light_density = 0x1p62f;
 /// The most radiance or irradiance that a source without extent gives, however close the point lies to it.
 inline constexpr float most_single_light = 0x1p100f;
 
-/// Light that arrives at a point, as if nothing were in its way.
-struct LightSample {
-    Vec3f direction;     ///< from the point to the source, of length 1
-    float distance = 0;  ///< to the source along the direction; infinity for the sun and the environment
+/// Light that arrives at a point, as if nothing were in its way; at four points, of F = FloatLanes.
+template <class F>
+struct LightSampleOf {
+    Vec<F, 3> direction;  ///< from the point to the source, of length 1
+    F distance = 0;       ///< to the source along the direction; infinity for the sun and the environment
     /// What is nearer than this is in the way of the light. Less than the distance by as much as a hit on the
     /// source may err, so that the source itself is not.
-    float free = 0;
+    F free = 0;
     /// Radiance, or for a single direction the irradiance of a surface that faces the source.
-    Vec3f radiance;
+    Vec<F, 3> radiance;
     /// The probability density of the direction per solid angle. It is 0 for a single direction, and where no
     /// light arrives.
-    float density = 0;
+    F density = 0;
     /// Whether the source has no extent, so that light from it arrives from one direction only.
-    bool single = false;
+    MaskOf<F> single{false};
     /// The weights of the second and the third corner at the sampled place of a triangle, for emission that
     /// a texture varies.
-    Vec2f weights;
+    Vec<F, 2> weights;
 
     /// Whether any light arrives.
-    explicit operator bool() const { return single || density > 0; }
+    MaskOf<F> arrives() const { return single || density > 0; }
+    explicit operator bool() const requires std::same_as<F, float> { return arrives(); }
 };
+using LightSample = LightSampleOf<float>;
+
+inline LightSampleOf<FloatLanes> in_all_lanes(const LightSample& s) {
+    const auto same = [&](int) -> const LightSample& { return s; };
+    using S = LightSample;
+    return {in_lanes(same, &S::direction), s.distance, s.free,
+            in_lanes(same, &S::radiance),  s.density,  LaneMask(s.single),
+            {s.weights[0], s.weights[1]}};
+}
+inline LightSampleOf<FloatLanes> select(LaneMask c, const LightSampleOf<FloatLanes>& a,
+                                        const LightSampleOf<FloatLanes>& b) {
+    return {select(c, a.direction, b.direction), select(c, a.distance, b.distance),
+            select(c, a.free, b.free),           select(c, a.radiance, b.radiance),
+            select(c, a.density, b.density),     select(c, a.single, b.single),
+            select(c, a.weights, b.weights)};
+}
 
 namespace detail {
 
@@ -50,26 +69,30 @@ inline double brightness(const Vec3f& c) {
 
 /// The way from a point to another: a direction of length 1, and a distance. The distance is 0 if the points
 /// are less than the least normal float apart.
+template <class F>
 struct Sight {
-    Vec3f direction;
-    float distance = 0;
+    Vec<F, 3> direction;
+    F distance = 0;
 };
-inline Sight sight(const Vec3f& from, const Vec3d& to) {
-    const Vec3d way = to - Vec3d(from);
-    const double l = length(way);
-    if (!(l >= static_cast<double>(std::numeric_limits<float>::min()))) return {};
-    return {Vec3f(way / l), rounded_to<float>(l)};
+template <class F>
+Sight<F> sight(const Vec<F, 3>& from, const Vec<WideOf<F>, 3>& to) {
+    const auto way = to - widened(from);
+    const WideOf<F> l = root(length2(way));
+    const auto apart = l >= static_cast<double>(std::numeric_limits<float>::min());
+    return {in_float(only(apart, way / l)), in_float(only(apart, l))};
 }
 /// The part of a way from a point that nothing may block: until the source within these bounds is as near as
 /// a hit on it may err. `cosine`: that of the way and the source's normal, positive.
-inline float free_way(const Vec3f& from, float distance, const Box3f& source, double cosine) {
-    return rounded_to<float>(static_cast<double>(distance) -
-                             static_cast<double>(hit_error(from, source)) / cosine);
+template <class F>
+F free_way(const Vec<F, 3>& from, F distance, const Vec<F, 3>& low, const Vec<F, 3>& high, WideOf<F> cosine) {
+    using D = WideOf<F>;
+    return in_float(D(distance) - D(hit_error(from, low, high)) / cosine);
 }
 
-inline float bounded_density(double density) {
+template <class D>
+D bounded_density(D density) {
     constexpr auto most = static_cast<double>(most_light_density);
-    return rounded_to<float>(std::min(std::max(density, 1 / most), most));
+    return lesser(greater(density, 1 / most), most);
 }
 
 /// The irradiance by an intensity at a distance, which is not 0, of a surface that faces the source.
@@ -91,7 +114,7 @@ LightSample from_place(const Vec3f& point, const Vec3f& place, const Vec3f& inte
     if (!(part > 0)) return {};
     return {direction,
             distance,
-            free_way(point, distance, {place, place}, 1),
+            free_way(point, distance, place, place, 1),
             irradiance(intensity, part, distance),
             0,
             true,
@@ -101,54 +124,58 @@ LightSample from_place(const Vec3f& point, const Vec3f& place, const Vec3f& inte
 }  // namespace detail
 
 /// A triangle that emits the same radiance from all of its front, from where its corners are
-/// counterclockwise, or from both sides.
-struct EmissiveTriangle {
-    Vec3f a, b, c;
-    Vec3f radiance;
-    bool both_sides = false;
+/// counterclockwise, or from both sides; or four triangles, of F = FloatLanes.
+template <class F>
+struct EmissiveTriangleOf {
+    using D = WideOf<F>;
+
+    Vec<F, 3> a, b, c;
+    Vec<F, 3> radiance;
+    MaskOf<F> both_sides{false};
 
     /// The normal of the front, whose length is twice the area.
-    Vec3d normal() const { return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)); }
-    double area() const { return length(normal()) / 2; }
-    Box3f bounds() const { return Box3f().expand(a).expand(b).expand(c); }
+    Vec<D, 3> normal() const { return cross(widened(b) - widened(a), widened(c) - widened(a)); }
+    double area() const requires std::same_as<F, float> { return length(normal()) / 2; }
+    Box3f bounds() const requires std::same_as<F, float> { return Box3f().expand(a).expand(b).expand(c); }
 
     /// Samples the area uniformly, by two numbers in [0, 1). (Sampling by solid angle has less noise at
     /// points close to the triangle: Arvo, SIGGRAPH 1995; Peters, TOG 40(4), 2021.) There is no light behind
     /// a triangle, unless both sides emit, nor in its plane.
-    LightSample sample(const Vec3f& point, float u, float v) const {
-        LightSample s;
+    LightSampleOf<F> sample(const Vec<F, 3>& point, F u, F v) const {
+        LightSampleOf<F> s;
         s.weights = triangle_point(u, v);
-        const Vec3d at = Vec3d(a) + (Vec3d(b) - Vec3d(a)) * static_cast<double>(s.weights[0]) +
-                         (Vec3d(c) - Vec3d(a)) * static_cast<double>(s.weights[1]);
-        const auto [direction, distance] = detail::sight(point, at);
-        s.direction = direction;
-        s.distance = distance;
-        const Vec3d n = normal();
-        const double along = -dot(n, Vec3d(direction));
-        s.density = density_at(along, distance);
-        if (!s) return s;
-        s.radiance = radiance;
-        s.free = detail::free_way(point, distance, bounds(), std::abs(along) / length(n));
+        const auto corner = widened(a), ab = widened(b) - corner, ac = widened(c) - corner;
+        const auto at = corner + ab * D(s.weights[0]) + ac * D(s.weights[1]);
+        const detail::Sight<F> way = detail::sight(point, at);
+        s.direction = way.direction, s.distance = way.distance;
+        const auto n = cross(ab, ac);
+        const D along = -dot(n, widened(way.direction));
+        s.density = density_at(along, way.distance);
+        const auto lit = s.density > 0;
+        s.radiance = only(lit, radiance);
+        s.free = only(lit, detail::free_way(point, way.distance, min(min(a, b), c), max(max(a, b), c),
+                                            magnitude(along) / root(length2(n))));
         return s;
     }
     /// The density that `sample` returns for the place where a ray hits the triangle: a ray of this
     /// direction, of length 1, at this distance. 0 where no light comes from.
-    float density_toward(const Vec3f& direction, float distance) const {
-        return density_at(-dot(normal(), Vec3d(direction)), distance);
+    F density_toward(const Vec<F, 3>& direction, F distance) const {
+        return density_at(-dot(normal(), widened(direction)), distance);
     }
     /// The radiance that a ray of this direction meets.
-    Vec3f radiance_toward(const Vec3f& direction) const {
+    Vec3f radiance_toward(const Vec3f& direction) const requires std::same_as<F, float> {
         return both_sides || dot(normal(), Vec3d(direction)) < 0 ? radiance : Vec3f();
     }
 
 private:
     /// The density of a hit where the normal, of twice the area's length, goes so far back along the ray.
-    float density_at(double along, float distance) const {
-        if (!(distance > 0) || !(both_sides ? along != 0 : along > 0)) return 0;
-        const auto d = static_cast<double>(distance);
-        return detail::bounded_density(2 * product(d, d) / (along < 0 ? -along : along));
+    F density_at(D along, F distance) const {
+        const D back = D(select(both_sides, F(1), F(0))), facing = greater(along, -along * back);
+        const D d(distance), density = detail::bounded_density(2 * product(d, d) / facing);
+        return in_float(only(d > 0 && facing > 0, density));
     }
 };
+using EmissiveTriangle = EmissiveTriangleOf<float>;
 
 /// A point that shines alike in all directions.
 struct PointEmitter {

@@ -24,13 +24,18 @@ struct SceneLightsOptions {
     bool compensates = true;
 };
 
-/// Light from one of the lights, and the probability with which that was chosen.
-struct SampledLight {
-    LightSample light;
-    float probability = 0;
+/// Light from one of the lights, and the probability with which that was chosen; or from four, of F =
+/// FloatLanes.
+template <class F>
+struct SampledLightOf {
+    LightSampleOf<F> light;
+    F probability = 0;
 
-    explicit operator bool() const { return probability > 0 && bool(light); }
+    /// Whether light arrives.
+    MaskOf<F> arrives() const { return probability > 0 && light.arrives(); }
+    explicit operator bool() const requires std::same_as<F, float> { return arrives(); }
 };
+using SampledLight = SampledLightOf<float>;
 
 /// Chooses lights by a tree over them. Borrows the lookups. Const use is thread-safe.
 template <std::floating_point T>
@@ -65,17 +70,30 @@ public:
     SampledLight sample(const Vec3f& point, const Vec3f& normal, double choice, const UnitPair& place) const {
         const LightChoice chosen = tree_.choose(point, normal, choice);
         if (!chosen) return {};
-        SampledLight sampled{emitters_.sample(chosen.emitter, point, place.x, place.y), chosen.probability};
-        const Source& from = sources_[chosen.emitter];
-        if (from.varies && sampled) {
-            Hit<T> hit;
-            hit.instance = from.instance, hit.element = from.element;
-            const Vec2f& w = sampled.light.weights;
-            hit.u = static_cast<T>(w[0]);
-            hit.v = static_cast<T>(from.turned ? std::max(0.0f, 1 - w[0] - w[1]) : w[1]);
-            sampled.light.radiance = lookups_.emission(hit, {});
+        SampledLight s{emitters_.sample(chosen.emitter, point, place.x, place.y), chosen.probability};
+        if (varies(chosen.emitter) && s) s.light.radiance = emission(chosen.emitter, s.light.weights);
+        return s;
+    }
+    /// The same at the four points where someone asks; no light at the others. (u, v): the places.
+    SampledLightOf<FloatLanes> sample_four(LaneMask asks, const Vec<FloatLanes, 3>& point,
+                                           const Vec<FloatLanes, 3>& normal, const DoubleLanes& choice,
+                                           FloatLanes u, FloatLanes v) const {
+        LightChoice chosen[FloatLanes::count];
+        for (int k = 0; k < FloatLanes::count; ++k)
+            if (asks[k]) chosen[k] = tree_.choose(lane(point, k), lane(normal, k), choice[k]);
+        SampledLightOf<FloatLanes> s{
+            emitters_.sample_four([&](int k) { return chosen[k].emitter; }, point, u, v),
+            FloatLanes::each([&](int k) { return chosen[k].probability; })};
+        const LaneMask vary =
+            s.arrives() && LaneMask::each([&](int k) { return chosen[k] && varies(chosen[k].emitter); });
+        if (any(vary)) {
+            const auto looked_up = each_vector<FloatLanes>([&](int k) {
+                return vary[k] ? emission(chosen[k].emitter, {s.light.weights[0][k], s.light.weights[1][k]})
+                               : Vec3f();
+            });
+            s.light.radiance = select(vary, looked_up, s.light.radiance);
         }
-        return sampled;
+        return s;
     }
     /// The density per solid angle with which `sample` finds the place that a ray from the point has hit; 0
     /// if no light is there. The direction has length 1. O(log lights).
@@ -99,6 +117,16 @@ private:
         std::uint32_t instance = 0, element = 0;
     };
 
+    /// Whether a texture varies the emission of an emitter, and the emission by the weights of its corners.
+    bool varies(std::uint32_t emitter) const { return sources_[emitter].varies; }
+    Vec3f emission(std::uint32_t emitter, const Vec2f& weights) const {
+        const Source& from = sources_[emitter];
+        Hit<T> hit;
+        hit.instance = from.instance, hit.element = from.element;
+        hit.u = static_cast<T>(weights[0]);
+        hit.v = static_cast<T>(from.turned ? std::max(0.0f, 1 - weights[0] - weights[1]) : weights[1]);
+        return lookups_.emission(hit, {});
+    }
     void note(std::uint32_t emitter, const Source& source) {
         if (emitter == no_emitter) return;
         sources_.push_back(source);

@@ -12,13 +12,14 @@
 namespace hedgerow {
 
 /// What leaves a rough surface after one reflection, for two reflectances of the microfacets.
+template <class F>
 struct GgxAlbedo {
-    float white = 1;    ///< for 1
-    float grazing = 0;  ///< for (1 − cos)⁵
+    F white = 1;    ///< for 1
+    F grazing = 0;  ///< for (1 − cos)⁵
 
-    static GgxAlbedo of_mirror(float cosine) { return {1, fifth_power(1 - cosine)}; }
+    static GgxAlbedo of_mirror(F cosine) { return {1, fifth_power(1 - cosine)}; }
     static GgxAlbedo of_mirror_average() { return {1, 1.0f / 21}; }
-    Vec3f with(const SchlickFresnel& fresnel) const { return fresnel.of_bend(grazing, white); }
+    Vec<F, 3> with(const SchlickFresnelOf<F>& fresnel) const { return fresnel.of_bend(grazing, white); }
 };
 
 /// Tables of albedos, 70 KB. The constructor computes them, in about 0.2 s with one thread; one object serves
@@ -45,31 +46,48 @@ public:
         }
     }
 
-    GgxAlbedo ggx(float roughness, float cosine) const {
-        return {white_.at(roughness, cosine), grazing_.at(roughness, cosine)};
+    template <class F>
+    GgxAlbedo<F> ggx(F roughness, F cosine) const {
+        const auto in = [&](const GgxTable& table) {
+            return each_lane<F>([&](int k) { return table.at(lane(roughness, k), lane(cosine, k)); });
+        };
+        return {in(white_), in(grazing_)};
     }
-    GgxAlbedo ggx_average(float roughness) const {
-        return {white_.average(roughness), grazing_.average(roughness)};
+    template <class F>
+    GgxAlbedo<F> ggx_average(F roughness) const {
+        const auto in = [&](const GgxTable& table) {
+            return each_lane<F>([&](int k) { return table.average(lane(roughness, k)); });
+        };
+        return {in(white_), in(grazing_)};
     }
     /// The albedo of glass from one side: of reflected and refracted light. `eta` is the index of refraction
     /// beyond the surface over that before it. Indices beyond 3.74, and below its reciprocal, have the
     /// albedos of these.
-    float glass(float roughness, float cosine, float eta) const {
-        const BetweenPlaces k = place(eta);
-        const auto& side = eta < 1 ? out_ : into_;
-        return k.mix(side[k.low].at(roughness, cosine), side[k.low + 1].at(roughness, cosine));
+    template <class F>
+    F glass(F roughness, F cosine, F eta) const {
+        return each_lane<F>([&](int k) {
+            return of_index(lane(eta, k), [&](const GlassTable& table) {
+                return table.at(lane(roughness, k), lane(cosine, k));
+            });
+        });
     }
-    float glass_average(float roughness, float eta) const {
-        const BetweenPlaces k = place(eta);
-        const auto& side = eta < 1 ? out_ : into_;
-        return k.mix(side[k.low].average(roughness), side[k.low + 1].average(roughness));
+    template <class F>
+    F glass_average(F roughness, F eta) const {
+        return each_lane<F>([&](int k) {
+            return of_index(lane(eta, k),
+                            [&](const GlassTable& table) { return table.average(lane(roughness, k)); });
+        });
     }
     /// The share of light from all directions that a smooth surface of glass refracts. From the denser side
     /// that share is less by the square of the index.
-    float refracted_average(float eta) const {
-        const BetweenPlaces k = place(eta);
-        const float into = k.mix(refracted_[k.low], refracted_[k.low + 1]);
-        return eta < 1 ? product(into, product(eta, eta)) : into;
+    template <class F>
+    F refracted_average(F eta) const {
+        return each_lane<F>([&](int k) {
+            const float e = lane(eta, k);
+            const BetweenPlaces at = place(e);
+            const float into = at.mix(refracted_[at.low], refracted_[at.low + 1]);
+            return e < 1 ? product(into, product(e, e)) : into;
+        });
     }
 
 private:
@@ -88,6 +106,13 @@ private:
             for (std::size_t c = 0; c < GlassTable::columns; ++c)
                 all[r].emplace_back(GlassTable::roughness(r), GlassTable::cosine(c));
         return all;
+    }
+    /// What f returns for the tables of an index, linear between them.
+    template <class Of>
+    float of_index(float eta, Of f) const {
+        const BetweenPlaces k = place(eta);
+        const auto& side = eta < 1 ? out_ : into_;
+        return k.mix(f(side[k.low]), f(side[k.low + 1]));
     }
     static BetweenPlaces place(float eta) {
         const float dense = eta < 1 ? 1 / eta : eta;

@@ -4,32 +4,33 @@
 #include <algorithm>
 #include <cmath>
 
-#include <hedgerow/geometry/vec.h>
+#include <hedgerow/geometry/number_lanes.h>
 
 namespace hedgerow {
 
-/// Three orthogonal directions of length 1, the third of which is a given normal.
+/// Three orthogonal directions of length 1, the third of which is a given normal. F is float or FloatLanes.
+template <class F>
 class Frame {
 public:
     /// The frame of a normal of length 1 (Duff et al., Building an orthonormal basis, revisited, JCGT 2017).
-    explicit Frame(const Vec3f& normal) : normal_(normal) {
-        const float sign = normal[2] < 0 ? -1.0f : 1.0f;
-        const float a = -1 / (sign + normal[2]), b = product(product(normal[0], normal[1]), a);
+    explicit Frame(const Vec<F, 3>& normal) : normal_(normal) {
+        const F sign = select(normal[2] < 0, F(-1), F(1));
+        const F a = -1 / (sign + normal[2]), b = product(product(normal[0], normal[1]), a);
         tangent_ = {1 + sign * product(product(normal[0], normal[0]), a), sign * b, -sign * normal[0]};
         bitangent_ = {b, sign + product(product(normal[1], normal[1]), a), -normal[1]};
     }
 
-    const Vec3f& normal() const { return normal_; }
+    const Vec<F, 3>& normal() const { return normal_; }
     /// The components of a direction along the frame. The third is along the normal.
-    Vec3f to_local(const Vec3f& world) const {
+    Vec<F, 3> to_local(const Vec<F, 3>& world) const {
         return {dot(tangent_, world), dot(bitangent_, world), dot(normal_, world)};
     }
-    Vec3f to_world(const Vec3f& local) const {
+    Vec<F, 3> to_world(const Vec<F, 3>& local) const {
         return tangent_ * local[0] + bitangent_ * local[1] + normal_ * local[2];
     }
 
 private:
-    Vec3f tangent_, bitangent_, normal_;
+    Vec<F, 3> tangent_, bitangent_, normal_;
 };
 
 /// The shading normal itself, if the mirror reflection of `o` about it stays above the surface. Otherwise
@@ -63,10 +64,12 @@ inline Vec3f usable_normal(const Vec3f& shading, const Vec3f& geometric, const V
 /// shading normal that leans to the light shows it up to that horizon, and faces end in bright edges (Chiang,
 /// Li and Burley, Taming the shadow terminator, SIGGRAPH Talks 2019). All have length 1, and i lies on the
 /// side of both normals.
-inline float share_at_terminator(const Vec3f& shading, const Vec3f& geometric, const Vec3f& i) {
-    if (shading == geometric) return 1;
-    const float g = dot(geometric, i) / product(dot(shading, i), dot(shading, geometric));
-    return g < 1 ? product(g, 1 + product(g, 1 - g)) : 1;
+template <class F>
+F share_at_terminator(const Vec<F, 3>& shading, const Vec<F, 3>& geometric, const Vec<F, 3>& i) {
+    const auto differ = !equal(shading, geometric);
+    if (!any(differ)) return 1;
+    const F g = dot(geometric, i) / product(dot(shading, i), dot(shading, geometric));
+    return select(differ && g < 1, product(g, 1 + product(g, 1 - g)), 1);
 }
 
 }  // namespace hedgerow

@@ -3,10 +3,6 @@
 /// normal along z.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
-#include <hedgerow/geometry/vec.h>
 #include <hedgerow/render/sampling/warps.h>
 
 namespace hedgerow {
@@ -14,52 +10,51 @@ namespace hedgerow {
 /// The distribution for one α, the same in all directions around z. α is in (0, 1].
 ///
 /// With s(μ) = √(μ² + α²(1 − μ²)), Smith's Λ is (s/μ − 1)/2. Formulas are written with s, which is never 0,
-/// so that grazing directions divide nothing by 0.
-class Ggx {
+/// so that grazing directions divide nothing by 0. F is float or FloatLanes.
+template <class F>
+class GgxOf {
 public:
-    explicit Ggx(float alpha) : alpha_(alpha), alpha2_(product(alpha, alpha)) {}
+    explicit GgxOf(F alpha) : alpha_(alpha), alpha2_(product(alpha, alpha)) {}
 
     /// The area of microfacets with normal h, a direction of length 1, per area of surface and solid angle.
-    float distribution(const Vec3f& h) const {
-        if (!(h[2] > 0)) return 0;
-        const float flat = product(h[0], h[0]) + product(h[1], h[1]);
-        const float spread = flat + product(alpha2_, product(h[2], h[2]));
-        return alpha2_ * inverse_pi_f / product(spread, spread);
+    F distribution(const Vec<F, 3>& h) const {
+        const F flat = product(h[0], h[0]) + product(h[1], h[1]);
+        const F spread = flat + product(alpha2_, product(h[2], h[2]));
+        return only(h[2] > 0, alpha2_ * inverse_pi_f / product(spread, spread));
     }
-    float lambda(float cosine) const { return (slant(cosine) / cosine - 1) / 2; }
-    float slant(float cosine) const {
-        return std::sqrt(product(cosine, cosine) + product(alpha2_, product(1 - cosine, 1 + cosine)));
+    F lambda(F cosine) const { return (slant(cosine) / cosine - 1) / 2; }
+    F slant(F cosine) const {
+        return root(product(cosine, cosine) + product(alpha2_, product(1 - cosine, 1 + cosine)));
     }
     /// G₂/(4 μo μi) for cosines μ > 0, or for those of a refraction, with the height-correlated shadowing
     /// G₂ = 1/(1 + Λo + Λi) (Heitz, Understanding the masking-shadowing function, JCGT 2014).
-    float visibility(float o, float i) const {
-        return 1 / (2 * (product(slant(o), i) + product(slant(i), o)));
-    }
+    F visibility(F o, F i) const { return 1 / (2 * (product(slant(o), i) + product(slant(i), o))); }
     /// G₂/G₁(o): what is left of light that a visible mirror sends to i.
-    float unshadowed(float o, float i) const {
-        const float s = slant(o);
+    F unshadowed(F o, F i) const {
+        const F s = slant(o);
         return product(i, o + s) / (product(s, i) + product(slant(i), o));
     }
 
     /// The density of visible_normal, per solid angle of the normal, over 4 dot(o, h). It is the density of
     /// the direction to which the microfacet reflects o.
-    float reflected_density(const Vec3f& o, const Vec3f& h) const {
+    F reflected_density(const Vec<F, 3>& o, const Vec<F, 3>& h) const {
         return distribution(h) / (2 * (o[2] + slant(o[2])));
     }
     /// The normal of a microfacet that o sees, with density 4 dot(o, h)·reflected_density (Dupuy and
     /// Benyoub, Sampling visible GGX normals with spherical caps, HPG 2023). o[2] ≥ 0. Always above the plane
     /// z = 0, short of rounding.
-    Vec3f visible_normal(const Vec3f& o, float u, float v) const {
-        const Vec3f stretched = normalized(Vec3f(alpha_ * o[0], alpha_ * o[1], o[2]));
-        const float z = product(1 - v, 1 + stretched[2]) - stretched[2];
-        const float sine = std::sqrt(std::max(product(1 - z, 1 + z), 0.0f));
-        const Vec3f h = direction_around_z(u, sine, z) + stretched;
-        const Vec3f normal(alpha_ * h[0], alpha_ * h[1], std::max(h[2], 0.0f));
-        return length2(normal) > 0 ? normalized(normal) : Vec3f(0, 0, 1);
+    Vec<F, 3> visible_normal(const Vec<F, 3>& o, F u, F v) const {
+        const auto stretched = normalized(Vec<F, 3>(alpha_ * o[0], alpha_ * o[1], o[2]));
+        const F z = product(1 - v, 1 + stretched[2]) - stretched[2];
+        const F sine = root(greater(product(1 - z, 1 + z), 0));
+        const auto h = direction_around_z(u, sine, z) + stretched;
+        const Vec<F, 3> normal(alpha_ * h[0], alpha_ * h[1], greater(h[2], 0));
+        return select(length2(normal) > 0, normalized(normal), Vec<F, 3>(0, 0, 1));
     }
 
 private:
-    float alpha_, alpha2_;
+    F alpha_, alpha2_;
 };
+using Ggx = GgxOf<float>;
 
 }  // namespace hedgerow

@@ -15,6 +15,8 @@ public:
     virtual Box<T, 3> bounds() const = 0;
     /// The normal at a hit of a ray, of length 1, on the side that the ray comes from. O(1).
     virtual Vec<T, 3> normal(const Ray<T, 3>& ray, const Hit<T>& hit) const = 0;
+    /// The box of the primitive that was hit, or of its instance. O(1).
+    virtual Box<T, 3> bounds(const Hit<T>& hit) const = 0;
     /// The origin of rays that leave a hit on the side of this normal (geometry/offset.h). O(1).
     virtual Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const = 0;
 };
@@ -35,18 +37,17 @@ public:
         const Vec<T, 3> n = hedgerow::normal(primitives_, ray, hit);
         return dot(n, ray.direction) > 0 ? -n : n;
     }
-    Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const override {
-        return offset_origin(ray, hit.t, box_of(hit), normal, normal);
-    }
-
-private:
-    Box<T, 3> box_of(const Hit<T>& hit) const {
+    Box<T, 3> bounds(const Hit<T>& hit) const override {
         if constexpr (Instanced<ViewOf<P>>)
             return primitives_.bounds(hit.instance);
         else
             return primitives_.bounds(hit.element);
     }
+    Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const override {
+        return offset_origin(ray, hit.t, bounds(hit), normal, normal);
+    }
 
+private:
     ViewOf<P> primitives_;
 };
 

@@ -42,6 +42,7 @@ public:
     Vec<T, 3> normal(const Ray<T, 3>& ray, const Hit<T>& hit) const override {
         return SurfacesOf(seen_).normal(ray, among_seen(hit));
     }
+    Box<T, 3> bounds(const Hit<T>& hit) const override { return SurfacesOf(seen_).bounds(among_seen(hit)); }
     Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const override {
         return SurfacesOf(seen_).origin(ray, among_seen(hit), normal);
     }
