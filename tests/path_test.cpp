@@ -201,6 +201,24 @@ TYPED_TEST(Paths, HaveTheSameBitsHoweverManyAreFollowedAtOnce) {
     }
 }
 
+/// Tables of compensation are computed only where they change a path (Values.TablesChangeNothing...).
+TEST(PathSurfaces, HaveFacetsWhereRoughOnesReflectOrTransmit) {
+    const auto have = [](float roughness, float metallic, float specular, float transmission) {
+        Material m = matte(Vec3f::all(0.5f));
+        m.roughness = roughness, m.metallic = metallic, m.specular = specular, m.transmission = transmission;
+        const auto model = model_of<float>({{square<float>(1, 0), matte({})}, {square<float>(1, 1), m}});
+        const ModelScene<float> scene(model, serial_executor());
+        return PathSurfaces<float>(scene).has_facets();
+    };
+    EXPECT_FALSE(have(1, 0, 0, 0));
+    EXPECT_FALSE(have(0, 1, 1, 1));
+    for (const float roughness : {0.01f, 1.0f}) {
+        EXPECT_TRUE(have(roughness, 0.1f, 0, 0));
+        EXPECT_TRUE(have(roughness, 0, 0.1f, 0));
+        EXPECT_TRUE(have(roughness, 0, 0, 0.1f));
+    }
+}
+
 /// The Gaussian's samples have its deviation within three of them, and blur an edge of the picture by as
 /// much.
 TEST(PixelFilters, HaveTheirShape) {

@@ -151,6 +151,21 @@ TEST(Values, CoatOfNoStrengthIsMatte) {
     EXPECT_FALSE(s.only_specular());
 }
 
+TEST(Values, TablesChangeNothingWithoutRoughFacets) {
+    for (const SurfaceMaterial& m :
+         {matte({0.9f, 0.6f, 0.2f}), metal(0), coated(0), glass(0), thin(0), mixed(0)})
+        for (int k = 0; k < 200; ++k) {
+            const auto [choice, u, v] = even_point(k);
+            const Vec3f o = cosine_direction(v, choice), i = sphere_direction(u, choice);
+            const Scattering with(m, o, k % 2 == 0, &tables()), without(m, o, k % 2 == 0, nullptr);
+            EXPECT_EQ(with.value(i), without.value(i));
+            EXPECT_EQ(with.density(i), without.density(i));
+            const auto to = with.sample(choice, u, v), other = without.sample(choice, u, v);
+            ASSERT_EQ(to.exists, other.exists);
+            if (to) EXPECT_TRUE(to.direction == other.direction && to.weight == other.weight);
+        }
+}
+
 TEST(Values, SmoothGlassRefractsBySnell) {
     for (const bool inside : {false, true}) {
         const Vec3f o = direction(0.9, 0);

@@ -104,6 +104,8 @@ private:
 };
 using LaneMask = LaneMaskOf<float>;
 
+/// Four numbers with the arithmetic of one: a T is that number in all lanes. `lesser` and `greater` return a
+/// where one of both is NaN.
 template <std::floating_point T>
 class NumberLanes {
 public:
@@ -200,6 +202,7 @@ private:
     static Mask mask(F f, const A&... a) {
         return Mask(Mask::Bits::of(f, a.v_...));
     }
+
     Registers v_;
 };
 
@@ -247,7 +250,7 @@ auto in_float(const Vec<D, 3>& a) {
     return Vec<decltype(in_float(a[0])), 3>(in_float(a[0]), in_float(a[1]), in_float(a[2]));
 }
 
-/// The same of single numbers. `lesser` and `greater` return a where one of both is NaN.
+/// The same of single numbers.
 constexpr bool any(bool b) {
     return b;
 }

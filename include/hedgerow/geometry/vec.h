@@ -16,11 +16,11 @@ namespace hedgerow {
 template <class T>
 inline constexpr bool is_number = std::floating_point<T>;
 template <class T>
-concept Number = is_number<T>;
+concept VecNumber = is_number<T>;
 
 /// A point or direction with D components of type T (float or double). D is 2 or 3, or 1 on a line, where
 /// only points exist.
-template <Number T, int D>
+template <VecNumber T, int D>
 struct Vec {
     using Scalar = T;
     static constexpr int dimension = D;

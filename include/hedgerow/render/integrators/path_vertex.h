@@ -58,9 +58,13 @@ public:
         for (const Material& m : scene.lookups().model().materials) {
             absorptions_.push_back(absorption_of(m));
             has_holes_ |= m.alpha_mode != AlphaMode::opaque;
+            has_facets_ |= m.roughness > 0 && (m.metallic > 0 || m.specular > 0 || m.transmission > 0);
         }
     }
 
+    /// Whether light may be lost between the facets of rough surfaces. Otherwise Compensation changes
+    /// nothing.
+    bool has_facets() const { return has_facets_; }
     /// Whether rays may go through parts of surfaces that are masked or blended; and whether a ray meets the
     /// surface at a hit. A surface of opacity α is there for that share of the keys.
     bool has_holes() const { return has_holes_; }
@@ -149,7 +153,7 @@ private:
 
     const ModelScene<T>& scene_;
     std::vector<Vec3f> absorptions_;  // by material
-    bool has_holes_ = false;
+    bool has_holes_ = false, has_facets_ = false;
 };
 
 }  // namespace hedgerow

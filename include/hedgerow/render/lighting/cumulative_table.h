@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -45,29 +44,41 @@ inline double share_of_entry(std::span<const double> sums, std::size_t entry) {
     return sums[entry + 1] - sums[entry];
 }
 
-/// The entries i in which places of [0, 1) lie, each in a table of its own: place in [sums[i], sums[i + 1]).
-/// All tables have `entries` entries, whose shares are not all 0. Halves the tables without branches, which
-/// random places would make hard to predict, and side by side, since each step waits for a load. O(log
-/// entries).
-template <std::size_t count>
-std::array<std::size_t, count> entries_at(const std::array<const double*, count>& sums, std::size_t entries,
-                                          const std::array<double, count>& places) {
-    std::array<std::size_t, count> first{};
-    for (std::size_t left = entries; left > 1;) {
+/// An entry for each number of D, which is double or DoubleLanes, and where in [0, 1) the number lies within
+/// the entry's share.
+template <class D>
+struct TableChoices {
+    std::size_t entries[number_count<D>] = {};
+    D within;
+};
+
+/// Chooses entry i where u is in [sums[i], sums[i + 1]), so never one whose share is 0; of number k of u by
+/// the table sums(k). All tables have `count` entries, whose shares are not all 0. Halves the tables without
+/// branches, which random numbers would make hard to predict, and side by side, since each step waits for a
+/// load. O(log count).
+template <class D, class Sums>
+TableChoices<D> choose_entries(const Sums& sums, std::size_t count, const D& u) {
+    const D place = in_unit_interval(u);
+    const double* tables[number_count<D>];
+    double places[number_count<D>];
+    for (int k = 0; k < number_count<D>; ++k) tables[k] = sums(k), places[k] = lane(place, k);
+    TableChoices<D> chosen;
+    for (std::size_t left = count; left > 1;) {
         const std::size_t half = left / 2;
-        for (std::size_t k = 0; k < count; ++k) first[k] += sums[k][first[k] + half] <= places[k] ? half : 0;
+        for (int k = 0; k < number_count<D>; ++k)
+            chosen.entries[k] += tables[k][chosen.entries[k] + half] <= places[k] ? half : 0;
         left -= half;
     }
-    return first;
+    const D low = each_lane<D>([&](int k) { return tables[k][chosen.entries[k]]; }),
+            high = each_lane<D>([&](int k) { return tables[k][chosen.entries[k] + 1]; });
+    chosen.within = in_unit_interval((place - low) / (high - low));
+    return chosen;
 }
-
-/// Chooses entry i where u is in [sums[i], sums[i + 1]), so never one whose share is 0. The shares must not
-/// all be 0. O(log entries).
+/// Chooses an entry of one table.
 inline TableChoice choose_entry(std::span<const double> sums, double u) {
-    const double place = in_unit_interval(u);
-    const std::size_t entry = entries_at<1>({sums.data()}, sums.size() - 1, {place})[0];
-    const double share = share_of_entry(sums, entry);
-    return {static_cast<std::uint32_t>(entry), share, in_unit_interval((place - sums[entry]) / share)};
+    const auto chosen = choose_entries([&](int) { return sums.data(); }, sums.size() - 1, u);
+    const std::size_t entry = chosen.entries[0];
+    return {static_cast<std::uint32_t>(entry), share_of_entry(sums, entry), chosen.within};
 }
 
 /// Entries with their shares. An empty table has no entry to choose.

@@ -98,21 +98,15 @@ public:
     template <class Which>
     LightSampleOf<FloatLanes> sample_four(const Which& which, const Vec<FloatLanes, 3>& point, FloatLanes u,
                                           FloatLanes v) const {
-        LightSampleOf<FloatLanes> s;
         const auto emitter = [&](int k) { return which(k) == no_emitter ? nullptr : &emitters_[which(k)]; };
-        const auto are = [&](auto has) {
-            return LaneMask::each([&](int k) { return emitter(k) && has(*emitter(k)); });
-        };
-        const LaneMask triangles =
-                           are([](const Emitter&e) { return std::holds_alternative<EmissiveTriangle>(e); }),
-                       skies =
-                           are([](const Emitter&e) { return std::holds_alternative<EnvironmentEmitter>(e); }),
-                       others = are([](const Emitter&) { return true; }) && !triangles && !skies;
+        const LaneMask triangles = lanes_of<EmissiveTriangle>(emitter),
+                       skies = lanes_of<EnvironmentEmitter>(emitter);
+        LightSampleOf<FloatLanes> s;
         if (any(triangles))
             s = select(triangles, triangles_in_lanes(emitter, triangles).sample(point, u, v), s);
         if (any(skies)) s = select(skies, from_environment(environment_->sample(u, v)), s);
-        for (int k = 0; k < FloatLanes::count && any(others); ++k)
-            if (others[k])
+        for (int k = 0; k < FloatLanes::count; ++k)
+            if (emitter(k) && !triangles[k] && !skies[k])
                 s = select(LaneMask::each([k](int i) { return i == k; }),
                            in_all_lanes(sample(which(k), lane(point, k), u[k], v[k])), s);
         return s;
@@ -187,6 +181,11 @@ private:
     static LightSampleOf<F> from_environment(const EnvironmentSampleOf<F>& s) {
         constexpr float infinity = std::numeric_limits<float>::infinity();
         return {s.direction, infinity, infinity, s.radiance, s.density, MaskOf<F>(false), {}};
+    }
+    /// Which of four emitters are of a kind.
+    template <class Kind, class Of>
+    static LaneMask lanes_of(const Of& emitter) {
+        return LaneMask::each([&](int k) { return emitter(k) && std::holds_alternative<Kind>(*emitter(k)); });
     }
     /// The triangles of four emitters; of those that are none, some triangle.
     template <class Of>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -92,14 +91,14 @@ public:
     EnvironmentSampleOf<F> sample(F u, F v) const {
         if (!lit()) return {};
         using D = WideOf<F>;
-        const Cells<D> row = choose_cells([&](int) { return row_sums_.data(); }, rows_, D(v));
-        const Cells<D> column =
-            choose_cells([&](int k) { return sums_of_row(row.at(k)).data(); }, columns_, D(u));
-        const D top = each_lane<D>([&](int k) { return cosines_[row.at(k)]; }),
-                bottom = each_lane<D>([&](int k) { return cosines_[row.at(k) + 1]; });
+        const auto row = choose_entries([&](int) { return row_sums_.data(); }, rows_, D(v));
+        const auto column =
+            choose_entries([&](int k) { return sums_of_row(row.entries[k]).data(); }, columns_, D(u));
+        const D top = each_lane<D>([&](int k) { return cosines_[row.entries[k]]; }),
+                bottom = each_lane<D>([&](int k) { return cosines_[row.entries[k] + 1]; });
         const D height = top + product(bottom - top, row.within);
         const D radius = root(greater(D(0), product(1 - height, 1 + height)));
-        const D first = each_lane<D>([&](int k) { return static_cast<double>(column.at(k)); });
+        const D first = each_lane<D>([&](int k) { return static_cast<double>(column.entries[k]); });
         const auto around =
             sine_cosine_of_turns(in_float((first + column.within) / static_cast<double>(columns_)));
         return at(
@@ -132,32 +131,6 @@ private:
         };
         return in_float(normalized(Vec<D, 3>(across(0), across(1), across(2))));
     }
-    /// An entry for each number of D, and the place of the number within the entry's share.
-    template <class D>
-    struct Cells {
-        std::array<std::size_t, static_cast<std::size_t>(number_count<D>)> entries;
-        D within;
-
-        std::size_t at(int k) const { return entries[static_cast<std::size_t>(k)]; }
-    };
-    /// Chooses entries as choose_entry does, number k by the table `sums(k)`.
-    template <class D, class Sums>
-    static Cells<D> choose_cells(const Sums& sums, std::size_t entries, const D& u) {
-        constexpr auto count = static_cast<std::size_t>(number_count<D>);
-        const D place = in_unit_interval(u);
-        std::array<const double*, count> tables;
-        std::array<double, count> places;
-        for (std::size_t k = 0; k < count; ++k)
-            tables[k] = sums(static_cast<int>(k)), places[k] = lane(place, static_cast<int>(k));
-        Cells<D> c{entries_at<count>(tables, entries, places), {}};
-        const auto table_at = [&](std::size_t next) {
-            return each_lane<D>([&](int k) { return tables[static_cast<std::size_t>(k)][c.at(k) + next]; });
-        };
-        const D low = table_at(0);
-        c.within = in_unit_interval((place - low) / (table_at(1) - low));
-        return c;
-    }
-
     std::span<const double> sums_of_row(std::size_t row) const {
         return std::span(column_sums_).subspan(row * (columns_ + 1), columns_ + 1);
     }
