@@ -162,7 +162,7 @@ TEST(Values, TablesChangeNothingWithoutRoughFacets) {
             EXPECT_EQ(with.density(i), without.density(i));
             const auto to = with.sample(choice, u, v), other = without.sample(choice, u, v);
             ASSERT_EQ(to.exists, other.exists);
-            if (to) EXPECT_TRUE(to.direction == other.direction && to.weight == other.weight);
+            EXPECT_TRUE(!to || (to.direction == other.direction && to.weight == other.weight));
         }
 }
 
