@@ -65,8 +65,7 @@ void check(std::uint32_t samples, const PathPictureOptions& o) {
     if (samples < 1) throw InputError("a picture needs at least one sample a pixel");
 }
 
-/// The tables of compensation, which are the same for all pictures. Computed at the first use, in 0.1 to 0.2
-/// s.
+/// The tables of compensation, which are the same for all pictures. The first use computes them, in 0.2 s.
 const Compensation& compensation() {
     static const Compensation tables;
     return tables;

@@ -18,7 +18,9 @@ public:
     /// The box of the primitive that was hit, or of its instance. O(1).
     virtual Box<T, 3> bounds(const Hit<T>& hit) const = 0;
     /// The origin of rays that leave a hit on the side of this normal (geometry/offset.h). O(1).
-    virtual Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const = 0;
+    Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const {
+        return offset_origin(ray, hit.t, bounds(hit), normal, normal);
+    }
 };
 
 /// Surfaces of a set of primitives, or of instances. Borrows a set, keeps a view.
@@ -42,9 +44,6 @@ public:
             return primitives_.bounds(hit.instance);
         else
             return primitives_.bounds(hit.element);
-    }
-    Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const override {
-        return offset_origin(ray, hit.t, bounds(hit), normal, normal);
     }
 
 private:

@@ -43,9 +43,6 @@ public:
         return SurfacesOf(seen_).normal(ray, among_seen(hit));
     }
     Box<T, 3> bounds(const Hit<T>& hit) const override { return SurfacesOf(seen_).bounds(among_seen(hit)); }
-    Vec<T, 3> origin(const Ray<T, 3>& ray, const Hit<T>& hit, const Vec<T, 3>& normal) const override {
-        return SurfacesOf(seen_).origin(ray, among_seen(hit), normal);
-    }
 
 private:
     /// The hit with its place among the triangles that are seen as its element.
