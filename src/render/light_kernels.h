@@ -9,10 +9,11 @@
 
 namespace hedgerow {
 
-/// Computes LightGroups::importances. The loop has no branch, so that its rounds become lanes. Products that
-/// feed sums need no care here: the library is compiled without contraction.
-[[gnu::always_inline]] inline void write_importances(const LightGroups& groups, const Vec3f& point,
-                                                     const Vec3f& receiver, double* __restrict found) {
+/// Writes the importances of the first `count` groups. The loop has no branch, so that its rounds become
+/// lanes. Products that feed sums need no care here: the library is compiled without contraction.
+template <std::size_t count>
+[[gnu::always_inline]] inline void write_importances_of(const LightGroups& groups, const Vec3f& point,
+                                                        const Vec3f& receiver, double* __restrict found) {
     // What cosines are raised by. Axes, cosines and sines in float err by about 1e-7.
     constexpr double slack = 1e-5;
     const double px = static_cast<double>(point[0]), py = static_cast<double>(point[1]),
@@ -27,7 +28,7 @@ namespace hedgerow {
     const double *radius = groups.radius.data(), *cosine = groups.cosine.data(), *sine = groups.sine.data(),
                  *cos_emission = groups.cos_emission.data(), *back = groups.back.data(),
                  *most = groups.most_nearness.data(), *intensity = groups.intensity.data();
-    for (std::size_t i = 0; i < LightGroups::width; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         const double x = cx[i] - px, y = cy[i] - py, z = cz[i] - pz;
         // The greatest height of the box above the receiver's horizon.
         const double along_receiver = nx * x + ny * y + nz * z;
@@ -59,6 +60,14 @@ namespace hedgerow {
         const double nearness = inverse2 < most[i] ? inverse2 : most[i];
         found[i] = above * nearness * known;
     }
+}
+/// Computes LightGroups::importances. Two groups, as of a lamp of two triangles, take half as many lanes.
+[[gnu::always_inline]] inline void write_importances(const LightGroups& groups, const Vec3f& point,
+                                                     const Vec3f& receiver, double* __restrict found) {
+    constexpr std::size_t all = LightGroups::width, few = all / 2;
+    if (groups.count > few) return write_importances_of<all>(groups, point, receiver, found);
+    write_importances_of<few>(groups, point, receiver, found);
+    for (std::size_t i = few; i < all; ++i) found[i] = 0;
 }
 
 struct LightKernels {

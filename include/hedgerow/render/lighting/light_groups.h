@@ -30,6 +30,7 @@ struct LightGroups {
         cos_emission[i] = static_cast<double>(b.cos_emission);
         back[i] = b.both_sides ? -1 : 1;
         intensity[i] = b.intensity;
+        count = std::max(count, i + 1);
     }
 
     /// Bounds the light that arrives at a point from each group: intensity · cos · cos / d². The first cosine
@@ -48,6 +49,7 @@ struct LightGroups {
     Lanes cosine{}, sine{}, cos_emission{};
     Lanes back{};  ///< −1 where a light emits alike about the opposite of its normal, else 1
     Lanes intensity{};
+    std::size_t count = 0;  ///< groups from this one on are not set
 };
 
 }  // namespace hedgerow
