@@ -232,9 +232,9 @@ TEST(LightGroups, HaveTheSameImportancesByEveryInstructionSet) {
     const std::vector<Receiver> all = receivers(500, 21);
     std::vector<LightGroups> groups(10);
     for (std::size_t i = 0; i < 40; ++i) groups[i / 4].set(i % 4, emitters.bounds(i));
-    for (std::size_t count = 0; count < 4; ++count) {  // the last without lights
+    for (const std::size_t lights : {3u, 2u, 1u, 0u}) {
         groups.emplace_back();
-        for (std::size_t i = count; i < 3; ++i) groups.back().set(i - count, emitters.bounds(i));
+        for (std::size_t i = 0; i < lights; ++i) groups.back().set(i, emitters.bounds(i));
     }
     const auto importances = [&](std::string_view set) {
         use_instruction_set(set);
@@ -248,6 +248,24 @@ TEST(LightGroups, HaveTheSameImportancesByEveryInstructionSet) {
     for (const std::string_view set : sets) EXPECT_EQ(importances(set), plain) << set;
     use_instruction_set(sets.front());
     EXPECT_EQ(groups.back().importances({1, 2, 3}, {0, 1, 0}), LightGroups::Lanes());
+}
+
+/// Whichever others are set.
+TEST(LightGroups, HaveTheSameImportanceAmongAnyOthers) {
+    const Emitters emitters = mixed_lights(4, 23);
+    std::vector<LightGroups> first(5);  // the first 0 to 4 lights
+    for (std::size_t count = 1; count <= 4; ++count)
+        for (std::size_t i = 0; i < count; ++i) first[count].set(i, emitters.bounds(i));
+    double sum = 0;
+    for (const Receiver& r : receivers(500, 24)) {
+        LightGroups::Lanes expected = first[4].importances(r.point, r.normal);
+        for (const double importance : expected) sum += importance;
+        for (std::size_t count = 4; count-- > 0;) {
+            expected[count] = 0;
+            EXPECT_EQ(first[count].importances(r.point, r.normal), expected) << count;
+        }
+    }
+    EXPECT_GT(sum, 0);
 }
 
 /// From afar, where the distance to the middle is nearly that to all places.
