@@ -70,13 +70,14 @@ TEST(Tides, OfFastMultipolesAreThoseOfPairs) {
     for (const Case& c : cases(1200)) {
         SCOPED_TRACE(c.name);
         std::vector<Vec3d> some, others;
+        std::vector<double> masses;
         for (std::size_t i = 0; i < 1200; i += 24) {
-            some.push_back(c.particles.places[i]);
+            some.push_back(c.particles.places[i]), masses.push_back(c.particles.masses[i]);
             others.push_back(Random(91, i).in_cube<3>());
         }
         std::vector<double> lengths(some.size(), c.softening.length);
         std::vector<Tides> want(some.size()), want_others(some.size()), found(1200);
-        direct_tides<double>(c.view(), Targets<double>(some, lengths), want);
+        direct_tides<double>(c.view(), Targets<double>(some, lengths, masses), want);
         direct_tides<double>(c.view(), others, want_others);
         for (const auto set : instruction_sets()) {
             if (c.period > 0 && set != instruction_sets().front()) continue;  // pairs of all near images

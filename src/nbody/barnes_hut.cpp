@@ -9,17 +9,20 @@ namespace {
 constexpr std::uint32_t group = 48;
 constexpr std::size_t least_charges = 500;  // fewer are summed directly
 
-template <class T>
-void by_groups(const Charges<T>& charges, std::span<PotentialAt<T>> found, const BarnesHutOptions& options,
-               const FmmKernel<float>& kernel, const detail::Units& units, Executor& executor) {
-    detail::Sorted<float, T> sorted(charges, units, group, kernel, executor);
-    FmmCells<float>& cells = sorted.cells;
+/// Whether the precision of R suffices; else nothing is done.
+template <class R, class T>
+bool by_groups(const Charges<T>& charges, std::span<PotentialAt<T>> found, const BarnesHutOptions& options,
+               const FmmKernel<R>& kernel, const detail::Units& units, Executor& executor) {
+    detail::Sorted<R, T> sorted(charges, detail::RepeatingCube(charges), units, group, kernel, executor);
+    if (!sorted.precise_enough()) return false;
+    FmmCells<R>& cells = sorted.cells;
     executor.for_each_piece(cells.size(), 64, [&](std::size_t begin, std::size_t end) {
         kernel.walk_groups(cells, cells, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
                            options.opening_angle, options.quadrupoles);
         executor.look();
     });
     detail::hand_out(sorted, units, found, executor);
+    return true;
 }
 
 /// Without kernels: a walk for each target.
@@ -53,14 +56,15 @@ void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, cons
     const detail::Extremes<T> extremes(charges);  // throws for bad numbers
     const NbodyKernels* const kernels = nbody_kernels();
     if (found.size() < least_charges || (kernels == nullptr && detail::softened(charges)))
-        return direct_sum(charges, Targets<T>(charges.places, charges.lengths), found, threads);
+        return direct_sum(charges, found, threads);
     Executor& executor = threads.over(found.size());
     in_ieee_mode([&] {
         IeeeExecutor ieee(executor);
         if (kernels == nullptr)
             one_by_one(charges, found, options.opening_angle, ieee);
-        else
-            by_groups(charges, found, options, (*kernels->fmm_float)[0], detail::Units(extremes), ieee);
+        else if (const detail::Units units(extremes);
+                 !by_groups(charges, found, options, (*kernels->fmm_float)[0], units, ieee))
+            by_groups(charges, found, options, (*kernels->fmm_double)[0], units, ieee);
     });
 }
 

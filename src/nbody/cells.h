@@ -24,6 +24,9 @@ struct FmmCells {
     BareVector<T> dx, dy, dz, charge, soft;
     SofteningKernel softening = SofteningKernel::wendland;
     bool pairs_in_float = false;  ///< pairs are summed in float, of places in two parts, where T is double
+    /// What roundings of pairs may do at a target: so much of its gradient, or so many of the errors that a
+    /// conversion may make in its leaf, if that is more.
+    double share_of_gradient = 5e-5, share_of_tolerance = 0;
     // Of each cell: its charges, its children (none: a leaf), ...
     std::vector<std::uint32_t> first, count, child, children;
     // ... its center, the radius around its charges, the effective radius of its multipole (how far it
@@ -34,8 +37,10 @@ struct FmmCells {
     std::vector<std::uint32_t> levels;  ///< the first cell of each level, and the number of cells
     BareVector<T> multipoles;           ///< packed numbers of each cell, `multipole_stride` apart
     std::size_t multipole_stride = 0;
-    // In a periodic cube its side, and where its near images are; else nothing, and the cells themselves.
+    // In a periodic cube its side, its middle, and where its near images are; else nothing, and the cells
+    // themselves.
     double side = 0;
+    Vec3d middle;
     std::vector<Vec3d> images{Vec3d()};
     // What is found, by charge.
     BareVector<double> potential, gx, gy, gz;

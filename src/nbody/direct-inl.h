@@ -6,6 +6,9 @@
 #define HEDGEROW_NBODY_DIRECT_INL_H
 #endif
 
+#include <cstddef>
+#include <limits>
+
 #include <hwy/highway.h>
 
 #include <hedgerow/nbody/kernels.h>
@@ -81,73 +84,145 @@ HWY_INLINE void soften(F f, SofteningKernel kernel, M near, V charge, V distance
         hn::IfThenElse(near, hn::Mul(hn::Mul(of_charge, force), hn::Mul(per_reach, per_reach)), of_gradient);
 }
 
-// Adds what sources do to `block` targets. If places are split in two parts, each is summed of its own. The
-// sums stay in registers: with 16 of them for two targets, with 32 for four.
-template <int block, bool softened, bool split, class F, class T = hn::TFromD<F>>
+// How places are given: in one part, or in two. Charges in one place make sums that are not finite, but for
+// `exact`, which takes two parts: bare charges in one place do nothing to each other, softened ones do.
+enum class Pairs { plain, split, exact };
+
+// Adds what sources do to `block` targets. The sums stay in registers: with 16 of them for two targets, with
+// 32 for four.
+template <int block, bool softened, Pairs pairs, class F, class T = hn::TFromD<F>>
+class BlockSums {
+    using V = hn::Vec<F>;
+    static constexpr bool in_two_parts = pairs != Pairs::plain;
+
+public:
+    HWY_INLINE BlockSums(const ChargeRows<T>& sources, const TargetRows<T>& targets, std::size_t at,
+                         SofteningKernel kernel)
+        : sources_(sources), targets_(targets), at_(at), kernel_(kernel) {
+        const F f;
+        for (int i = 0; i < block; ++i) {
+            const std::size_t t = at + static_cast<std::size_t>(i);
+            x_[i] = hn::Set(f, targets.x[t]), y_[i] = hn::Set(f, targets.y[t]);
+            z_[i] = hn::Set(f, targets.z[t]);
+            if constexpr (in_two_parts) {
+                low_x_[i] = hn::Set(f, targets.low_x[t]), low_y_[i] = hn::Set(f, targets.low_y[t]);
+                low_z_[i] = hn::Set(f, targets.low_z[t]);
+            }
+            potential_[i] = gx_[i] = gy_[i] = gz_[i] = hn::Zero(f);
+        }
+        squares_ = hn::Zero(f);
+    }
+
+    // Adds the sources from `first` to `end`. `with_self`: the targets may be among them.
+    template <bool with_self>
+    HWY_INLINE void add(std::size_t first, std::size_t end) {
+        const F f;
+        for (std::size_t s = first; s < end; s += hn::Lanes(f)) {
+            const V sx = hn::LoadU(f, sources_.x + s), sy = hn::LoadU(f, sources_.y + s),
+                    sz = hn::LoadU(f, sources_.z + s), charge = hn::LoadU(f, sources_.charge + s);
+            for (int i = 0; i < block; ++i) {
+                V dx = hn::Sub(sx, x_[i]), dy = hn::Sub(sy, y_[i]), dz = hn::Sub(sz, z_[i]);
+                if constexpr (in_two_parts) {
+                    dx = hn::Add(dx, hn::Sub(hn::LoadU(f, sources_.low_x + s), low_x_[i]));
+                    dy = hn::Add(dy, hn::Sub(hn::LoadU(f, sources_.low_y + s), low_y_[i]));
+                    dz = hn::Add(dz, hn::Sub(hn::LoadU(f, sources_.low_z + s), low_z_[i]));
+                }
+                const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+                V inverse = inverse_root<in_two_parts>(f, r2);
+                // Leave out the target itself, and charges in its place.
+                hn::Mask<F> itself{}, one_place{};
+                if constexpr (with_self) {
+                    const auto own = static_cast<std::ptrdiff_t>(targets_.self + at_) + i;
+                    itself = hn::Eq(hn::Iota(f, T(0)),
+                                    hn::Set(f, static_cast<T>(own - static_cast<std::ptrdiff_t>(s))));
+                    inverse = hn::IfThenZeroElse(itself, inverse);
+                }
+                if constexpr (pairs == Pairs::exact) {
+                    one_place = hn::Eq(r2, hn::Zero(f));
+                    inverse = hn::IfThenZeroElse(one_place, inverse);
+                }
+                V of_potential = hn::Mul(charge, inverse);
+                V of_gradient = hn::Mul(of_potential, hn::Mul(inverse, inverse));
+                if constexpr (softened) {
+                    const V reach = hn::Max(hn::LoadU(f, sources_.reach + s),
+                                            hn::Set(f, targets_.reach[at_ + static_cast<std::size_t>(i)]));
+                    auto near = hn::Lt(r2, hn::Mul(reach, reach));
+                    if constexpr (with_self) near = hn::AndNot(itself, near);
+                    if (HWY_UNLIKELY(!hn::AllFalse(f, near)))
+                        soften(f, kernel_, near, charge, hn::Mul(r2, inverse), reach, of_potential,
+                               of_gradient);
+                }
+                potential_[i] = hn::Add(potential_[i], of_potential);
+                gx_[i] = hn::MulAdd(of_gradient, dx, gx_[i]);
+                gy_[i] = hn::MulAdd(of_gradient, dy, gy_[i]);
+                gz_[i] = hn::MulAdd(of_gradient, dz, gz_[i]);
+                // What the roundings of a pair do to its gradient.
+                if constexpr (pairs == Pairs::split)
+                    squares_ =
+                        hn::MulAdd(hn::Mul(of_gradient, of_gradient),
+                                   hn::Add(r2, hn::Set(f, T(split_distance * split_distance))), squares_);
+                else
+                    squares_ = hn::MulAdd(of_gradient, of_gradient, squares_);
+                if constexpr (pairs == Pairs::exact) {  // distances whose squares vanish are not 0
+                    const auto in_place = hn::Eq(hn::Or(dx, hn::Or(dy, dz)), hn::Zero(f));
+                    squares_ = hn::IfThenElse(hn::AndNot(in_place, one_place),
+                                              hn::Set(f, std::numeric_limits<T>::infinity()), squares_);
+                }
+            }
+        }
+    }
+
+    HWY_INLINE void store() const {
+        const F f;
+        const auto sum = [&](V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, v))); };
+        const double squares = sum(squares_);
+        for (int i = 0; i < block; ++i) {
+            const std::size_t t = at_ + static_cast<std::size_t>(i);
+            if (t >= targets_.count) return;
+            targets_.potential[t] += sum(potential_[i]);
+            targets_.gx[t] += sum(gx_[i]), targets_.gy[t] += sum(gy_[i]), targets_.gz[t] += sum(gz_[i]);
+            targets_.squares[t] += squares;
+        }
+    }
+
+private:
+    const ChargeRows<T>& sources_;
+    const TargetRows<T>& targets_;
+    const std::size_t at_;
+    const SofteningKernel kernel_;
+    V x_[block], y_[block], z_[block], low_x_[block], low_y_[block], low_z_[block];
+    V potential_[block], gx_[block], gy_[block], gz_[block], squares_;
+};
+
+template <int block, bool softened, Pairs pairs, class F, class T = hn::TFromD<F>>
 HWY_INLINE void add_to_block(F f, const ChargeRows<T>& sources, std::size_t first, std::size_t end,
                              const TargetRows<T>& targets, std::size_t at, SofteningKernel kernel) {
-    using V = hn::Vec<F>;
-    V low_x[block], low_y[block], low_z[block];
-    V x[block], y[block], z[block], potential[block], gx[block], gy[block], gz[block];
-    for (int i = 0; i < block; ++i) {
-        const std::size_t t = at + static_cast<std::size_t>(i);
-        x[i] = hn::Set(f, targets.x[t]), y[i] = hn::Set(f, targets.y[t]), z[i] = hn::Set(f, targets.z[t]);
-        if constexpr (split) {
-            low_x[i] = hn::Set(f, targets.low_x[t]), low_y[i] = hn::Set(f, targets.low_y[t]);
-            low_z[i] = hn::Set(f, targets.low_z[t]);
-        }
-        potential[i] = gx[i] = gy[i] = gz[i] = hn::Zero(f);
+    BlockSums<block, softened, pairs, F> sums(sources, targets, at, kernel);
+    // The vectors of sources that hold the targets themselves, if any do.
+    std::size_t own = end, beyond = end;
+    if (targets.self != no_self) {
+        const std::size_t lanes = hn::Lanes(f), begin = targets.self + at;
+        own = HWY_MIN(HWY_MAX(first, begin / lanes * lanes), end);
+        beyond = HWY_MIN(HWY_MAX(own, (begin + block + lanes - 1) / lanes * lanes), end);
     }
-    const V least = hn::Set(f, coincident2<T>);
-    for (std::size_t s = first; s < end; s += hn::Lanes(f)) {
-        const V sx = hn::LoadU(f, sources.x + s), sy = hn::LoadU(f, sources.y + s),
-                sz = hn::LoadU(f, sources.z + s), charge = hn::LoadU(f, sources.charge + s);
-        for (int i = 0; i < block; ++i) {
-            V dx = hn::Sub(sx, x[i]), dy = hn::Sub(sy, y[i]), dz = hn::Sub(sz, z[i]);
-            if constexpr (split) {
-                dx = hn::Add(dx, hn::Sub(hn::LoadU(f, sources.low_x + s), low_x[i]));
-                dy = hn::Add(dy, hn::Sub(hn::LoadU(f, sources.low_y + s), low_y[i]));
-                dz = hn::Add(dz, hn::Sub(hn::LoadU(f, sources.low_z + s), low_z[i]));
-            }
-            const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-            const auto apart = hn::Ge(r2, least);
-            const V inverse = hn::IfThenElseZero(apart, inverse_root<split>(f, r2));
-            V of_potential = hn::Mul(charge, inverse);
-            V of_gradient = hn::Mul(of_potential, hn::Mul(inverse, inverse));
-            if constexpr (softened) {
-                const V reach = hn::Max(hn::LoadU(f, sources.reach + s),
-                                        hn::Set(f, targets.reach[at + static_cast<std::size_t>(i)]));
-                const auto near = hn::And(apart, hn::Lt(r2, hn::Mul(reach, reach)));
-                if (HWY_UNLIKELY(!hn::AllFalse(f, near)))
-                    soften(f, kernel, near, charge, hn::Mul(r2, inverse), reach, of_potential, of_gradient);
-            }
-            potential[i] = hn::Add(potential[i], of_potential);
-            gx[i] = hn::MulAdd(of_gradient, dx, gx[i]);
-            gy[i] = hn::MulAdd(of_gradient, dy, gy[i]);
-            gz[i] = hn::MulAdd(of_gradient, dz, gz[i]);
-        }
-    }
-    const auto sum = [&](V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, v))); };
-    for (int i = 0; i < block; ++i) {
-        const std::size_t t = at + static_cast<std::size_t>(i);
-        if (t >= targets.count) return;
-        targets.potential[t] += sum(potential[i]);
-        targets.gx[t] += sum(gx[i]), targets.gy[t] += sum(gy[i]), targets.gz[t] += sum(gz[i]);
-    }
+    sums.template add<false>(first, own);
+    sums.template add<true>(own, beyond);
+    sums.template add<false>(beyond, end);
+    sums.store();
 }
 
-template <class T, bool split = false>
+template <class T, Pairs pairs = Pairs::plain>
 void direct(const ChargeRows<T>& sources, const TargetRows<T>& targets, SofteningKernel kernel) {
     constexpr int block = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_NEON ? 4 : 2;
-    constexpr std::size_t at_once = split ? 256 : 1024;
+    constexpr std::size_t at_once = pairs == Pairs::plain ? 1024 : 256;
     const hn::ScalableTag<T> f;
     for (std::size_t first = 0; first < sources.count; first += at_once) {
         const std::size_t end = HWY_MIN(sources.count, first + at_once);
         for (std::size_t t = 0; t < targets.count; t += block)
             if (sources.reach == nullptr)
-                add_to_block<block, false, split>(f, sources, first, end, targets, t, kernel);
+                add_to_block<block, false, pairs>(f, sources, first, end, targets, t, kernel);
             else
-                add_to_block<block, true, split>(f, sources, first, end, targets, t, kernel);
+                add_to_block<block, true, pairs>(f, sources, first, end, targets, t, kernel);
     }
 }
 

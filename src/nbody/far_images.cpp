@@ -74,11 +74,12 @@ struct Piece {
     alignas(64) std::array<double, piece> x{}, y{}, z{}, charge{}, potential{}, gx{}, gy{}, gz{};
     std::size_t first, count;
 
-    Piece(const PlaceRows& places, std::size_t begin, double side)
+    Piece(const PlaceRows& places, std::size_t begin, double side, const Vec3d& middle)
         : first(begin), count(std::min(piece, places.count - begin)) {
         for (std::size_t i = 0; i < count; ++i) {
-            x[i] = places.x[first + i] / side - 0.5, y[i] = places.y[first + i] / side - 0.5;
-            z[i] = places.z[first + i] / side - 0.5;
+            x[i] = (places.x[first + i] - middle[0]) / side;
+            y[i] = (places.y[first + i] - middle[1]) / side;
+            z[i] = (places.z[first + i] - middle[2]) / side;
         }
     }
     Vec3d place(std::size_t i) const { return {x[i], y[i], z[i]}; }
@@ -99,16 +100,18 @@ int far_order(double accuracy) {
 }
 
 template <class R>
-FarImages::FarImages(double side, int order, const PlaceRows& places, const R* charges, Executor& executor)
-    : side_(side), order_(order) {
-    // A multipole of each task, then their sum: the same bits for any number of threads.
+FarImages::FarImages(double side, const Vec3d& middle, int order, const PlaceRows& places, const R* charges,
+                     Executor& executor)
+    : side_(side), middle_(middle), order_(order) {
+    // A multipole of each task, then their sum by a tree: the same bits for any number of threads, and for
+    // any way to share the tasks.
     const NbodyKernels* const kernels = nbody_kernels();
     const auto add = kernels != nullptr ? kernels->add_multipole : add_multipole;
     const std::size_t stride = std::size_t(packed_count(order)) + 1, tasks = (places.count + task - 1) / task;
     std::vector<double> all(tasks * stride);
     executor.for_each_piece(tasks, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin * task; i < std::min(places.count, end * task); i += piece) {
-            Piece here(places, i, side);
+            Piece here(places, i, side_, middle_);
             std::copy_n(charges + i, here.count, here.charge.begin());
             double* const of_task = all.data() + i / task * stride;
             add({here.x.data(), here.y.data(), here.z.data(), here.charge.data(), here.count}, order,
@@ -117,8 +120,11 @@ FarImages::FarImages(double side, int order, const PlaceRows& places, const R* c
                 of_task[stride - 1] += here.charge[k] * length2(here.place(k));
         }
     });
+    for (std::size_t apart = 1; apart < tasks; apart *= 2)
+        for (std::size_t i = 0; i + apart < tasks; i += 2 * apart)
+            for (std::size_t k = 0; k < stride; ++k) all[i * stride + k] += all[(i + apart) * stride + k];
     std::vector<double> multipole(stride);
-    for (std::size_t i = 0; i < all.size(); ++i) multipole[i % stride] += all[i];
+    if (tasks > 0) std::copy_n(all.begin(), stride, multipole.begin());
     const double second = multipole.back();  // Σ q·|y|²
     multipole.pop_back();
     local_ = converted(multipole, order);
@@ -135,7 +141,7 @@ void FarImages::act(const TargetRows<double>& targets, Executor& executor) const
     const PlaceRows places{targets.x, targets.y, targets.z, targets.count};
     executor.for_each_piece((places.count + piece - 1) / piece, 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin * piece; i < std::min(places.count, end * piece); i += piece) {
-            Piece here(places, i, side_);
+            Piece here(places, i, side_, middle_);
             const TargetRows<double> rows{here.x.data(),  here.y.data(),         here.z.data(),
                                           here.count,     here.potential.data(), here.gx.data(),
                                           here.gy.data(), here.gz.data()};
@@ -161,7 +167,7 @@ void FarImages::bend(const PlaceRows& places, const TideRows& tides, Executor& e
     const double unit = 1 / (side_ * side_ * side_), even = 2 * third * charge_ * unit;
     executor.for_each_piece((places.count + piece - 1) / piece, 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin * piece; i < std::min(places.count, end * piece); i += piece) {
-            const Piece here(places, i, side_);
+            const Piece here(places, i, side_, middle_);
             const TideRows rows = tides.from(i);
             add_local_tides(local_.data(), order_ + 1, here.x.data(), here.y.data(), here.z.data(),
                             here.count, unit, add, rows);
@@ -170,7 +176,7 @@ void FarImages::bend(const PlaceRows& places, const TideRows& tides, Executor& e
     });
 }
 
-template FarImages::FarImages(double, int, const PlaceRows&, const float*, Executor&);
-template FarImages::FarImages(double, int, const PlaceRows&, const double*, Executor&);
+template FarImages::FarImages(double, const Vec3d&, int, const PlaceRows&, const float*, Executor&);
+template FarImages::FarImages(double, const Vec3d&, int, const PlaceRows&, const double*, Executor&);
 
 }  // namespace hedgerow::detail

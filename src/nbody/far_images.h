@@ -23,13 +23,13 @@ struct PlaceRows {
 /// and its opposite are as far from the middle of the list, where the cube itself is.
 std::vector<Vec3d> near_image_places(double side);
 
-/// Charges in a periodic cube, from 0 to its side along each axis, and as much of the opposite charge, spread
-/// evenly.
+/// Charges in a periodic cube, and as much of the opposite charge, spread evenly.
 class FarImages {
 public:
     /// `order` is that of the cube's multipole. R is float or double. O(charges · order²).
     template <class R>
-    FarImages(double side, int order, const PlaceRows& places, const R* charges, Executor& executor);
+    FarImages(double side, const Vec3d& middle, int order, const PlaceRows& places, const R* charges,
+              Executor& executor);
     /// Adds what far images and the even charge do. O(targets · order²).
     void act(const TargetRows<double>& targets, Executor& executor) const;
     /// Adds their tidal tensors.
@@ -37,6 +37,7 @@ public:
 
 private:
     double side_, charge_ = 0;
+    Vec3d middle_;
     int order_;
     Vec3d dipole_;
     std::vector<double> local_;  // packed, of order + 1

@@ -14,10 +14,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <hedgerow/geometry/elementary_parts.h>
 
 #include "any_order-inl.h"
 #include "direct-inl.h"
 #include "moments-inl.h"
+#include "plain_pairs.h"
 #include "points-inl.h"
 #include "tides-inl.h"
 
@@ -216,7 +220,7 @@ private:
         if (by_points) {
             (source_larger ? large_leaves_ : small_).push_back(acting);
         } else if (targets_.is_leaf(c) && sources_.is_leaf(source)) {
-            // Charges in one place do nothing to each other, however many they are.
+            // Charges in one place are no pairs, however many they are (`add_pile`).
             if (!is_itself(c, acting) || targets_.radius[c] > 0) near_.push_back(acting);
         } else if (source_larger) {
             for (std::uint32_t i = 0; i < targets_.children[c]; ++i)
@@ -403,24 +407,90 @@ private:
     void finish(std::uint32_t c, const T* local) {
         const T per_unit = 1 / targets_.scale[c];
         place_targets(c, per_unit, targets_in_);
-        sums_.assign(4 * (targets_.count[c] + row_padding), 0.0);
+        add_expansions(c, local);
+        sums_.assign(5 * row_of(c), 0.0);
         if (!sources_.pairs_in_float) {
             sum_pairs(c, gather(c, near_, per_unit, sources_in_), sources_in_, targets_in_);
         } else if constexpr (!std::is_same_v<T, float>) {
             place_targets(c, per_unit, float_targets_);
             sum_pairs(c, gather(c, near_, per_unit, float_sources_), float_sources_, float_targets_);
         }
-        add_expansions(c, local, per_unit);
+        add_pairs(c, static_cast<double>(per_unit));
+        if (alone_ && !(targets_.radius[c] > 0) && !sources_.soft.empty()) {
+            const std::size_t first = targets_.first[c];
+            detail::add_pile(sources_.charge.data() + first, sources_.soft.data() + first, sources_.count[c],
+                             sources_.softening, targets_.potential.data() + first);
+        }
         if (targets_.tides.empty()) return;
         // Small cells act pair by pair here.
         near_.insert(near_.end(), small_.begin(), small_.end());
-        add_tides(c, local, gather(c, near_, per_unit, sources_in_), per_unit);
+        add_tides(c, local, static_cast<double>(per_unit));
     }
-    // Charges or targets in rows of P, as offsets from a leaf's center in the unit of its expansion. Where P
-    // is less precise than T, offsets are in two parts.
-    template <class P>
-    struct Offsets {
-        static constexpr bool split = !std::is_same_v<P, T>;
+    std::size_t row_of(std::uint32_t c) const { return targets_.count[c] + row_padding; }
+
+    // Adds what was summed over pairs. Where roundings may have made errors beyond what is allowed, as they
+    // do in close pairs, pairs are summed again, of the places as they are given.
+    void add_pairs(std::uint32_t c, double per_unit) {
+        using P = std::conditional_t<std::is_same_v<T, float>, float, double>;
+        const double rounding = sources_.pairs_in_float ? rounding_of_pairs<float> : rounding_of_pairs<P>;
+        const double least = targets_.share_of_tolerance * static_cast<double>(targets_.tolerance[c]);
+        const std::size_t row = row_of(c), count = targets_.count[c];
+        doubtful_.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3d whole = gradient_with_pairs(c, i, per_unit);
+            const double error = rounding * per_unit * per_unit * std::sqrt(sums_[4 * row + i]),
+                         allowed = HWY_MAX(targets_.share_of_gradient * length(whole), least);
+            error <= allowed ? add_pairs_of(c, i, per_unit) : doubtful_.push_back(i);
+        }
+        if (doubtful_.empty()) return;
+        sum_exactly(c, per_unit, direct<double, Pairs::exact>);
+        const auto good = [&](std::size_t i) {
+            const bool finite = sums_[4 * row + i] < std::numeric_limits<double>::infinity();
+            if (finite) add_pairs_of(c, i, per_unit);
+            return finite;
+        };
+        doubtful_.erase(std::remove_if(doubtful_.begin(), doubtful_.end(), good), doubtful_.end());
+        if (doubtful_.empty()) return;
+        sum_exactly(c, per_unit, detail::direct_plain<double>);
+        for (const std::size_t i : doubtful_) add_pairs_of(c, i, per_unit);
+    }
+    Vec3d gradient_with_pairs(std::uint32_t c, std::size_t i, double per_unit) const {
+        const std::size_t row = row_of(c), t = targets_.first[c] + i;
+        return Vec3d(targets_.gx[t], targets_.gy[t], targets_.gz[t]) +
+               Vec3d(sums_[row + i], sums_[2 * row + i], sums_[3 * row + i]) * (per_unit * per_unit);
+    }
+    void add_pairs_of(std::uint32_t c, std::size_t i, double per_unit) {
+        const Vec3d gradient = gradient_with_pairs(c, i, per_unit);
+        const std::size_t t = targets_.first[c] + i;
+        targets_.potential[t] += sums_[i] * per_unit;
+        targets_.gx[t] = gradient[0], targets_.gy[t] = gradient[1], targets_.gz[t] = gradient[2];
+    }
+    // Sums over pairs at doubtful targets, which follow each other in runs.
+    void sum_exactly(std::uint32_t c, double per_unit, DirectKernel<double> kernel) {
+        const std::size_t row = row_of(c);
+        const std::size_t sources = place_exactly(c, near_, per_unit);
+        for (const std::size_t i : doubtful_)
+            for (std::size_t k = 0; k < 5; ++k) sums_[k * row + i] = 0;
+        for (std::size_t k = 0, next = k; k < doubtful_.size(); k = next) {
+            const std::size_t from = doubtful_[k];
+            while (next < doubtful_.size() && doubtful_[next] - from == next - k) ++next;
+            TargetRows<double> rows = rows_at(c, exact_targets_, sums_.data());
+            for (const double** const at : {&rows.x, &rows.y, &rows.z, &rows.low_x, &rows.low_y, &rows.low_z})
+                *at += from;
+            for (double** const sum : {&rows.potential, &rows.gx, &rows.gy, &rows.gz, &rows.squares})
+                *sum += from;
+            if (rows.reach != nullptr) rows.reach += from;
+            if (rows.self != no_self) rows.self += from;
+            rows.count = next - k;
+            kernel(rows_of(exact_sources_, sources), rows, sources_.softening);
+        }
+    }
+    // Charges or targets in rows of P, in the unit of a leaf's expansion: as offsets from its center, or
+    // where they are. Offsets are in two parts where P is less precise than T, and places always.
+    template <class P, Pairs by>
+    struct Rows {
+        static constexpr Pairs pairs = by;
+        static constexpr bool split = by != Pairs::plain;
         BareVector<P> place[3], low[3], charge, soft;
 
         void make_room(std::size_t count) {
@@ -437,7 +507,7 @@ private:
         template <class G>
         void put(int axis, std::size_t at, std::size_t count, G offset) {
             P* const high = place[axis].data() + at;
-            if constexpr (split) {
+            if constexpr (by == Pairs::split) {
                 // Differences of first parts are exact: these are multiples of 2⁻¹¹.
                 constexpr T grid = 2048;
                 P* const rest = low[axis].data() + at;
@@ -446,42 +516,93 @@ private:
                     high[i] = static_cast<P>(part), rest[i] = static_cast<P>(x - part);
                 }
             } else {
-                for (std::size_t i = 0; i < count; ++i) high[i] = offset(i);
+                for (std::size_t i = 0; i < count; ++i) high[i] = static_cast<P>(offset(i));
             }
+        }
+        // Pads the rows from number `at` on.
+        void close(std::size_t at, double beyond) {
+            for (int k = 0; k < 3; ++k) {
+                std::fill_n(place[k].data() + at, row_padding, P(beyond));
+                if (split) std::fill_n(low[k].data() + at, row_padding, P(0));
+            }
+            std::fill_n(charge.data() + at, row_padding, P(0));
+            std::fill_n(soft.data() + at, row_padding, P(0));
         }
     };
     template <class P>
-    void place_targets(std::uint32_t c, T per_unit, Offsets<P>& rows) const {
-        const std::size_t first = targets_.first[c], count = targets_.count[c] + row_padding;
+    using Offsets = Rows<P, std::is_same_v<P, T> ? Pairs::plain : Pairs::split>;
+
+    template <class OffsetRows>
+    void place_targets(std::uint32_t c, T per_unit, OffsetRows& rows) const {
+        const std::size_t first = targets_.first[c], count = targets_.count[c];
         rows.make_room(count);
         const T* const offsets[] = {targets_.dx.data() + first, targets_.dy.data() + first,
                                     targets_.dz.data() + first};
         for (int k = 0; k < 3; ++k)
             rows.put(k, 0, count, [&](std::size_t i) { return offsets[k][i] * per_unit; });
-        if (!sources_.soft.empty())
-            for (std::size_t i = 0; i < count; ++i)
-                rows.soft[i] = static_cast<P>(targets_.soft[first + i] * per_unit);
+        place_reaches(c, per_unit, rows);
+        rows.close(count, beyond_rows);
     }
-    // Gathers the charges of cells, and single ones. Returns how many they are.
+    template <class AnyRows>
+    void place_reaches(std::uint32_t c, T per_unit, AnyRows& rows) const {
+        using P = std::remove_cvref_t<decltype(rows.soft[0])>;
+        if (!sources_.soft.empty())
+            for (std::size_t i = 0; i < targets_.count[c]; ++i)
+                rows.soft[i] = static_cast<P>(targets_.soft[targets_.first[c] + i] * per_unit);
+    }
+    // Where the charges of cells and the targets are, without the roundings of an offset.
+    std::size_t place_exactly(std::uint32_t c, const std::vector<FmmSource>& cells, double per_unit) {
+        const auto put = [&](Rows<double, Pairs::exact>& rows, int axis, std::size_t at, double place,
+                             double shift) {
+            const auto moved = detail::two_sum(place, shift);
+            rows.place[axis][at] = moved.high * per_unit, rows.low[axis][at] = moved.low * per_unit;
+        };
+        const std::size_t first = targets_.first[c], count = targets_.count[c];
+        exact_targets_.make_room(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            put(exact_targets_, 0, i, targets_.x[first + i], 0);
+            put(exact_targets_, 1, i, targets_.y[first + i], 0);
+            put(exact_targets_, 2, i, targets_.z[first + i], 0);
+        }
+        place_reaches(c, static_cast<T>(per_unit), exact_targets_);
+        exact_targets_.close(count, beyond_rows);
+        return gather(c, cells, static_cast<T>(per_unit), exact_sources_,
+                      [&](int axis, std::size_t at, std::size_t many, const double* places, double shift) {
+                          for (std::size_t i = 0; i < many; ++i)
+                              put(exact_sources_, axis, at + i, places[i], shift);
+                      });
+    }
+    // Gathers the charges of cells, and single ones, as offsets from the center of a leaf. Returns how many
+    // they are.
     template <class P>
-    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit,
-                       Offsets<P>& rows) const {
+    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit, Offsets<P>& rows) {
+        const double center[] = {targets_.cx[c], targets_.cy[c], targets_.cz[c]};
+        // Offsets are computed as those of targets are.
+        return gather(c, cells, per_unit, rows,
+                      [&](int axis, std::size_t at, std::size_t count, const double* places, double shift) {
+                          rows.put(axis, at, count, [&](std::size_t i) {
+                              return static_cast<T>(places[i] - center[axis] + shift) * per_unit;
+                          });
+                      });
+    }
+    // put(axis, at, count, places, shift) writes an axis' numbers of some charges from number `at` on.
+    template <class AnyRows, class Put>
+    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit, AnyRows& rows,
+                       Put put) {
+        using P = std::remove_cvref_t<decltype(rows.soft[0])>;
         std::size_t sources = single_.size();
         for (const FmmSource near : cells) sources += sources_.count[near.cell()];
         const bool softened = !sources_.soft.empty();
         rows.make_room(sources);
         std::size_t at = 0;
-        const double center[] = {targets_.cx[c], targets_.cy[c], targets_.cz[c]};
+        self_ = no_self;
         for (const FmmSource near : cells) {
-            // Offsets are computed as those of targets are: charges in one place have equal ones.
+            if (is_itself(c, near)) self_ = at;
             const std::size_t first = sources_.first[near.cell()], count = sources_.count[near.cell()];
             const Vec3d& shift = sources_.images[near.image()];
             const double* const places[] = {sources_.x.data() + first, sources_.y.data() + first,
                                             sources_.z.data() + first};
-            for (int k = 0; k < 3; ++k)
-                rows.put(k, at, count, [&](std::size_t i) {
-                    return static_cast<T>(places[k][i] - center[k] + shift[k]) * per_unit;
-                });
+            for (int k = 0; k < 3; ++k) put(k, at, count, places[k], shift[k]);
             for (std::size_t i = 0; i < count; ++i)
                 rows.charge[at + i] = static_cast<P>(sources_.charge[first + i]);
             if (softened)
@@ -490,20 +611,16 @@ private:
             at += count;
         }
         for (const std::uint32_t single : single_) {
-            const double places[] = {sources_.cx[single], sources_.cy[single], sources_.cz[single]};
-            for (int k = 0; k < 3; ++k)
-                rows.put(k, at, 1,
-                         [&](std::size_t) { return static_cast<T>(places[k] - center[k]) * per_unit; });
+            const double* const places[] = {&sources_.cx[single], &sources_.cy[single], &sources_.cz[single]};
+            for (int k = 0; k < 3; ++k) put(k, at, 1, places[k], 0);
             rows.charge[at] = static_cast<P>(sources_.multipoles[single * E::stride]);
             rows.soft[at] = 0, ++at;
         }
-        for (int k = 0; k < 3; ++k) rows.put(k, at, row_padding, [](std::size_t) { return T(0); });
-        std::fill_n(rows.charge.data() + at, row_padding, P(0));
-        std::fill_n(rows.soft.data() + at, row_padding, P(0));
+        rows.close(at, -beyond_rows);
         return sources;
     }
-    template <class P>
-    ChargeRows<P> rows_of(const Offsets<P>& from, std::size_t count) const {
+    template <class P, Pairs by>
+    ChargeRows<P> rows_of(const Rows<P, by>& from, std::size_t count) const {
         return {from.place[0].data(),
                 from.place[1].data(),
                 from.place[2].data(),
@@ -514,13 +631,13 @@ private:
                 from.low[1].data(),
                 from.low[2].data()};
     }
-    template <class P>
-    TargetRows<P> rows_at(std::uint32_t c, const Offsets<P>& at, double* sums) const {
-        const std::size_t count = targets_.count[c], row = count + row_padding;
+    template <class P, Pairs by>
+    TargetRows<P> rows_at(std::uint32_t c, const Rows<P, by>& at, double* sums) const {
+        const std::size_t row = row_of(c);
         return {at.place[0].data(),
                 at.place[1].data(),
                 at.place[2].data(),
-                count,
+                targets_.count[c],
                 sums,
                 sums + row,
                 sums + 2 * row,
@@ -528,21 +645,20 @@ private:
                 sources_.soft.empty() ? nullptr : at.soft.data(),
                 at.low[0].data(),
                 at.low[1].data(),
-                at.low[2].data()};
+                at.low[2].data(),
+                sums + 4 * row,
+                self_};
     }
     // Sums over pairs of the charges that are gathered and the targets.
-    template <class P>
-    void sum_pairs(std::uint32_t c, std::size_t sources, const Offsets<P>& from, const Offsets<P>& at) {
-        direct<P, Offsets<P>::split>(rows_of(from, sources), rows_at(c, at, sums_.data()),
-                                     sources_.softening);
+    template <class P, Pairs by>
+    void sum_pairs(std::uint32_t c, std::size_t sources, const Rows<P, by>& from, const Rows<P, by>& at) {
+        direct<P, by>(rows_of(from, sources), rows_at(c, at, sums_.data()), sources_.softening);
     }
-    // Adds the local expansion, whose potential is not in the unit, and small cells.
-    void add_expansions(std::uint32_t c, const T* local, T per_unit) {
-        const std::size_t first = targets_.first[c], count = targets_.count[c], row = count + row_padding;
-        const double *const potential = sums_.data(), *const gx = potential + row, *const gy = gx + row,
-                            *const gz = gy + row;
+    // Sets what the local expansion, whose potential is not in the unit, and small cells do.
+    void add_expansions(std::uint32_t c, const T* local) {
+        const std::size_t first = targets_.first[c], count = targets_.count[c];
         const F f;
-        const double of_near = static_cast<double>(per_unit);
+        const double of_gradient = static_cast<double>(1 / targets_.scale[c]);
         constexpr std::size_t most_lanes = 64 / sizeof(T);
         for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
             V far[4];
@@ -553,28 +669,27 @@ private:
             alignas(64) T out[4][most_lanes];
             for (int k = 0; k < 4; ++k) hn::Store(far[k], f, out[k]);
             for (std::size_t j = 0; j < hn::Lanes(f) && i + j < count; ++j) {
-                const auto sum = [&](const double* near, int k) {
-                    return near[i + j] * of_near + static_cast<double>(out[k][j]);
-                };
+                const auto far_at = [&](int k) { return static_cast<double>(out[k][j]); };
                 const std::size_t t = first + i + j;
-                targets_.potential[t] = sum(potential, 0);
-                targets_.gx[t] = sum(gx, 1) * of_near, targets_.gy[t] = sum(gy, 2) * of_near;
-                targets_.gz[t] = sum(gz, 3) * of_near;
+                targets_.potential[t] = far_at(0);
+                targets_.gx[t] = far_at(1) * of_gradient, targets_.gy[t] = far_at(2) * of_gradient;
+                targets_.gz[t] = far_at(3) * of_gradient;
             }
         }
     }
 
-    // Adds tidal tensors: of the charges that are gathered, and of the local expansion.
-    void add_tides(std::uint32_t c, const T* local, std::size_t sources, T per_unit) {
+    // Adds tidal tensors: of near charges, and of the local expansion.
+    void add_tides(std::uint32_t c, const T* local, double per_unit) {
         const std::size_t first = targets_.first[c], count = targets_.count[c];
-        sums_.assign(6 * count, 0.0);
+        const std::size_t sources = place_exactly(c, near_, per_unit);
+        sums_.assign(HWY_MAX(6 * count, 5 * row_of(c)), 0.0);
         const detail::TideRows pairs(sums_.data(), count), found = targets_.tide_rows().from(first);
-        direct_tides<T>(rows_of(sources_in_, sources), rows_at(c, targets_in_, sums_.data()),
-                        sources_.softening, pairs);
-        const double unit = static_cast<double>(per_unit), unit2 = unit * unit;
+        direct_tides(rows_of(exact_sources_, sources), rows_at(c, exact_targets_, sums_.data()),
+                     sources_.softening, pairs);
+        const double unit2 = per_unit * per_unit;
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t k = 0; k < 6; ++k) found.row[k][i] = 0;
-            found.add(i, pairs[i] * (unit2 * unit));
+            found.add(i, pairs[i] * (unit2 * per_unit));
         }
         constexpr std::size_t at_once = 256;
         alignas(64) double place[3][at_once + row_padding];
@@ -622,7 +737,10 @@ private:
     std::vector<std::uint32_t> single_, stack_;
     Offsets<T> sources_in_, targets_in_;
     Offsets<float> float_sources_, float_targets_;
-    std::vector<double> sums_;
+    Rows<double, Pairs::exact> exact_sources_, exact_targets_;
+    std::size_t self_ = no_self;  // the first of the targets' own rows among sources
+    std::vector<double> sums_;    // potentials, gradients and `squares` of pairs
+    std::vector<std::size_t> doubtful_;
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE

@@ -9,13 +9,17 @@
 namespace hedgerow {
 namespace {
 
-/// Σ |q|/r² at a place; in a cube that repeats, of nearest images.
-double sum_of_sizes(std::span<const Vec3d> places, std::span<const double> charges, const Vec3d& target,
-                    double period) {
+/// Σ |q|/r² at a charge, less where charges are softened; in a cube that repeats, of nearest images.
+double sum_of_sizes(const Charges<double>& charges, std::size_t target) {
+    const double own = detail::reach_of(charges, target);
     double sum = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const double d2 = length2(detail::to_nearest_image(places[i] - target, period));
-        sum += d2 > 0 ? std::abs(charges[i]) / d2 : 0;
+    for (std::size_t i = 0; i < charges.places.size(); ++i) {
+        const Vec3d apart =
+            detail::to_nearest_image(charges.places[i] - charges.places[target], charges.period);
+        const double d2 = length2(apart), reach = std::max(own, detail::reach_of(charges, i));
+        if (d2 > 0)
+            sum += std::abs(charges.charges[i] * SoftenedInverse{charges.softening.kernel, reach}(d2).slope) *
+                   std::sqrt(d2);
     }
     return sum;
 }
@@ -27,28 +31,24 @@ ForceCheck::ForceCheck(const Charges<T>& charges, std::size_t targets, Threads t
     : step_(std::max<std::size_t>(1, charges.places.size() / std::max<std::size_t>(1, targets))) {
     const std::size_t n = charges.places.size();
     const detail::Extremes<T> extremes(charges);  // throws for bad numbers
+    for (std::size_t i = 0; i < n; ++i) charges_.push_back(static_cast<double>(charges.charges[i]));
+    // The charges at which it is checked come first.
     std::vector<Vec3d> places;
-    std::vector<double> lengths;
-    for (std::size_t i = 0; i < n; ++i) {
-        places.emplace_back(charges.places[i]);
-        charges_.push_back(static_cast<double>(charges.charges[i]));
+    std::vector<double> reordered, lengths;
+    const auto add = [&](std::size_t i) {
+        places.emplace_back(charges.places[i]), reordered.push_back(charges_[i]);
         if (!charges.lengths.empty()) lengths.push_back(static_cast<double>(charges.lengths[i]));
-    }
-    std::vector<Vec3d> some;
-    std::vector<double> own;
-    for (std::size_t i = 0; i < n; i += step_) {
-        some.push_back(places[i]);
-        own.push_back(lengths.empty() ? charges.softening.length : lengths[i]);
-    }
-    want_.resize(some.size()), sizes_.resize(some.size());
-    const double period = detail::side_of(charges);
-    direct_sum<double>({places, charges_, charges.softening, lengths, period}, Targets<double>(some, own),
-                       want_, threads);
-    threads.over(n * some.size() / 16)
-        .for_each_piece(some.size(), 4, [&](std::size_t begin, std::size_t end) {
+    };
+    for (std::size_t i = 0; i < n; i += step_) add(i);
+    want_.resize(places.size()), sizes_.resize(places.size());
+    for (std::size_t i = 0; i < n; ++i)
+        if (i % step_ != 0) add(i);
+    const Charges<double> all{places, reordered, charges.softening, lengths, detail::side_of(charges)};
+    direct_sum<double>(all, want_, threads);
+    threads.over(n * want_.size() / 16)
+        .for_each_piece(want_.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k)
-                sizes_[k] = std::max(length(want_[k].gradient),
-                                     0.01 * sum_of_sizes(places, charges_, some[k], period));
+                sizes_[k] = std::max(length(want_[k].gradient), 0.01 * sum_of_sizes(all, k));
         });
 }
 

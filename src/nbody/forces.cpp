@@ -25,9 +25,10 @@ namespace {
 /// What is computed in float: all; pairs alone, of places in two parts; or nothing.
 enum class Precision { single, mixed, twofold };
 /// How an accuracy is reached: the order of multipoles, the precision, at most what the rms error of the
-/// gradients is to the bound that each conversion keeps, how long leaves are, so that pairs and conversions
-/// take about as long, and below how many charges a direct sum is faster. Errors were measured on a cube, a
-/// lattice, Plummer's and Hernquist's spheres, a disc, two unlike clusters, and charges that cancel.
+/// gradients is to the bound that each conversion keeps where charges fill space, how long leaves are, so
+/// that pairs and conversions take about as long, and below how many charges a direct sum is faster. Errors
+/// were measured on a cube, a lattice, Plummer's and Hernquist's spheres, a disc, two unlike clusters, and
+/// charges that cancel.
 struct Plan {
     double least_accuracy;
     int order;
@@ -44,11 +45,19 @@ constexpr Plan plans[] = {
 };
 /// Targets that are fewer are summed directly, since the charges' cells take longer.
 constexpr std::size_t least_targets = 256;
+/// So few charges of a periodic cube are summed directly where expansions are in double.
+constexpr std::size_t least_charges_in_cube = 256;
 constexpr double most_accuracy = 0.1;
-/// In a periodic cube gradients are small sums of large parts, whose errors and roundings count so many
-/// times; and cubes of even charge have a moment of degree 4, which the lowest order lacks in all images
-/// alike.
-constexpr double errors_in_cube = 2, least_in_cube = 2e-3;
+/// In a periodic cube gradients are small sums of large parts, whose errors count so many times, and so do
+/// roundings of sums in float; and cubes of even charge have a moment of degree 4, which the lowest order
+/// lacks in all images alike.
+constexpr double errors_in_cube = 2.6, errors_in_cube_of_double = 3, least_in_cube = 2e-3,
+                 least_for_floats_in_cube = 2e-6;
+
+/// Gradients in float are rounded by some 3e-8.
+constexpr double least_accuracy_of_float = 1e-7;
+/// What roundings of pairs may do, as a share of the error that is asked for.
+constexpr double share_of_pairs = 0.5;
 
 const Plan& plan_for(double accuracy, bool periodic) {
     const Plan& finest = plans[std::size(plans) - 1];
@@ -57,10 +66,32 @@ const Plan& plan_for(double accuracy, bool periodic) {
         std::snprintf(given, sizeof given, "%g", accuracy);
         throw UsageError(std::string("an accuracy of ") + given + " is not from 1e-9 to 0.1");
     }
-    const double needed = periodic ? std::min(accuracy / errors_in_cube, least_in_cube) : accuracy;
+    const double needed = periodic ? std::min(accuracy / 2, least_in_cube) : accuracy;
     for (const Plan& plan : plans)
-        if (needed >= plan.least_accuracy) return plan;
+        if (needed >= plan.least_accuracy &&
+            !(periodic && plan.precision == Precision::mixed && needed < least_for_floats_in_cube))
+            return plan;
     return finest;
+}
+
+/// How many times as large errors add up to be where charges lie on surfaces and lines. Neighbouring cells
+/// are alike there, so what their multipoles lack does not cancel. Measured on shells, plane lattices and
+/// helices.
+constexpr double errors_on_surfaces = 2.2;
+
+/// Between 1 and that, by how many parts of a divided cell hold charges: nearly eight in space, four on
+/// surfaces, two on lines.
+template <class Tree>
+double errors_by_shape(const Tree& tree) {
+    const std::size_t divided = (tree.node_count() - 1) / Tree::width;
+    if (divided == 0) return 1;
+    std::size_t parts = 0;
+    for (std::uint32_t i = 0; i < divided; ++i) {
+        const OrthantNode* const children = tree.children(OrthantNode::inner_over(i, 0));
+        for (unsigned k = 0; k < Tree::width; ++k) parts += !children[k].empty();
+    }
+    const double mean = static_cast<double>(parts) / static_cast<double>(divided);
+    return 1 + (errors_on_surfaces - 1) * std::clamp(7 - mean, 0.0, 1.0);
 }
 
 template <class R, class T>
@@ -68,10 +99,22 @@ void set_tolerances(const detail::Sorted<R, T>& sources, detail::Sorted<R, T>& a
                     const ForceOptions& options, const Plan& plan, int order_of_multipoles,
                     const detail::Units& units, Executor& executor) {
     const int order = order_of_multipoles + 1;  // of the errors
-    const double counts = plan.error_per_bound * (sources.cells.side > 0 ? errors_in_cube : 1);
+    const bool in_double = plan.precision != Precision::single;
+    const double counts = plan.error_per_bound * errors_by_shape(sources.tree) *
+                          (sources.cells.side == 0 ? 1
+                           : in_double             ? errors_in_cube_of_double
+                                                   : errors_in_cube);
+    at.cells.share_of_gradient = share_of_pairs * options.accuracy;
+    at.cells.share_of_tolerance = share_of_pairs * counts;
     detail::set_tolerances(at.cells, options.accuracy / counts, order, executor, [&](std::uint32_t leaf) {
         if (options.sizes.empty()) {
-            const double estimate = detail::strength_in(sources.cells, at.cells, leaf);
+            const detail::Spot spot = detail::spot_of(at.cells, leaf);
+            if (detail::is_uneven(at.cells, leaf))
+                return detail::set_leaf(sources.cells, at.cells, leaf, order, [&](std::size_t i) {
+                    const Vec3d place(at.cells.x[i], at.cells.y[i], at.cells.z[i]);
+                    return detail::strength_at(sources.cells, {place, 0, spot.softest});
+                });
+            const double estimate = detail::strength_at(sources.cells, spot);
             return detail::set_leaf(sources.cells, at.cells, leaf, order,
                                     [&](std::size_t) { return estimate; });
         }
@@ -83,7 +126,7 @@ void set_tolerances(const detail::Sorted<R, T>& sources, detail::Sorted<R, T>& a
 template <class R>
 void add_far_images(const FmmCells<R>& sources, FmmCells<R>& at, double accuracy, Executor& executor) {
     const std::size_t charges = sources.x.size() - row_padding, targets = at.potential.size();
-    const detail::FarImages images(sources.side, detail::far_order(accuracy),
+    const detail::FarImages images(sources.side, sources.middle, detail::far_order(accuracy),
                                    {sources.x.data(), sources.y.data(), sources.z.data(), charges},
                                    sources.charge.data(), executor);
     images.act({at.x.data(), at.y.data(), at.z.data(), targets, at.potential.data(), at.gx.data(),
@@ -92,13 +135,14 @@ void add_far_images(const FmmCells<R>& sources, FmmCells<R>& at, double accuracy
     if (!at.tides.empty())
         images.bend({at.x.data(), at.y.data(), at.z.data(), targets}, at.tide_rows(), executor);
 }
-/// At targets, or at the charges themselves.
+/// At targets, or at the charges themselves. Whether the precision of R suffices; else nothing is done.
 template <class R, class T>
-void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std::span<PotentialAt<T>> found,
-                      const Plan& plan, const ForceOptions& options, const FmmKernel<R>& kernel,
-                      const detail::Extremes<T>& extremes, Executor& executor) {
+bool multipole_forces(const Charges<T>& charges, const detail::RepeatingCube& cube, const Targets<T>* targets,
+                      std::span<PotentialAt<T>> found, const Plan& plan, const ForceOptions& options,
+                      const FmmKernel<R>& kernel, const detail::Extremes<T>& extremes, Executor& executor) {
     const detail::Units units(extremes);
-    detail::Sorted<R, T> sources(charges, units, plan.leaf_size, kernel, executor);
+    detail::Sorted<R, T> sources(charges, cube, units, plan.leaf_size, kernel, executor);
+    if (!sources.precise_enough()) return false;
     sources.cells.pairs_in_float = plan.precision == Precision::mixed;
     std::optional<detail::Sorted<R, T>> others;
     if (targets != nullptr) {
@@ -122,6 +166,10 @@ void multipole_forces(const Charges<T>& charges, const Targets<T>* targets, std:
     });
     if (sources.cells.side > 0) add_far_images(sources.cells, at.cells, options.accuracy, executor);
     detail::hand_out(at, units, found, executor);
+    if (targets != nullptr)
+        for (std::size_t i = 0; i < found.size(); ++i)
+            found[i].potential -= static_cast<T>(detail::own_potential(*targets, charges.softening, i));
+    return true;
     detail::hand_out(at, units, options.tides, executor);
 }
 template <class Kernels>
@@ -130,10 +178,10 @@ const auto& of_order(const Kernels& kernels, int order) {
 }
 
 template <class R, class T>
-std::vector<ActingCell> cells_acting_on(const Charges<T>& charges, std::size_t i, const Plan& plan,
-                                        const ForceOptions& options, const FmmKernel<R>& kernel,
-                                        const detail::Units& units) {
-    detail::Sorted<R, T> all(charges, units, plan.leaf_size, kernel, serial_executor());
+std::vector<ActingCell> cells_acting_on(const Charges<T>& charges, const detail::RepeatingCube& cube,
+                                        std::size_t i, const Plan& plan, const ForceOptions& options,
+                                        const FmmKernel<R>& kernel, const detail::Units& units) {
+    detail::Sorted<R, T> all(charges, cube, units, plan.leaf_size, kernel, serial_executor());
     set_tolerances(all, all, options, plan, kernel.order, units, serial_executor());
     const auto items = all.tree.items();
     const auto place = std::find(items.begin(), items.end(), static_cast<PrimitiveId>(i)) - items.begin();
@@ -167,6 +215,8 @@ template <class T>
 void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::span<PotentialAt<T>> found,
                const ForceOptions& options, Threads threads) {
     const Plan& plan = plan_for(options.accuracy, given.period > 0);
+    if (std::same_as<T, float> && options.accuracy < least_accuracy_of_float)
+        throw UsageError("an accuracy below 1e-7 is beyond what numbers of float hold: use double");
     detail::expect_room(found.size(),
                         given_targets != nullptr ? given_targets->places.size() : given.places.size());
     detail::Extremes<T> extremes(given);  // throws for bad numbers
@@ -178,13 +228,14 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
     if (with_tides) detail::expect_room(options.tides.size(), found.size());
     if (found.empty()) return;
     // Bring all places into the cube, if there is one.
-    const detail::PlacesInCube<T> in_cube(given.places, given.period),
-        targets_in_cube(given_targets != nullptr ? given_targets->places : Strided<Vec<T, 3>>(),
-                        given.period);
+    const detail::RepeatingCube cube(given);
+    const detail::PlacesInCube<T> in_cube(given.places, cube),
+        targets_in_cube(given_targets != nullptr ? given_targets->places : Strided<Vec<T, 3>>(), cube);
     Charges<T> charges = given;
     charges.places = in_cube.places();
     std::optional<Targets<T>> other;
-    if (given_targets != nullptr) other.emplace(targets_in_cube.places(), given_targets->lengths);
+    if (given_targets != nullptr)
+        other.emplace(targets_in_cube.places(), given_targets->lengths, given_targets->charges);
     const Targets<T>* const targets = other ? &*other : nullptr;
     Executor& executor = threads.over(found.size());
     const NbodyKernels* const kernels = nbody_kernels();
@@ -195,25 +246,31 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
     const bool direct_is_exact =
         std::same_as<T, double> || plan.precision == Precision::single || kernels == nullptr;
     // Near images and tides make it slower.
+    const std::size_t least_charges = !(charges.period > 0)                 ? plan.least_charges
+                                      : plan.precision == Precision::single ? 0
+                                                                            : least_charges_in_cube;
     const bool few =
-        charges.places.empty() || (direct_is_exact && !with_tides && !(charges.period > 0) &&
-                                   (charges.places.size() < plan.least_charges ||
-                                    (targets != nullptr && targets->places.size() < least_targets)));
+        charges.places.empty() ||
+        (direct_is_exact && !with_tides &&
+         (charges.places.size() < least_charges ||
+          (targets != nullptr && !(charges.period > 0) && targets->places.size() < least_targets)));
     if (few || (kernels == nullptr && !plain)) {
-        const Targets<T> at = targets != nullptr ? *targets : Targets<T>(charges.places, charges.lengths);
-        if (with_tides) direct_tides(charges, at, options.tides, threads);
-        return direct_sum(charges, at, found, threads);
+        if (with_tides)
+            direct_tides(
+                charges,
+                targets != nullptr ? *targets : Targets<T>(charges.places, charges.lengths, charges.charges),
+                options.tides, threads);
+        return targets != nullptr ? direct_sum(charges, *targets, found, threads)
+                                  : direct_sum(charges, found, threads);
     }
     in_ieee_mode([&] {
         IeeeExecutor ieee(executor);
         const auto by = [&](const auto& kernel) {
-            multipole_forces(charges, targets, found, plan, options, kernel, extremes, ieee);
+            return multipole_forces(charges, cube, targets, found, plan, options, kernel, extremes, ieee);
         };
         if (plain)
             plain_forces(charges, found, ieee);
-        else if (plan.precision == Precision::single)
-            by(of_order(*kernels->fmm_float, plan.order));
-        else
+        else if (plan.precision != Precision::single || !by(of_order(*kernels->fmm_float, plan.order)))
             by(of_order(*kernels->fmm_double, plan.order));
     });
 }
@@ -235,14 +292,15 @@ template <std::floating_point T>
 std::vector<ActingCell> acting_cells(const Charges<T>& given, std::size_t i, const ForceOptions& options) {
     const Plan& plan = plan_for(options.accuracy, given.period > 0);
     const detail::Extremes<T> extremes(given);  // throws for bad numbers
-    const detail::PlacesInCube<T> in_cube(given.places, given.period);
+    const detail::RepeatingCube cube(given);
+    const detail::PlacesInCube<T> in_cube(given.places, cube);
     Charges<T> charges = given;
     charges.places = in_cube.places();
     const NbodyKernels* const kernels = nbody_kernels();
     if (kernels == nullptr || i >= charges.places.size()) return {};
     return in_ieee_mode([&] {
         const auto by = [&](const auto& kernel) {
-            return cells_acting_on(charges, i, plan, options, kernel, detail::Units(extremes));
+            return cells_acting_on(charges, cube, i, plan, options, kernel, detail::Units(extremes));
         };
         return plan.precision == Precision::single ? by(of_order(*kernels->fmm_float, plan.order))
                                                    : by(of_order(*kernels->fmm_double, plan.order));

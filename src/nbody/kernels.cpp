@@ -21,8 +21,9 @@ namespace hedgerow::HWY_NAMESPACE {
 extern const FmmFloatKernels fmm_float_kernels;    // in fmm_float_kernels.cpp
 extern const FmmDoubleKernels fmm_double_kernels;  // in fmm_double_kernels.cpp
 
-inline constexpr NbodyKernels nbody_kernels{direct<float>,       direct<double>, &fmm_float_kernels,
-                                            &fmm_double_kernels, add_multipole,  add_local};
+inline constexpr NbodyKernels nbody_kernels{
+    direct<float>, direct<double>, direct<double, Pairs::exact>, &fmm_float_kernels, &fmm_double_kernels,
+    add_multipole, add_local};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <hedgerow/geometry/box.h>
 
@@ -98,7 +99,11 @@ public:
     }
 
 private:
-    static T power_of_two_of(T x) { return x > 0 ? std::ldexp(T(1), std::ilogb(x)) : T(1); }
+    // The unit of a radius, of which powers and inverses are numbers of T.
+    static T power_of_two_of(T x) {
+        constexpr int least = std::numeric_limits<T>::min_exponent + 26;
+        return x > 0 ? std::ldexp(T(1), std::max(std::ilogb(x), least)) : T(1);
+    }
 
     // Sets a leaf's center, radius and offsets of charges, and its multipole.
     static void gather_points(FmmCells<T>& cells, std::uint32_t c, T* multipole) {

@@ -146,9 +146,9 @@ void Motion::accelerate(const Ids& active) {
         forces(charges, std::span(found), options, threads_);
     } else {
         std::vector<Vec3d> places;
-        std::vector<double> lengths(active.size(), options_.softening.length);
-        for (const std::uint32_t i : active) places.push_back(all.places[i]);
-        forces(charges, Targets<double>(places, lengths), std::span(found), options, threads_);
+        std::vector<double> lengths(active.size(), options_.softening.length), masses;
+        for (const std::uint32_t i : active) places.push_back(all.places[i]), masses.push_back(all.masses[i]);
+        forces(charges, Targets<double>(places, lengths, masses), std::span(found), options, threads_);
     }
     for (std::size_t k = 0; k < active.size(); ++k) {
         state_.accelerations[active[k]] = found[k].gradient * options_.gravity;

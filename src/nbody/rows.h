@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -50,6 +51,16 @@ T reach_of(const Targets<T>& targets, const Softening& softening, std::size_t i)
     return static_cast<T>(softening.reach(static_cast<double>(targets.lengths[i])));
 }
 
+/// What a target that is a softened charge does at its own place, which is left out; else 0.
+template <class T>
+double own_potential(const Targets<T>& targets, const Softening& softening, std::size_t i) {
+    if (targets.charges.empty()) return 0;
+    const double reach = static_cast<double>(reach_of(targets, softening, i));
+    return reach > 0 ? static_cast<double>(targets.charges[i]) *
+                           SoftenedInverse{softening.kernel, reach}(0).potential
+                     : 0;
+}
+
 /// The greatest coordinate and the greatest charge, by size. Throws InputError as `direct_sum` does.
 template <class T>
 struct Extremes {
@@ -77,6 +88,7 @@ struct Extremes {
     void expand(const Targets<T>& targets, const Charges<T>& charges) {
         T longest = 0;
         expect_lengths(targets.lengths, targets.places.size(), "the length of target");
+        if (!targets.charges.empty()) expect_one_charge_each(targets.charges.size(), targets.places.size());
         for (std::size_t i = 0; i < targets.places.size(); ++i) {
             expand(targets.places[i], "a coordinate of target", i);
             longest = std::max(longest, reach_of(targets, charges.softening, i));
@@ -118,16 +130,60 @@ inline Vec3d to_nearest_image(const Vec3d& offset, double side) {
     for (int k = 0; k < 3; ++k) nearest[k] -= side * std::round(offset[k] / side);
     return nearest;
 }
-/// Places in a cube that repeats: those in it. Else the places themselves.
+/// The cube that repeats, whose images of all places are taken: of a side, around a middle. Without a side
+/// nothing repeats.
+struct RepeatingCube {
+    double side = 0;
+    Vec3d middle;
+
+    /// Chooses the middle so that few charges are near faces and corners, where expansions about it converge
+    /// least: an axis has the middle with the least Σ |q|·|distance|⁸, of nine from 0 to half a side. These
+    /// bring places of 0 to a side into the cube without a rounding. O(charges).
+    template <class T>
+    explicit RepeatingCube(const Charges<T>& charges) : side(side_of(charges)) {
+        if (!(side > 0)) return;
+        constexpr int bins = 64, steps = 16;
+        for (int k = 0; k < 3; ++k) {
+            std::array<double, bins> weight{};
+            for (std::size_t i = 0; i < charges.places.size(); ++i) {
+                const double x = static_cast<double>(charges.places[i][k]) / side, in = x - std::floor(x);
+                weight[static_cast<std::size_t>(in * bins) % bins] +=
+                    std::abs(static_cast<double>(charges.charges[i]));
+            }
+            const auto crowd = [&](int step) {  // near the faces of the cube around a middle
+                double sum = 0;
+                for (int b = 0; b < bins; ++b) {
+                    const double apart = (b + 0.5) / bins - double(step) / steps,
+                                 nearest = 2 * std::abs(apart - std::round(apart)), near2 = nearest * nearest;
+                    sum += weight[static_cast<std::size_t>(b)] * near2 * near2 * near2 * near2;
+                }
+                return sum;
+            };
+            int best = steps / 2;
+            // Even charge stays where it is.
+            double least = 0.9 * crowd(best);
+            for (int step = 0; step < steps / 2; ++step)
+                if (const double here = crowd(step); here < least) best = step, least = here;
+            middle[k] = side * best / steps;
+        }
+    }
+    template <class T>
+    T image(T x, int axis) const {
+        const double low = middle[axis] - side / 2, at = static_cast<double>(x);
+        if (at >= low && at < low + side) return x;
+        const double moved = at - side * std::floor((at - low) / side);
+        return static_cast<T>(moved);
+    }
+};
+/// The images of places in a cube that repeats. Else the places themselves.
 template <class T>
 class PlacesInCube {
 public:
-    PlacesInCube(const Strided<Vec<T, 3>>& places, double period) : places_(places) {
-        if (!(period > 0)) return;
-        const T side = static_cast<T>(period);
+    PlacesInCube(const Strided<Vec<T, 3>>& places, const RepeatingCube& cube) : places_(places) {
+        if (!(cube.side > 0)) return;
         in_cube_.resize(places.size());
         for (std::size_t i = 0; i < places.size(); ++i)
-            for (int k = 0; k < 3; ++k) in_cube_[i][k] = in_period(places[i][k], side);
+            for (int k = 0; k < 3; ++k) in_cube_[i][k] = cube.image(places[i][k], k);
         places_ = in_cube_;
     }
     PlacesInCube(const PlacesInCube&) = delete;

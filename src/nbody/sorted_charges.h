@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -99,15 +100,15 @@ struct Sorted {
     PointOrthtree<T, 3> tree;
     FmmCells<R> cells;
 
-    Sorted(const Charges<T>& charges, const Units& units, std::uint32_t leaf_size, const FmmKernel<R>& kernel,
-           Executor& executor)
+    Sorted(const Charges<T>& charges, const RepeatingCube& cube, const Units& units, std::uint32_t leaf_size,
+           const FmmKernel<R>& kernel, Executor& executor)
         : Sorted(
               charges.places, units, softened(charges), leaf_size, kernel, executor,
               [&](PrimitiveId i) { return static_cast<double>(charges.charges[i]) * units.charge; },
               [&](PrimitiveId i) { return reach_of(charges, i); }) {
         cells.softening = charges.softening.kernel;
-        if (charges.period > 0) {
-            cells.side = side_of(charges) * units.length;
+        if (cube.side > 0) {
+            cells.side = cube.side * units.length, cells.middle = cube.middle * units.length;
             cells.images = near_image_places(cells.side);
         }
     }
@@ -118,6 +119,12 @@ struct Sorted {
               targets.places, units, softened(charges), leaf_size, kernel, executor,
               [](PrimitiveId) { return 1.0; },
               [&](PrimitiveId i) { return reach_of(targets, charges.softening, i); }) {}
+
+    /// Whether R has the distances of the deepest cells, which those of a cluster are beside a body far out.
+    bool precise_enough() const {
+        constexpr int most_depth = std::same_as<R, float> ? 40 : PointOrthtree<T, 3>::max_depth;
+        return tree.depth() <= most_depth;
+    }
 
 private:
     template <class Charge, class Reach>

@@ -39,29 +39,41 @@ HWY_INLINE void softened_slopes(F f, SofteningKernel kernel, V u, V& slope, V& b
                                   hn::Mul(hn::Set(f, T(3)), hn::Mul(tail, per_u2))));
 }
 
-// Adds the tidal tensors of all sources at all targets: q·(3·d·dᵀ/r⁵ − 1/r³).
+// Adds the tidal tensors of all sources at all targets but of none at itself, and of bare ones in one place
+// none: q·(3·d·dᵀ/r⁵ − 1/r³). Places are in two parts.
 template <class T>
 void direct_tides(const ChargeRows<T>& sources, const TargetRows<T>& targets, SofteningKernel kernel,
                   const detail::TideRows& tides) {
     const hn::ScalableTag<T> f;
     using V = hn::Vec<decltype(f)>;
-    const V least = hn::Set(f, coincident2<T>), three = hn::Set(f, T(3));
+    const V three = hn::Set(f, T(3));
     for (std::size_t t = 0; t < targets.count; ++t) {
         const V x = hn::Set(f, targets.x[t]), y = hn::Set(f, targets.y[t]), z = hn::Set(f, targets.z[t]);
+        const V low_x = hn::Set(f, targets.low_x[t]), low_y = hn::Set(f, targets.low_y[t]),
+                low_z = hn::Set(f, targets.low_z[t]);
         V xx = hn::Zero(f), yy = xx, zz = xx, xy = xx, xz = xx, yz = xx;
         for (std::size_t s = 0; s < sources.count; s += hn::Lanes(f)) {
-            const V dx = hn::Sub(hn::LoadU(f, sources.x + s), x),
-                    dy = hn::Sub(hn::LoadU(f, sources.y + s), y),
-                    dz = hn::Sub(hn::LoadU(f, sources.z + s), z), charge = hn::LoadU(f, sources.charge + s);
+            const auto apart_by = [&](const T* high, const T* low, V of_high, V of_low) HWY_ATTR {
+                return hn::Add(hn::Sub(hn::LoadU(f, high + s), of_high),
+                               hn::Sub(hn::LoadU(f, low + s), of_low));
+            };
+            const V dx = apart_by(sources.x, sources.low_x, x, low_x),
+                    dy = apart_by(sources.y, sources.low_y, y, low_y),
+                    dz = apart_by(sources.z, sources.low_z, z, low_z),
+                    charge = hn::LoadU(f, sources.charge + s);
             const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-            const auto apart = hn::Ge(r2, least);
+            const auto apart = hn::Gt(r2, hn::Zero(f));
             const V per_r = hn::IfThenElseZero(apart, inverse_root(f, r2)), per_r2 = hn::Mul(per_r, per_r);
             V slope = hn::Mul(per_r, per_r2), bend = hn::Mul(three, hn::Mul(slope, per_r2));
             if (sources.reach != nullptr) {
                 const V reach = hn::Max(hn::LoadU(f, sources.reach + s), hn::Set(f, targets.reach[t]));
-                // A charge at the target's own place, softened, would bend the potential there: it is left
-                // out.
-                const auto near = hn::And(apart, hn::Lt(r2, hn::Mul(reach, reach)));
+                // The number of the lane that is the target itself; none has −1.
+                const std::ptrdiff_t own =
+                    targets.self == no_self
+                        ? -1
+                        : static_cast<std::ptrdiff_t>(targets.self + t) - static_cast<std::ptrdiff_t>(s);
+                const auto others = hn::Ne(hn::Iota(f, T(0)), hn::Set(f, static_cast<T>(own)));
+                const auto near = hn::And(others, hn::Lt(r2, hn::Mul(reach, reach)));
                 if (!hn::AllFalse(f, near)) {
                     const V per = hn::Div(hn::Set(f, T(1)), hn::IfThenElse(near, reach, hn::Set(f, T(1)))),
                             per2 = hn::Mul(per, per), per3 = hn::Mul(per, per2);

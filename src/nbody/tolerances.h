@@ -14,54 +14,82 @@
 
 namespace hedgerow::detail {
 
-/// How far a cell of sources is from one of targets; in a periodic cube, its nearest image.
+/// Where gradients are estimated: a place, how far targets spread around it, and how far they are softened.
+struct Spot {
+    Vec3d place;
+    double radius, softest;
+};
+/// How far a cell of sources is from a place; in a periodic cube, its nearest image.
 template <class R>
-Vec3d offset(const FmmCells<R>& sources, std::uint32_t source, const FmmCells<R>& targets,
-             std::uint32_t target) {
-    return to_nearest_image({sources.cx[source] - targets.cx[target], sources.cy[source] - targets.cy[target],
-                             sources.cz[source] - targets.cz[target]},
+Vec3d offset(const FmmCells<R>& sources, std::uint32_t source, const Vec3d& place) {
+    return to_nearest_image(Vec3d(sources.cx[source], sources.cy[source], sources.cz[source]) - place,
                             sources.side);
 }
-/// About the least gradient in a leaf: that of all other cells as single charges (Barnes and Hut), each
-/// farther away by the leaf's radius, or a hundredth of the sum of their sizes. In a periodic cube what cells
-/// do nearly cancels: so that it does here, cells are small, not moved away, and nearest images do less along
-/// an axis the nearer they are to its turning point, where the next image does as much.
 template <class R>
-double strength_in(const FmmCells<R>& sources, const FmmCells<R>& targets, std::uint32_t leaf) {
+Spot spot_of(const FmmCells<R>& targets, std::uint32_t leaf) {
+    return {{targets.cx[leaf], targets.cy[leaf], targets.cz[leaf]},
+            static_cast<double>(targets.radius[leaf]),
+            static_cast<double>(targets.softest[leaf])};
+}
+/// Whether targets of a leaf are so unevenly spread that one estimate does not serve them all, as those of a
+/// clump and of what is around it.
+template <class R>
+bool is_uneven(const FmmCells<R>& targets, std::uint32_t leaf) {
+    const double radius = static_cast<double>(targets.radius[leaf]);
+    double sum = 0;
+    const std::size_t first = targets.first[leaf], count = targets.count[leaf];
+    for (std::size_t i = first; i < first + count; ++i) {
+        const double x = static_cast<double>(targets.dx[i]), y = static_cast<double>(targets.dy[i]),
+                     z = static_cast<double>(targets.dz[i]);
+        sum += x * x + y * y + z * z;
+    }
+    return sum < 0.1 * static_cast<double>(count) * radius * radius;
+}
+/// About the least gradient around a place: that of all cells as single charges (Barnes and Hut), each
+/// farther away by the radius, or a hundredth of the sum of their sizes. In a periodic cube what cells do
+/// nearly cancels: so that it does here, cells are small, not moved away, and nearest images do less along an
+/// axis the nearer they are to its turning point, where the next image does as much. What single charges in
+/// place of cells may have wrong is taken off, since it may be more than all that is left.
+template <class R>
+double strength_at(const FmmCells<R>& sources, const Spot& spot) {
     thread_local std::vector<std::uint32_t> stack;
     const bool periodic = sources.side > 0;
     const double opening_angle = periodic ? 1.0 : 0.7;
     const std::vector<R>& extents = periodic ? sources.radius : sources.reach;
-    const double own = static_cast<double>(targets.radius[leaf]);
     const double per_side = periodic ? 1 / sources.side : 0;
     Vec3d sum;
-    double size = 0;
+    double size = 0, doubt = 0;
     stack.assign(1, 0);
     while (!stack.empty()) {
         const std::uint32_t other = stack.back();
         stack.pop_back();
-        const Vec3d apart = offset(sources, other, targets, leaf);
+        const Vec3d apart = offset(sources, other, spot.place);
         const double distance = length(apart);
         if (!sources.is_leaf(other) && !(static_cast<double>(extents[other]) < opening_angle * distance)) {
             for (std::uint32_t i = 0; i < sources.children[other]; ++i)
                 stack.push_back(sources.child[other] + i);
             continue;
         }
+        const double charge = static_cast<double>(sources.multipoles[other * sources.multipole_stride]),
+                     weight = static_cast<double>(sources.weight[other]);
+        if (const double reach = static_cast<double>(extents[other]); periodic && reach > 0) {
+            const double near = std::max(distance, reach), share = reach / near;
+            doubt += weight / (near * near) * (share * share);
+        }
         if (!(distance > 0)) continue;
         // What is softened acts about as Plummer's charges do.
-        const double soft = static_cast<double>(std::max(sources.softest[other], targets.softest[leaf])) / 3,
-                     softened = std::sqrt(distance * distance + soft * soft), far = softened + own,
+        const double soft = std::max(static_cast<double>(sources.softest[other]), spot.softest) / 3,
+                     softened = std::sqrt(distance * distance + soft * soft), far = softened + spot.radius,
                      per_d2 = 1 / (far * far),
                      along = (periodic ? 1 / (softened * softened) : per_d2) / softened;
-        const double charge = static_cast<double>(sources.multipoles[other * sources.multipole_stride]);
         const auto between = [&](double x) {
             const double t = 2 * std::abs(x) * per_side;
             return x * (1 - t * t * t);
         };
         sum += Vec3d(between(apart[0]), between(apart[1]), between(apart[2])) * (charge * along);
-        size += static_cast<double>(sources.weight[other]) * per_d2;
+        size += weight * per_d2;
     }
-    return std::max(length(sum), 0.01 * size);
+    return std::max(length(sum) - doubt, 0.01 * size);
 }
 /// What counts of the errors in a cell: the mean of some power of them as shares of the gradients, so that a
 /// few targets that are far out or where gradients are small count as they should.
@@ -73,18 +101,19 @@ template <class R, class F>
 void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
     // No charge is farther away than the far side of all of them; in a cube, those of its own images are.
     const double farthest =
-        std::max(length(offset(sources, 0, targets, leaf)) + static_cast<double>(sources.radius[0]) +
-                     static_cast<double>(targets.radius[leaf]),
+        std::max(length(offset(sources, 0, spot_of(targets, leaf).place)) +
+                     static_cast<double>(sources.radius[0]) + static_cast<double>(targets.radius[leaf]),
                  sources.side / 2);
     const double least = 0.01 * static_cast<double>(sources.weight[0]) / (farthest * farthest);
     const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
     const double per_radius = targets.radius[leaf] > 0 ? 1 / static_cast<double>(targets.radius[leaf]) : 0;
-    const auto size = [&](std::size_t i) { return std::max(size_of(i), least); };
-    double smallest = size(first);
-    for (std::size_t i = first; i < end; ++i) smallest = std::min(smallest, size(i));
+    thread_local std::vector<double> sizes;
+    sizes.clear();
+    for (std::size_t i = first; i < end; ++i) sizes.push_back(std::max(size_of(i), least));
+    const double smallest = *std::min_element(sizes.begin(), sizes.end());
     double weights = 0, spread = 0;
     for (std::size_t i = first; i < end; ++i) {
-        const double inverse = smallest > 0 ? smallest / size(i) : 1, inverse2 = inverse * inverse,
+        const double inverse = smallest > 0 ? smallest / sizes[i - first] : 1, inverse2 = inverse * inverse,
                      x = static_cast<double>(targets.dx[i]) * per_radius,
                      y = static_cast<double>(targets.dy[i]) * per_radius,
                      z = static_cast<double>(targets.dz[i]) * per_radius, r2 = x * x + y * y + z * z;

@@ -14,7 +14,7 @@
 namespace hedgerow {
 
 /// Charges in rows of coordinates. Rows are readable up to the next multiple of `row_padding`; charges there
-/// are 0, and coordinates numbers.
+/// are 0, and coordinates -`beyond_rows`.
 template <class T>
 struct ChargeRows {
     const T *x, *y, *z, *charge;
@@ -24,8 +24,13 @@ struct ChargeRows {
     const T *low_x = nullptr, *low_y = nullptr, *low_z = nullptr;
 };
 inline constexpr std::size_t row_padding = 16;
-/// Places at which charges act, in rows that are readable up to the next multiple of `row_padding`, and what
-/// they do there: potentials and gradients, to which is added.
+/// The coordinates of padding behind targets. Padding behind charges has the opposite ones: the two are not
+/// in one place, nor where charges and targets are.
+inline constexpr double beyond_rows = 64;
+/// Targets that are none of the charges.
+inline constexpr std::size_t no_self = static_cast<std::size_t>(-1);
+/// Places at which charges act, in rows that are readable up to the next multiple of `row_padding` (where
+/// coordinates are `beyond_rows`), and what they do there: potentials and gradients, to which is added.
 template <class T>
 struct TargetRows {
     const T *x, *y, *z;
@@ -33,17 +38,26 @@ struct TargetRows {
     double *potential, *gx, *gy, *gz;
     const T* reach = nullptr;
     const T *low_x = nullptr, *low_y = nullptr, *low_z = nullptr;
+    /// How much the roundings of pairs may have done, to which is added: `rounding_of_pairs` times the root
+    /// of this is about the rms error of the gradient. Up to four targets share what they do together. Not
+    /// finite where a source is too near for T.
+    double* squares = nullptr;
+    /// The number of the source that the first target is, if the targets are sources that follow each other.
+    std::size_t self = no_self;
 };
+/// Places of unit size whose first parts are multiples of 2⁻¹¹, and the rest, err by as much as pairs at this
+/// distance by their arithmetic.
+inline constexpr double split_distance = 0x1p-13;
+template <class T>
+inline constexpr double rounding_of_pairs = sizeof(T) == 4 ? 0x1p-23 : 0x1p-52;
 
-/// Adds the potentials Σ q/r and their gradients, of all sources at all targets; softened by the kernel, if
-/// there are reaches, by the greater of a pair. Sources whose squared distance is below `coincident2` do
-/// nothing. Coordinates are about 1 or less, so that no power of a distance overflows. The error of a pair is
-/// at most 2⁻²¹ of it, in double 2⁻⁴² (softened: 2⁻¹⁸ and 2⁻⁴⁰); sums are kept in T for at most 1,024
-/// sources.
+/// Adds the potentials Σ q/r and their gradients, of all sources at all targets but of none at itself;
+/// softened by the kernel, if there are reaches, by the greater of a pair. Coordinates are about 1 or less.
+/// The error of a pair is at most 2⁻²¹ of it, in double 2⁻⁴² (softened: 2⁻¹⁸ and 2⁻⁴⁰); sums are kept in T
+/// for at most 1,024 sources. A source too near for T, or in the place of a target, makes sums and squares
+/// that are not finite; `direct_exact` knows charges in one place: bare ones do nothing, softened ones act.
 template <class T>
 using DirectKernel = void (*)(const ChargeRows<T>&, const TargetRows<T>&, SofteningKernel);
-template <class T>
-inline constexpr T coincident2 = sizeof(T) == 4 ? T(0x1p-80) : T(0x1p-640);
 
 template <class T>
 struct FmmCells;
@@ -107,7 +121,7 @@ using FmmDoubleKernels = std::array<FmmKernel<double>, 2>;
 /// The kernels of one instruction set. Orders ascend.
 struct NbodyKernels {
     DirectKernel<float> direct_float;
-    DirectKernel<double> direct_double;
+    DirectKernel<double> direct_double, direct_exact;
     const FmmFloatKernels* fmm_float;
     const FmmDoubleKernels* fmm_double;
     AddMultipole add_multipole;
