@@ -89,6 +89,37 @@ grep -q '^floors  *FAILED' ../output || fail "a fault is not in the table: $(cat
 scripts/check-full >../output 2>&1 || true
 grep -q ': 1 stages' ../output || fail "a fault is forgotten"
 
+# Test programs: each test counts for its program, and programs that are not asked for do not run.
+cat >CMakeLists.txt <<'EOF'
+cmake_minimum_required(VERSION 3.25)
+project(copy LANGUAGES NONE)
+enable_testing()
+foreach(program batches_test figures_test matrix_test)
+  add_custom_target(${program} COMMAND ${CMAKE_COMMAND} -E copy ${CMAKE_SOURCE_DIR}/program ${CMAKE_BINARY_DIR}/${program})
+  foreach(test one two)
+    add_test(NAME ${program}.${test} COMMAND ${CMAKE_BINARY_DIR}/${program} "--gtest_filter=${test}")
+  endforeach()
+endforeach()
+EOF
+cat >program <<'EOF'
+#!/bin/sh
+echo "$0 $1" >>ran
+case $0$1 in *figures_test*two) exit 1 ;; esac
+EOF
+chmod +x program
+cat >CMakePresets.json <<'EOF'
+{"version": 6,
+ "configurePresets": [{"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/release"}],
+ "buildPresets": [{"name": "release", "configurePreset": "release"}],
+ "testPresets": [{"name": "release", "configurePreset": "release"}]}
+EOF
+for part in 1 2; do known $part | grep -vE ' release/(batches|figures)_test$' >build/check-full/records-$part-of-2; done
+rm build/check-full/records-1-of-1
+! scripts/check-full >../output 2>&1 || fail "a failed test passes"
+cut -d ' ' -f 1,6 build/check-full/records-1-of-1 | sort | paste -sd ' ' |
+    grep -qx "FAILED release/figures_test passed release/batches_test" || fail "records: $(cat ../output)"
+[ "$(sort build/release/ran | sed 's/.*\///' | paste -sd ' ')" = "$(printf '%s --gtest_filter=%s ' batches_test one batches_test two figures_test one figures_test two | sed 's/ $//')" ] || fail "other tests ran"
+
 for wrong in "--part 0/2" "--part 3/2" "--part 1" --all; do
     rc=0
     scripts/check-full $wrong 2>/dev/null || rc=$?
