@@ -1,5 +1,10 @@
-/// Tests Ctrl-C during each verb at several times: the exit code, the earlier output, and what is saved of
-/// the unfinished work.
+/// Tests Ctrl-C and the signals of job schedulers during each verb at several times: the exit code, the
+/// earlier output, and what is saved of the unfinished work.
+#include <cstring>
+#include <utility>
+
+#include <sys/stat.h>
+
 #include <hedgerow/io/image.h>
 
 #include "tool.h"
@@ -13,10 +18,13 @@ class Interrupted : public ToolTest {
 protected:
     /// Interrupts a verb after each of several times, in milliseconds. The earlier contents of `output` stay.
     void expect_untouched(const std::vector<std::string>& arguments, const std::string& output) {
-        for (const int milliseconds : {5, 60, 400, 1200}) {
+        // SIGINT has its code also where it comes before the tool listens to signals; others come later.
+        for (const auto& [milliseconds, signal] :
+             {std::pair{5, SIGINT}, {60, SIGINT}, {400, SIGINT}, {1200, SIGTERM}, {1200, SIGUSR1}}) {
             std::ofstream(output) << "precious";
-            EXPECT_EQ(run_interrupted(arguments, milliseconds), 130)
-                << arguments[0] << " " << arguments[1] << " after " << milliseconds << " ms";
+            EXPECT_EQ(run_interrupted(arguments, milliseconds, signal), 130)
+                << arguments[0] << " " << arguments[1] << " after " << milliseconds << " ms by "
+                << strsignal(signal);
             EXPECT_TRUE(bytes_of(output) == "precious") << arguments[0];  // not printed: it may be large
             for (const auto& entry : fs::directory_iterator(folder))
                 EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
@@ -82,11 +90,41 @@ TEST_F(Interrupted, APictureKeepsItsFinishedRowsBesideTheOneOfBefore) {
     EXPECT_EQ(load_png(unfinished).width, 1600);
 }
 
-TEST_F(Interrupted, IsSaidByTheCodeWhereNobodyCanReadTheMessage) {
-    const auto r = run_shell("timeout --preserve-status -s INT 1.5 " HEDGEROW_TOOL_PATH
-                             " render gen:teapot:6000 --structure brute-force --size 1600x1200 -o " +
-                             file("a.png") + " 2>&-");
-    EXPECT_EQ(r.code, 130) << r.output;
+TEST_F(Interrupted, ByTimeoutWhichSendsEachSignalTwice) {
+    const std::string unfinished = file("a.unfinished.png");
+    for (const char* signal : {"INT", "TERM", "USR1"}) {
+        fs::remove(unfinished);
+        // Wait longer and longer until some rows are done.
+        for (int seconds = 1; !fs::exists(unfinished) && seconds < 60; seconds *= 4) {
+            const auto r = run_shell(std::string("timeout --preserve-status -s ") + signal + " " +
+                                     std::to_string(seconds) +
+                                     " " HEDGEROW_TOOL_PATH
+                                     " render gen:teapot:6000 --structure brute-force --size 1600x1200 -o " +
+                                     file("a.png") + " 2>&-");
+            EXPECT_EQ(r.code, 130) << signal << r.output;  // though nobody can read the message
+        }
+        EXPECT_TRUE(fs::exists(unfinished)) << signal;
+    }
+}
+
+TEST_F(Interrupted, WhileItWaitsForInput) {
+    ASSERT_EQ(mkfifo(file("pipe").c_str(), 0600), 0);
+    for (const char* signal : {"INT", "TERM", "USR1"}) {
+        const std::string query = std::string(" timeout --preserve-status -k 8 -s ") + signal +
+                                  " 1 " HEDGEROW_TOOL_PATH " query nearest gen:teapot:300 -k 1 -o " +
+                                  file("a.npy") + " --format csv --quiet 2>&1 --from ";
+        EXPECT_EQ(run_shell(query + file("pipe")).code, 130) << signal << ", a pipe that nobody writes to";
+        EXPECT_EQ(run_shell("exec 3<>" + file("pipe") + ";" + query + "- <&3").code, 130)
+            << signal << ", a silent standard input";
+    }
+}
+
+TEST_F(Interrupted, NotBySignalsThatWereIgnored) {
+    const auto r = run_shell(
+        "trap '' INT TERM USR1; " HEDGEROW_TOOL_PATH " generate gen:terrain:3M -o " + file("a.ply") +
+        " --quiet & p=$!; sleep 0.2; kill -INT $p; kill -TERM $p; kill -USR1 $p; wait $p");
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_TRUE(fs::exists(file("a.ply")));
 }
 
 }  // namespace

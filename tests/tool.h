@@ -45,7 +45,7 @@ inline ToolResult run(const std::string& arguments) {
 inline int run_interrupted(std::vector<std::string> arguments, int milliseconds = 1500, int signal = SIGINT) {
     const pid_t child = fork();
     if (child == 0) {
-        std::signal(SIGINT, SIG_DFL);
+        for (const int each : {SIGINT, SIGTERM, SIGUSR1}) std::signal(each, SIG_DFL);
         std::vector<char*> all = {const_cast<char*>(HEDGEROW_TOOL_PATH)};
         for (auto& a : arguments) all.push_back(a.data());
         all.push_back(nullptr);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <utility>
 
@@ -15,11 +17,34 @@ namespace hedgerow::cli {
 
 std::atomic<bool> interrupted{false};
 
+namespace {
+
+/// Milliseconds on a clock that only goes forward. May be called in signal handlers.
+std::int64_t milliseconds() {
+    timespec time{};
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return std::int64_t{time.tv_sec} * 1000 + time.tv_nsec / 1'000'000;
+}
+
+/// When the first signal came, in milliseconds; 0 before.
+std::atomic<std::int64_t> first_signal{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+
+void stop(int signal) {
+    interrupted = true;
+    std::int64_t first = 0;
+    if (first_signal.compare_exchange_strong(first, milliseconds())) return;
+    // `timeout` sends each signal to the process and to its group. Such a pair is one request, so a second
+    // Ctrl-C counts only a while after the first signal.
+    constexpr std::int64_t pair = 100;
+    if (signal == SIGINT && milliseconds() - first > pair) _exit(130);
+}
+
+}  // namespace
+
 void listen_to_interrupts() {
-    const auto before = std::signal(SIGINT, [](int) {
-        if (interrupted.exchange(true)) _exit(130);
-    });
-    if (before == SIG_IGN) std::signal(SIGINT, SIG_IGN);
+    for (const int signal : {SIGINT, SIGTERM, SIGUSR1})
+        if (std::signal(signal, stop) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
 double now() {

@@ -10,10 +10,11 @@
 
 namespace hedgerow::cli {
 
-/// Set by Ctrl-C. Long work then ends early, with the part that is finished.
+/// Set by Ctrl-C (SIGINT), SIGTERM and SIGUSR1. Long work then ends early, with the part that is finished.
 extern std::atomic<bool> interrupted;
-/// From here on the first Ctrl-C sets `interrupted`, and the second ends the process at once with code 130.
-/// Nothing is changed where Ctrl-C was ignored before.
+/// From here on SIGINT, SIGTERM and SIGUSR1 set `interrupted`. A second Ctrl-C ends the process at once with
+/// code 130. SIGTERM and SIGUSR1 never do, since job schedulers repeat them while results are saved; they
+/// have SIGKILL for that. A signal that was ignored before stays ignored.
 void listen_to_interrupts();
 
 /// Seconds on a clock that only goes forward.

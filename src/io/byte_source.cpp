@@ -46,7 +46,8 @@ int opened_pipe(const std::filesystem::path& path) {
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
     const bool is_pipe = std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
-    return is_pipe ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC) : -1;
+    // Opening must not wait for a writer, since nothing could cancel that. Reading waits for data by poll.
+    return is_pipe ? ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK) : -1;
 }
 }  // namespace
 
@@ -124,12 +125,13 @@ std::size_t ByteSource::load_from_file(unsigned char* to) {
 }
 
 std::size_t ByteSource::load_from_pipe(unsigned char* to) {
-    // Wait for data, and look at times whether reading was cancelled meanwhile.
-    pollfd waiting{pipe_, POLLIN, 0};
-    while (::poll(&waiting, 1, 100) == 0) expect_not_cancelled();
-    ssize_t got;
-    do got = ::read(pipe_, to, buffer_.size());
-    while (got < 0 && errno == EINTR);
+    ssize_t got = 0;
+    do {
+        // Wait for data, and look at times and after each signal whether reading was cancelled meanwhile.
+        pollfd waiting{pipe_, POLLIN, 0};
+        while (::poll(&waiting, 1, 100) <= 0) expect_not_cancelled();
+        got = ::read(pipe_, to, buffer_.size());
+    } while (got < 0 && (errno == EINTR || errno == EAGAIN));
     if (got < 0) fail_here("cannot be read: " + std::generic_category().message(errno));
     return static_cast<std::size_t>(got);
 }
