@@ -1,5 +1,8 @@
 /// Tests `hedgerow nbody`: forces in files, runs with their folders, interrupted and killed ones,
 /// comparisons.
+#include <algorithm>
+#include <random>
+
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/io/image.h>
@@ -116,18 +119,54 @@ TEST_F(Nbody, ARunHasSnapshotsPicturesAndALog) {
     const std::string log = log_of("run");
     EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 18);
 }
+/// The colours of a run end at four times the greatest density of its first picture.
+TEST_F(Nbody, DensitiesHaveTheSameBitsInAnyOrderOfParticles) {
+    std::vector<std::string> rows;
+    const Particles all = two_clusters(3000);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Vec3d& p = all.places[i];
+        char row[200];
+        std::snprintf(row, sizeof row, "%.17g,%.17g,%.17g,%.17g\n", p[0], p[1], p[2],
+                      all.masses[i] * (1 + 0.001 * double(i)));
+        rows.emplace_back(row);
+    }
+    std::mt19937 random(1);
+    json frame;
+    for (int times = 0; times < 4; ++times) {
+        std::ofstream out(file("rows.csv"));
+        out << "x,y,z,mass\n";
+        for (const std::string& row : rows) out << row;
+        out.close();
+        fs::remove_all(folder / "run");
+        const auto r =
+            run("nbody " + file("rows.csv") + " --until 0 --dt 1 --size 60x60 --quiet -o " + file("run"));
+        ASSERT_EQ(r.code, 0) << r.output;
+        const json found = json::parse(bytes_of(folder / "run/run.json")).at("frame");
+        if (times > 0) {
+            EXPECT_EQ(found, frame);
+        }
+        frame = found;
+        std::shuffle(rows.begin(), rows.end(), random);
+    }
+}
 TEST_F(Nbody, AKilledRunGoesOnWithTheSameBits) {
     const std::string options = "nbody gen:plummer:2000 --until 2 --dt 0.015625 --every 0.0625 --quiet -o ";
     ASSERT_EQ(run(options + file("whole")).code, 0);
     const auto snapshots = named("whole", "snapshot");
-    for (const int signal : {SIGKILL, SIGINT})
+    for (const int signal : {SIGKILL, SIGINT, SIGTERM, SIGUSR1})
         for (int milliseconds = 100;; milliseconds *= 2) {
             fs::remove_all(folder / "part");
             const int code = run_interrupted({"nbody", "gen:plummer:2000", "--until", "2", "--dt", "0.015625",
                                               "--every", "0.0625", "--quiet", "-o", file("part")},
                                              milliseconds, signal);
             if (!fs::exists(folder / "part/run.json") && milliseconds < 20000) continue;
-            EXPECT_TRUE(code == 0 || code == 128 + signal) << code;
+            EXPECT_TRUE(code == 0 || code == (signal == SIGKILL ? 128 + SIGKILL : 130)) << code;
+            if (signal != SIGKILL) {  // a snapshot of the last step was saved
+                const std::string log = log_of("part");
+                const auto last = log.rfind('\n', log.size() - 2) + 1;
+                const std::string snapshot = named("part", "snapshot").back();
+                EXPECT_EQ(std::stoi(snapshot.substr(snapshot.find('-') + 1)), std::stoi(log.substr(last)));
+            }
             const auto r = run("nbody --resume --until 2 --quiet -o " + file("part"));
             EXPECT_EQ(r.code, 0) << r.output;
             EXPECT_EQ(bytes_of(folder / "part" / snapshots.back()),
@@ -173,6 +212,49 @@ TEST_F(Nbody, DrawsWhatActsOnAParticle) {
     expect_usage("draw gen:disc:5000 --forces-at 1,1,0 -o " + file("a.png"), ".svg");
     expect_usage("draw gen:cube --forces-at 1,1,0 -o " + file("b.svg"), "gen:plummer");
     expect_bad("draw gen:disc:0 --forces-at 1,1,0 -o " + file("b.svg"), "no particle");
+}
+/// Two bodies that fall into each other: no step beyond --until or the next snapshot, and energy is kept.
+TEST_F(Nbody, FewBareParticlesKeepTheirEnergy) {
+    std::ofstream(file("two.csv")) << "x,y,z\n0,0,0\n0.5,0,0\n";
+    const auto r =
+        run("nbody " + file("two.csv") + " --until 0.5 --every 0.125 --size 0x0 --json -o " + file("run"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const json summary = json::parse(r.output);
+    EXPECT_EQ(summary["time"], 0.5);
+    EXPECT_EQ(summary["softening"], 0);
+    EXPECT_LE(summary["energy_error"].get<double>(), 1e-3);
+    std::vector<double> times;
+    for (const std::string& name : named("run", "snapshot"))
+        times.push_back(load_state(folder / "run" / name).time);
+    EXPECT_EQ(times, (std::vector<double>{0, 0.125, 0.25, 0.375, 0.5}));
+    // Half way, and then resumed: the same bits.
+    ASSERT_EQ(
+        run("nbody " + file("two.csv") + " --until 0.5 --every 0.125 --size 0x0 --quiet -o " + file("part"))
+            .code,
+        0);
+    for (const std::string& name : named("part", "snapshot"))
+        if (load_state(folder / "part" / name).time > 0.25) fs::remove(folder / "part" / name);
+    ASSERT_EQ(run("nbody --resume --until 0.5 --quiet -o " + file("part")).code, 0);
+    const std::string last = named("run", "snapshot").back();
+    EXPECT_EQ(named("part", "snapshot").back(), last);
+    EXPECT_EQ(bytes_of(folder / "part" / last), bytes_of(folder / "run" / last));
+    EXPECT_EQ(log_of("part"), log_of("run"));
+}
+/// Steps that are too long for --until end there, and a loss of energy is said.
+TEST_F(Nbody, StepsEndWhereTheRunEnds) {
+    std::ofstream(file("two.csv")) << "x,y,z\n0,0,0\n0.5,0,0\n";
+    const auto r = run("nbody " + file("two.csv") + " --until 0.5 --dt 1 --size 0x0 -o " + file("run"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_EQ(load_state(folder / "run/snapshot-0000001.npy").time, 0.5);
+    EXPECT_NE(r.output.find("warning: the energy changed"), std::string::npos) << r.output;
+    // With softening too: snapshots are at multiples of --every.
+    ASSERT_EQ(run("nbody gen:plummer:200 --until 0.3 --every 0.1 --size 0x0 --quiet -o " + file("soft")).code,
+              0);
+    std::vector<double> times;
+    for (const std::string& name : named("soft", "snapshot"))
+        times.push_back(load_state(folder / "soft" / name).time);
+    ASSERT_EQ(times.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(times[i], 0.1 * double(i), 1e-12);
 }
 TEST_F(Nbody, OfFewParticlesOrNone) {
     for (const char* count : {"0", "1", "2"}) {

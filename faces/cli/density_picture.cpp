@@ -22,9 +22,13 @@ std::vector<double> projected(const Particles& all, const DensityFrame& frame, i
     const auto weight = [reach](int dx, int dy) {
         return std::max(0.0, 1 - std::sqrt(static_cast<double>(dx * dx + dy * dy)) / (reach + 1));
     };
-    double whole = 0;
+    double whole = 0, heaviest = 0;
     for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) whole += weight(dx, dy);
+    // In fixed point, so that the order of the particles does not change a bit.
+    for (const double one : all.masses) heaviest = FixedPoint::larger(heaviest, one);
+    const FixedPoint point(heaviest);
+    std::vector<FixedPoint::Sum> sums(mass.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
         const double x = width / 2.0 + (all.places[i][0] - frame.middle[0]) * pixels,
                      y = height / 2.0 - (all.places[i][1] - frame.middle[1]) * pixels;
@@ -32,9 +36,11 @@ std::vector<double> projected(const Particles& all, const DensityFrame& frame, i
         const int px = static_cast<int>(std::floor(x)), py = static_cast<int>(std::floor(y));
         for (int dy = std::max(-reach, -py); dy <= std::min(reach, height - 1 - py); ++dy)
             for (int dx = std::max(-reach, -px); dx <= std::min(reach, width - 1 - px); ++dx)
-                mass[static_cast<std::size_t>(py + dy) * static_cast<std::size_t>(width) +
-                     static_cast<std::size_t>(px + dx)] += all.masses[i] * weight(dx, dy) / whole;
+                sums[static_cast<std::size_t>(py + dy) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(px + dx)] +=
+                    point.integer(all.masses[i] * weight(dx, dy) / whole);
     }
+    for (std::size_t i = 0; i < mass.size(); ++i) mass[i] = point.value(sums[i]);
     return mass;
 }
 double median(std::vector<double> all, double share) {

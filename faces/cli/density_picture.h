@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <hedgerow/base/fixed_point.h>
 #include <hedgerow/io/image.h>
 #include <hedgerow/nbody/particles.h>
 
@@ -19,6 +20,10 @@ struct DensityFrame {
     /// colour is four times the greatest density in it.
     static DensityFrame around(const Particles& particles, int width, int height, double period = 0);
 };
+
+/// What a density picture takes a pixel while it is made, in bytes.
+constexpr std::size_t memory_of_density_pixel =
+    sizeof(Image::Pixel) + sizeof(double) + sizeof(FixedPoint::Sum);
 
 /// Colours tell the logarithm of the mass in a pixel. Particles are spots of some pixels where they are few.
 Image density_picture(const Particles& particles, const DensityFrame& frame, int width, int height,

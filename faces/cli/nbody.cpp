@@ -119,10 +119,14 @@ Run add_nbody(CLI::App& verb) {
     verb.add_option("--format", a->format, "of the forces: npy, csv or json; else by the file's name");
     CLI::Option* const until = verb.add_option("--until", a->until, "move the particles until this time");
     CLI::Option* const dt =
-        verb.add_option("--dt", a->dt, "the step; else it follows from the softening and the accelerations");
+        verb.add_option("--dt", a->dt,
+                        "the step; else it follows from the softening and the accelerations, "
+                        "and without softening from the pairs and the potential energy");
     verb.add_flag("--block-steps", a->block_steps,
                   "steps of each particle's own, of which --dt is the longest");
-    verb.add_option("--eta", a->eta, "of steps that are not given: they are sqrt(2 eta softening/|a|)")
+    verb.add_option("--eta", a->eta,
+                    "of steps that are not given: they are sqrt(2 eta softening/|a|), and without softening "
+                    "begin with eta sqrt(r^3/(G m)) of the fastest pair")
         ->capture_default_str();
     CLI::Option* const every =
         verb.add_option("--every", a->every, "the time between snapshots; else a tenth of the whole");

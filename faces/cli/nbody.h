@@ -14,6 +14,7 @@ struct NbodyArguments : Common {
     std::string from, kernel = "wendland", size = "800x800", format, snapshots = "npy";
     double accuracy = 1e-3, softening = -1, gravity = 1, until = -1, dt = 0, every = 0, eta = 0.025,
            period = 0;
+    BareSteps bare;  // of size 0: steps are dt long
     unsigned threads = 0;
 };
 

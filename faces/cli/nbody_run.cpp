@@ -13,6 +13,7 @@
 
 #include "density_picture.h"
 #include "nbody.h"
+#include "nbody_steps.h"
 #include "picture_notes.h"
 #include "view.h"
 
@@ -96,6 +97,7 @@ ordered_json options_of(const NbodyArguments& a, const DensityFrame& frame) {
             {"gravity", a.gravity},
             {"period", a.period},
             {"dt", a.dt},
+            {"bare", {{"size", a.bare.size}, {"binding", a.bare.binding}}},
             {"block_steps", a.block_steps},
             {"eta", a.eta},
             {"every", a.every},
@@ -117,6 +119,8 @@ void read_options(const fs::path& path, NbodyArguments& a, DensityFrame& frame) 
         a.gravity = options.at("gravity");
         a.period = options.value("period", 0.0);
         a.dt = options.at("dt"), a.block_steps = options.at("block_steps"), a.eta = options.at("eta");
+        if (const auto bare = options.find("bare"); bare != options.end())
+            a.bare.size = bare->at("size"), a.bare.binding = bare->at("binding");
         a.every = options.at("every"), a.size = options.at("size");
         a.snapshots = options.value("snapshots", "npy");
         const auto& of_frame = options.at("frame");
@@ -147,7 +151,6 @@ public:
     }
     void snapshot(std::uint64_t step, const MotionState& state) {
         save_state(folder_.snapshot(step), state, period_);
-        last_ = step, any_ = true;
         if (width_ == 0) return;
         save_png(folder_.picture(step),
                  density_picture(state.particles, frame_, width_, height_,
@@ -155,7 +158,6 @@ public:
                                   fmt::format("{} particles", state.particles.size())}),
                  {}, picture_notes(seed_));
     }
-    bool has(std::uint64_t step) const { return any_ && last_ == step; }
 
 private:
     const RunFolder& folder_;
@@ -165,9 +167,18 @@ private:
     std::uint64_t seed_;
     double began_;
     int width_ = 0, height_ = 0;
-    std::uint64_t last_ = 0;
-    bool any_ = false;
 };
+
+/// Warns of a change of the energy that no motion has.
+void warn_of_energy(const Conserved& first, const Conserved& last) {
+    const double share = std::abs(last.energy() - first.energy()) /
+                         std::max(std::abs(first.energy()), std::abs(first.potential));
+    if (share > 0.1)
+        fmt::print(
+            stderr,
+            "hedgerow: warning: the energy changed much: particles came too close for the steps. Give a "
+            "shorter --dt, or a length of --softening\n");
+}
 
 int print_summary(const NbodyArguments& a, const Conserved& first, const MotionState& state,
                   std::uint64_t step, std::uint64_t found, double seconds) {
@@ -175,6 +186,7 @@ int print_summary(const NbodyArguments& a, const Conserved& first, const MotionS
     // The potential's mean in a periodic cube is 0, and the energy may be anything.
     const double unit = a.period > 0 ? last.kinetic : std::abs(first.energy());
     const double error = unit > 0 ? std::abs(last.energy() - first.energy()) / unit : 0;
+    if (a.period == 0) warn_of_energy(first, last);
     if (a.json)
         print_json({{"output", a.output},
                     {"particles", state.particles.size()},
@@ -192,7 +204,10 @@ int print_summary(const NbodyArguments& a, const Conserved& first, const MotionS
             "{}: {} particles to time {:g} by {}{:g} (softening {:.3g}, accuracy {:g})\n"
             "energy {:.6g}, changed by {:.1e} of {}; virial ratio {:.3f}; "
             "{:.3g} million forces in {:.1f} s\n",
-            a.output, state.particles.size(), state.time, a.block_steps ? "steps of at most " : "steps of ",
+            a.output, state.particles.size(), state.time,
+            a.block_steps     ? "steps of at most "
+            : a.bare.size > 0 ? "steps that follow the potential energy, the first of "
+                              : "steps of ",
             a.dt, a.softening, a.accuracy, last.energy(), error, a.period > 0 ? "the kinetic one" : "itself",
             last.virial_ratio(), static_cast<double>(found) / 1e6, seconds);
     return interrupted ? 130 : 0;
@@ -216,7 +231,7 @@ int nbody_run(NbodyArguments a) {
     } else {
         folder.expect_none();
         folder.hold(a.snapshots);
-        if (a.size != no_pictures) check_picture_memory(a.size, false);
+        if (a.size != no_pictures) check_memory_of_pixels(a.size, memory_of_density_pixel);
         start = load_particles(a);
         folder.make();
         a.softening = softening_of(a, start.particles).length;
@@ -227,8 +242,7 @@ int nbody_run(NbodyArguments a) {
     Motion motion(std::move(start), options);
     const Conserved before = conserved(motion.state());
     if (first) {
-        if (a.dt <= 0) a.dt = usual_step(motion.state(), a.softening, a.eta) * (a.block_steps ? 8 : 1);
-        if (a.every <= 0) a.every = a.until / 10;
+        choose_steps(a, motion.state(), options);
         if (a.size != no_pictures) {
             const auto [width, height] = parse_size(a.size);
             frame = DensityFrame::around(motion.state().particles, width, height, a.period);
@@ -243,27 +257,23 @@ int nbody_run(NbodyArguments a) {
         save_text(folder.options(), options_of(a, frame).dump(2) + "\n");
     }
     // Step until the time is reached, or the run is interrupted.
-    const double left = std::ceil((a.until - motion.state().time) / a.dt - 1e-6);
-    const std::uint64_t end = step + (left > 0 ? static_cast<std::uint64_t>(left) : 0),
-                        between = std::max<std::uint64_t>(
-                            1, static_cast<std::uint64_t>(std::ceil(std::min(a.every / a.dt, 1e15) - 1e-6)));
     std::uint64_t found = 0;
     {
-        ProgressLine line("moving particles", a.quiet, "steps");
+        ProgressLine line("moving particles", a.quiet);
         const Progress progress = line.progress();
-        const std::uint64_t from = step;
-        while (step < end && !interrupted) {
-            std::uint64_t of_step = motion.state().particles.size();
-            if (a.block_steps)
-                of_step = motion.block_step(a.dt, {.eta = a.eta});
-            else
-                motion.step(a.dt);
-            found += of_step, ++step;
+        const double from = motion.state().time;
+        Stepper stepper(a, motion);
+        bool saved = true;
+        while (!stepper.finished() && !interrupted) {
+            const std::uint64_t of_step = stepper.step(++step);
+            found += of_step;
             recorder.line(step, motion.state(), of_step);
-            if (step % between == 0) recorder.snapshot(step, motion.state());
-            progress(step - from, end - from);
+            saved = stepper.wants_snapshot();
+            if (saved) recorder.snapshot(step, motion.state());
+            progress(static_cast<std::uint64_t>(1e6 * (motion.state().time - from) / (a.until - from)),
+                     1000000);
         }
-        if (!recorder.has(step) && step > from) recorder.snapshot(step, motion.state());
+        if (!saved) recorder.snapshot(step, motion.state());
     }
     return print_summary(a, before, motion.state(), step, found, now() - began);
 }

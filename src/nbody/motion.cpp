@@ -2,12 +2,16 @@
 #include <hedgerow/nbody/motion.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <mutex>
 #include <string>
 #include <utility>
 
 #include <hedgerow/ask/points.h>
 #include <hedgerow/base/error.h>
+#include <hedgerow/base/fixed_point.h>
 #include <hedgerow/index.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/structures/kdtree/point_kdtree.h>
@@ -16,17 +20,53 @@
 
 namespace hedgerow {
 
-Conserved conserved(const MotionState& state) {
-    Conserved sum;
+namespace {
+
+/// What a particle adds to the conserved sums: kinetic and potential energy, momentum, angular momentum.
+std::array<double, 8> share_of(const MotionState& state, std::size_t i) {
     const Particles& all = state.particles;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const Vec3d momentum = all.velocities[i] * all.masses[i];
-        sum.kinetic += dot(momentum, all.velocities[i]) / 2;
-        sum.potential += all.masses[i] * state.potentials[i] / 2;
-        sum.momentum += momentum;
-        sum.angular_momentum += cross(all.places[i], momentum);
-    }
-    return sum;
+    const Vec3d momentum = all.velocities[i] * all.masses[i], angular = cross(all.places[i], momentum);
+    return {dot(momentum, all.velocities[i]) / 2,
+            all.masses[i] * state.potentials[i] / 2,
+            momentum[0],
+            momentum[1],
+            momentum[2],
+            angular[0],
+            angular[1],
+            angular[2]};
+}
+
+}  // namespace
+
+Conserved conserved(const MotionState& state, Threads threads) {
+    // In fixed point, so that neither the order of particles nor threads matter: each sum by its largest
+    // term.
+    const std::size_t n = state.particles.size();
+    std::array<double, 8> largest{};
+    std::array<FixedPoint::Sum, 8> sums;
+    std::mutex joining;
+    Executor& executor = threads.over(n / 4);
+    executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
+        std::array<double, 8> here{};
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto share = share_of(state, i);
+            for (std::size_t k = 0; k < 8; ++k) here[k] = FixedPoint::larger(here[k], share[k]);
+        }
+        const std::lock_guard lock(joining);
+        for (std::size_t k = 0; k < 8; ++k) largest[k] = FixedPoint::larger(largest[k], here[k]);
+    });
+    const std::vector<FixedPoint> points(largest.begin(), largest.end());
+    executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
+        std::array<FixedPoint::Sum, 8> here;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto share = share_of(state, i);
+            for (std::size_t k = 0; k < 8; ++k) here[k] += points[k].integer(share[k]);
+        }
+        const std::lock_guard lock(joining);
+        for (std::size_t k = 0; k < 8; ++k) sums[k] += here[k];
+    });
+    const auto value = [&](std::size_t k) { return points[k].value(sums[k]); };
+    return {value(0), value(1), {value(2), value(3), value(4)}, {value(5), value(6), value(7)}};
 }
 
 double usual_softening(const Particles& all) {
@@ -44,15 +84,54 @@ double usual_softening(const Particles& all) {
     std::nth_element(distances.begin(), middle, distances.end());
     return 0.28 * *middle;
 }
-double usual_step(const MotionState& state, double softening, double eta) {
+
+namespace {
+
+/// The acceleration that all but a thousandth of the particles stay below.
+double usual_acceleration(const MotionState& state) {
     std::vector<double> sizes;
     for (const Vec3d& a : state.accelerations) sizes.push_back(length(a));
-    if (sizes.empty()) return 1;
+    if (sizes.empty()) return 0;
     const auto most =
         sizes.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(sizes.size() - 1) * 0.999);
     std::nth_element(sizes.begin(), most, sizes.end());
-    const double step = std::sqrt(2 * eta * softening / *most);
+    return *most;
+}
+/// The least time in which a particle and one of its eight nearest turn around or pass each other. Particles
+/// in one place do not act on each other.
+double least_pair_time(const Particles& all, double gravity) {
+    const PointCloudView<double, 3> cloud(all.places);
+    const auto index = build<PointKdTree>(cloud);
+    std::vector<Near<double, 3>> near;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        nearest(index, all.places[i], std::min<std::size_t>(9, all.size()), near);
+        for (const auto& other : near) {
+            const double r = std::sqrt(other.distance2);
+            if (!(r > 0)) continue;
+            const double mass = std::abs(all.masses[i]) + std::abs(all.masses[other.primitive]),
+                         speed = length(all.velocities[i] - all.velocities[other.primitive]);
+            least = std::min({least, r * std::sqrt(r / (gravity * mass)), r / speed});
+        }
+    }
+    return least;
+}
+
+}  // namespace
+
+double usual_step(const MotionState& state, double softening, double eta, double gravity) {
+    const double step = softening > 0 ? std::sqrt(2 * eta * softening / usual_acceleration(state))
+                                      : eta * least_pair_time(state.particles, gravity);
     return step > 0 && step < 0x1p60 ? std::ldexp(1.0, std::ilogb(step)) : 1;
+}
+
+BareSteps::BareSteps(const MotionState& start, const MotionOptions& options, double dt) {
+    const Conserved sums = conserved(start);
+    const auto& masses = start.particles.masses;
+    if (options.softening.length > 0 || options.period > 0 || !(sums.potential < 0) ||
+        std::ranges::any_of(masses, [](double mass) { return mass < 0; }))
+        throw UsageError("bare steps need masses that attract each other, without softening and period");
+    size = -sums.potential * dt, binding = -sums.energy();
 }
 
 Motion::Motion(Particles start, const MotionOptions& options, Threads threads)
@@ -78,6 +157,39 @@ void Motion::step(double dt) {
     state_.time += dt;
     accelerate();
     kick(dt / 2);
+}
+
+// A leapfrog of the Hamiltonian log(T + binding) − log U, whose own time is `size` a step: kicks last size/2
+// over U, drifts size over (T + binding), which is U but for errors. Both sides depend on what they leave
+// unchanged.
+void Motion::bare_step(const BareSteps& steps, double until) {
+    const Conserved before = conserved(state_, threads_);
+    const double depth = -before.potential, sum = before.kinetic + steps.binding,
+                 rest = sum > 0 ? sum : depth;
+    // After a kick of length k the drift lasts size/(rest + k·slope + k²·bend).
+    double slope = 0, bend = 0, size = steps.size;
+    for (std::size_t i = 0; i < state_.particles.size(); ++i) {
+        const Vec3d pull = state_.accelerations[i] * state_.particles.masses[i];
+        slope += dot(pull, state_.particles.velocities[i]), bend += dot(pull, state_.accelerations[i]) / 2;
+    }
+    const auto drift_of = [&](double s) {
+        const double k = s / (2 * depth);
+        return s / (rest + k * (slope + k * bend));
+    };
+    while (drift_of(size) <= 0) size /= 2;  // errors of the energy may be larger than U
+    // Shorten a step that would end beyond the time: the drift of the lesser root lasts until then.
+    const double left = until - state_.time;
+    const bool last = !(drift_of(size) < left);
+    if (last) {
+        const double a = left * bend / (4 * depth * depth), b = 1 - left * slope / (2 * depth);
+        size = 2 * left * rest / (b + std::sqrt(std::max(0.0, b * b - 4 * a * left * rest)));
+    }
+    const double dt = last ? left : drift_of(size);
+    kick(size / (2 * depth));
+    drift(dt);
+    state_.time = last ? until : state_.time + dt;
+    accelerate();
+    kick(size / (-2 * conserved(state_, threads_).potential));
 }
 
 std::uint64_t Motion::block_step(double dt, const BlockSteps& steps) {

@@ -32,21 +32,36 @@ struct Conserved {
     /// Twice the kinetic over the potential energy: 1 in equilibrium.
     double virial_ratio() const { return potential == 0 ? 0 : -2 * kinetic / potential; }
 };
-/// O(n).
-Conserved conserved(const MotionState& state);
+/// Neither the order of the particles nor threads change a bit: sums are in fixed point. O(n).
+Conserved conserved(const MotionState& state, Threads threads = {});
 
 /// A length of softening that smooths the grain of particles: 0.28 times the distance to the eighth nearest
 /// other particle, as it is in the middle of a thousand particles. For a Plummer sphere that is about the
 /// radius of half the mass over the cube root of the number. 0 for less than nine particles. O(n).
 double usual_softening(const Particles& particles);
-/// A length of step: √(2·η·length/|a|), for the acceleration that all but a thousandth of the particles stay
-/// below, rounded down to a power of two. 1 where nothing acts. O(n).
-double usual_step(const MotionState& state, double softening, double eta = 0.025);
+/// A length of step, rounded down to a power of two. With softening √(2·η·length/|a|), for the acceleration
+/// that all but a thousandth of the particles stay below. Bare particles have steps by their pairs, each with
+/// its eight nearest: η times the least of √(r³/(G·(m₁ + m₂))), in which a pair on a circle turns by a
+/// radian, and of r/|v₁ − v₂|. 1 where nothing acts. O(n), bare O(n log n).
+double usual_step(const MotionState& state, double softening, double eta = 0.025, double gravity = 1);
 
 /// The lengths of block steps.
 struct BlockSteps {
     double eta = 0.025;
     int deepest = 16;  ///< the shortest step is dt/2^deepest
+};
+
+/// Steps of bare particles: their length is size/U for a potential energy −U. So they shorten as particles
+/// approach, in a way that is reversible and keeps the orbits of a pair exact but for an error of time, also
+/// through a collision (Mikkola and Tanikawa 1999; Preto and Tremaine 1999).
+struct BareSteps {
+    double size = 0;
+    double binding = 0;  ///< minus the energy of the motion, which stays
+
+    /// Steps of a motion whose first is of length `dt`. Throws UsageError unless masses attract: none is
+    /// below 0, two are above it, nothing is softened and nothing repeats.
+    BareSteps(const MotionState& start, const MotionOptions& options, double dt);
+    BareSteps() = default;
 };
 
 class Motion {
@@ -63,6 +78,8 @@ public:
     /// Steps of a length of each particle's own, until all have come `dt` further. Returns how many forces
     /// were found, of particles. Throws UsageError for particles without a length of softening.
     std::uint64_t block_step(double dt, const BlockSteps& steps = {});
+    /// One step of all particles, whose length follows their potential energy, but not beyond a time.
+    void bare_step(const BareSteps& steps, double until);
 
     const MotionState& state() const { return state_; }
 
