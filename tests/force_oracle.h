@@ -39,11 +39,15 @@ public:
         const std::size_t n = all.size(),
                           step = std::max<std::size_t>(1, n / std::max<std::size_t>(1, targets));
         for (std::size_t i = 0; i < n; i += step) targets_.push_back(i);
-        even_ = targets_.size();
+        even_ = targets_.size();  // those that stand for all charges
         for (std::size_t i = n - std::min<std::size_t>(n, 5); i < n; ++i)
             if (i % step != 0) targets_.push_back(i);
-        if (all.period > 0) set_waves();
-        for (const std::size_t t : targets_) sum(t);
+        sum_all();
+    }
+    /// Sums at given charges.
+    ForceOracle(const Arrangement& all, std::vector<std::size_t> targets)
+        : all_(all), targets_(std::move(targets)), even_(targets_.size()) {
+        sum_all();
     }
 
     FoundErrors errors_of(const std::vector<PotentialAt<double>>& found) const {
@@ -78,6 +82,11 @@ public:
     const std::vector<std::size_t>& targets() const { return targets_; }
 
 private:
+    void sum_all() {
+        if (all_.period > 0) set_waves();
+        for (const std::size_t t : targets_) sum(t);
+    }
+
     static constexpr Real pi = std::numbers::pi_v<Real>;
     // Of side 1: what is summed over images falls as erfc(width·r), what is summed over waves as
     // exp(−(π·n/width)²).
@@ -224,7 +233,7 @@ private:
 
     const Arrangement& all_;
     std::vector<std::size_t> targets_;
-    std::size_t even_ = 0;  // those that stand for all charges
+    std::size_t even_ = 0;
     std::vector<Vector> gradients_;
     std::vector<Real> potentials_, sizes_, weights_;
     std::vector<Wave> waves_;

@@ -65,6 +65,7 @@ int nbody_forces(const NbodyArguments& a) {
         WatchedExecutor watched(default_executor(), line.progress());
         errors = ForceCheck(charges, 1000, watched).errors_of<double>(found);
     }
+    const bool kept = !errors || (errors->rms <= a.accuracy && errors->most <= 10 * a.accuracy);
     // Write a row a target.
     const auto list = [&](auto& f, const PotentialAt<double>& at) {
         f("potential", -a.gravity * at.potential);
@@ -86,11 +87,9 @@ int nbody_forces(const NbodyArguments& a) {
                                          {"accuracy", a.accuracy},
                                          {"seconds", seconds}};
         if (errors)
-            report["errors"] = {{"targets", errors->targets},
-                                {"rms", errors->rms},
-                                {"all_but_a_thousandth", errors->most},
-                                {"largest", errors->largest},
-                                {"imbalance", errors->imbalance}};
+            report["errors"] = {{"targets", errors->targets},           {"rms", errors->rms},
+                                {"all_but_a_thousandth", errors->most}, {"largest", errors->largest},
+                                {"imbalance", errors->imbalance},       {"kept", kept}};
         print_json(report);
     } else if (!a.quiet) {
         fmt::print("{}: {} rows of potential and acceleration, within {:g}, in {:.3f} s ({:.3g} million/s)\n",
@@ -101,7 +100,13 @@ int nbody_forces(const NbodyArguments& a) {
                 "all forces add up to {:.1e} of the sum of their sizes\n",
                 errors->targets, errors->rms, errors->most, errors->largest, errors->imbalance);
     }
-    return 0;
+    if (!kept)
+        fmt::print(stderr,
+                   "hedgerow: the accuracy of {:g} is not kept: rms errors are {:.1e} at {} of the "
+                   "particles, all but "
+                   "a thousandth of them below {:.1e}; ask for a smaller one\n",
+                   a.accuracy, errors->rms, errors->targets, errors->most);
+    return kept ? 0 : 1;
 }
 
 Run add_nbody(CLI::App& verb) {
@@ -113,9 +118,10 @@ Run add_nbody(CLI::App& verb) {
                     "the file of forces, the folder of the run, or the plot of the comparison (.svg)");
     verb.add_flag("--forces", a->forces, "write potential and acceleration of every particle");
     verb.add_option("--from", a->from, "with --forces: at the places of this file instead");
-    verb.add_flag(
-        "--check", a->check,
-        "with --forces: measure their errors at a thousand of the particles, by sums over all pairs");
+    verb.add_flag("--check", a->check,
+                  "with --forces: measure their errors at a thousand of the particles, by sums over all "
+                  "pairs; exit code 1 if the "
+                  "accuracy is not kept");
     verb.add_option("--format", a->format, "of the forces: npy, csv or json; else by the file's name");
     CLI::Option* const until = verb.add_option("--until", a->until, "move the particles until this time");
     CLI::Option* const dt =

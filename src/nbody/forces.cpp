@@ -169,8 +169,8 @@ bool multipole_forces(const Charges<T>& charges, const detail::RepeatingCube& cu
     if (targets != nullptr)
         for (std::size_t i = 0; i < found.size(); ++i)
             found[i].potential -= static_cast<T>(detail::own_potential(*targets, charges.softening, i));
-    return true;
     detail::hand_out(at, units, options.tides, executor);
+    return true;
 }
 template <class Kernels>
 const auto& of_order(const Kernels& kernels, int order) {
