@@ -73,7 +73,7 @@ void expect_radii(const I& index) {
     EXPECT_EQ(nearest(index, p, index.size(), some, {.radius2 = middle}), want);
     const T radius = T(0.4);
     EXPECT_EQ(within(index, p, {.radius = radius}, some),
-              within(index, p, {.radius2 = T(double(radius) * double(radius))}, all));
+              within(index, p, {.radius2 = largest_square_within(radius)}, all));
     EXPECT_EQ(some, all);
     // Both hold.
     EXPECT_EQ(within(index, p, {.radius = radius, .radius2 = 0}, some), 0u);
@@ -113,6 +113,102 @@ TEST(NearOptions, CloudsInThePlane) {
 TEST(NearOptions, Meshes) {
     expect_options(soup<float>(300));
     expect_options(soup<double>(300));
+}
+
+/// The rule of radii for numbers of every size, those at the ends of the range and next to squares among
+/// them.
+template <class T>
+void expect_rule_of_radii() {
+    using limits = std::numeric_limits<T>;
+    const auto expect_limit = [](T radius) {
+        const T square = largest_square_within(radius);
+        ASSERT_TRUE(square >= 0 && within_radius(square, radius)) << radius;
+        ASSERT_TRUE(square == limits::max() ||
+                    !within_radius(std::nextafter(square, limits::infinity()), radius))
+            << radius;
+    };
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+        Random random(51, i);
+        const int exponent = limits::min_exponent - limits::digits +
+                             static_cast<int>(random.bits() % (limits::max_exponent * 2 + limits::digits));
+        expect_limit(static_cast<T>(std::ldexp(1 + random.uniform(), exponent)));
+        // The root of a square, as it is printed, and the number below it.
+        const T square = static_cast<T>(std::ldexp(1 + random.uniform(), exponent / 2)),
+                root = std::sqrt(square);
+        ASSERT_LE(square, largest_square_within(root));
+        ASSERT_GT(square, largest_square_within(std::nextafter(root, T(0))));
+    }
+    for (const T radius : {T(0), limits::denorm_min(), limits::min(), std::sqrt(limits::min()),
+                           std::sqrt(limits::denorm_min()), std::sqrt(limits::max()), limits::max()})
+        expect_limit(radius);
+    EXPECT_EQ(largest_square_within(limits::infinity()), limits::max());
+    EXPECT_EQ(largest_square_within(limits::quiet_NaN()), -1);
+    EXPECT_EQ(largest_square_within(-limits::denorm_min()), -1);
+}
+TEST(NearOptions, RadiiBoundRoundedDistances) {
+    expect_rule_of_radii<float>();
+    expect_rule_of_radii<double>();
+}
+
+/// Each distance that is answered finds its primitive as a radius, by every question and every structure; the
+/// next smaller radius does not.
+template <class Set>
+void expect_distances_are_radii(const Set& set) {
+    using T = typename Set::Scalar;
+    constexpr int D = Set::dimension;
+    const auto oracle = build<BruteForce>(set);
+    std::size_t rounded_up = 0;
+    for_each_index(set, [&](const char* name, const auto& index) {
+        SCOPED_TRACE(name);
+        using I = std::decay_t<decltype(index)>;
+        std::vector<NearOf<I>> all, found;
+        std::vector<PrimitiveId> ids, wanted;
+        for (std::uint64_t i = 0; i < 60; ++i) {
+            const auto p = question(oracle, i);
+            nearest(oracle, p, set.size(), all);
+            const T radius = std::sqrt(all[i % 20].distance2), less = std::nextafter(radius, T(0));
+            rounded_up += all[i % 20].distance2 > static_cast<T>(double(radius) * double(radius));
+            wanted.clear();
+            for (const auto& near : all)
+                if (std::sqrt(near.distance2) <= radius) wanted.push_back(near.element);
+            ASSERT_GT(wanted.size(), i % 20);
+            ASSERT_EQ(within(index, p, {.radius = radius}, found), wanted.size());
+            EXPECT_EQ(nearest(index, p, set.size(), found, {.radius = radius}), wanted.size());
+            std::sort(wanted.begin(), wanted.end());
+            const Sphere<T, D> ball{p, radius};
+            EXPECT_EQ(overlapping(index, ball, ids), wanted.size());
+            EXPECT_EQ(ids, wanted);
+            EXPECT_EQ(count_overlapping(index, ball), wanted.size());
+            const T first = std::sqrt(all[0].distance2);
+            EXPECT_TRUE(closest_point(index, p, {.radius = first}));
+            EXPECT_TRUE(any_overlapping(index, Sphere<T, D>{p, first}));
+            if (!(first > 0)) continue;
+            EXPECT_FALSE(closest_point(index, p, {.radius = std::nextafter(first, T(0))}));
+            EXPECT_FALSE(any_overlapping(index, Sphere<T, D>{p, std::nextafter(first, T(0))}));
+            EXPECT_LT(within(index, p, {.radius = less}, found), wanted.size());
+        }
+        if constexpr (PointSet<ViewOf<Set>>) {
+            // Pairs: those that single points find.
+            nearest(oracle, set.points[5], 8, all);
+            const T radius = std::sqrt(all[7].distance2);
+            std::vector<PairWithin<T>> pairs;
+            pairs_within(index, {.radius = radius}, pairs);
+            std::size_t want = 0;
+            for (const auto& p : set.points) want += within(oracle, p, {.radius = radius}, found) - 1;
+            EXPECT_EQ(2 * pairs.size(), want);
+            EXPECT_GE(std::count_if(pairs.begin(), pairs.end(),
+                                    [](const auto& pair) { return pair.a == 5 || pair.b == 5; }),
+                      7);
+        }
+    });
+    EXPECT_GT(rounded_up, 0u);
+}
+TEST(NearOptions, DistancesThatWereAnsweredAreRadii) {
+    expect_distances_are_radii(some_points<float, 3>(300));
+    expect_distances_are_radii(some_points<double, 3>(300));
+    expect_distances_are_radii(some_points<float, 2>(200));
+    expect_distances_are_radii(soup<float>(100));
+    expect_distances_are_radii(soup<double>(100));
 }
 
 /// A primitive at exactly the radius is within it.

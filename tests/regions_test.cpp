@@ -46,18 +46,24 @@ Said judge_ball(const P& set, std::size_t i, const Sphere<T, D>& ball, Finds fin
     const rational::Point center = rational::point(ball.center);
     const Number radius = double(ball.radius);
     if (finds == Finds::contained) {
+        const Number error = own > 0 ? Number(0)
+                                     : radius * radius * (std::is_same_v<T, float> ? 0x1p-22 : 0x1p-50) +
+                                           Number(double(std::numeric_limits<T>::denorm_min()));
+        bool near = false;  // a corner is about as far away as the radius
         for (const auto& p : c) {
-            const Number reach = radius - own, d = distance2_to(center, {p});
-            if (reach < 0 || d > reach * reach) return Said::no;
+            const Number reach = radius - own, r2 = reach * reach, d = distance2_to(center, {p});
+            if (reach < 0 || d > r2 + error) return Said::no;
+            near = near || (own == 0 && d > r2 - error);
         }
-        return Said::yes;
+        return near ? Said::either : Said::yes;
     }
     const Number d = distance2_to(center, c), reach = radius + own, r2 = reach * reach;
-    if (c.size() == 1) return exactly(d <= r2);
-    // Distances are rounded to T, and those to triangles err by roundings of their edges in double.
+    // Solid balls that overlap exactly are found. Else distances decide, which are rounded to T; those to
+    // triangles err by roundings of their edges in double.
+    if (own > 0 && d <= r2) return Said::yes;
     Number size = r2;
     for (const auto& p : c) size += distance2_to(center, {p});
-    const Number error = r2 * (std::is_same_v<T, float> ? 0x1p-23 : 0x1p-50) + size * 0x1p-46 +
+    const Number error = r2 * (std::is_same_v<T, float> ? 0x1p-22 : 0x1p-50) + size * 0x1p-46 +
                          Number(double(std::numeric_limits<T>::denorm_min()));
     if (d <= r2 - error) return Said::yes;
     return d > r2 + error ? Said::no : Said::either;

@@ -27,7 +27,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // A ball, and the boxes of a node against it. A box whose nearest point is beyond the ball is passed over,
 // and one whose farthest corner is in the ball is inside. Squared distances in float err by at most six
-// roundings, 2^-21.4 of themselves, and where they underflow by less than 2^-120.
+// roundings, 2^-21.4 of themselves, and where they underflow by less than 2^-120. The rule of radii adds
+// 2^-23 (geometry/radius.h).
 template <int W>
 class BallAmongBoxes {
 public:
@@ -65,8 +66,8 @@ private:
     V outer_, inner_;
 };
 
-// How many points of a block are in a ball: distances in double, and the exact test where rounding may
-// decide.
+// How many points of a block are in a ball: distances in double, and the test of single points where rounding
+// to float may decide.
 HWY_INLINE std::size_t count_of_block(const PointBlock<float, 3>& block, const Sphere<float, 3>& ball) {
     using Doubles = hn::CappedTag<double, 8>;
     constexpr Doubles d;
@@ -76,8 +77,7 @@ HWY_INLINE std::size_t count_of_block(const PointBlock<float, 3>& block, const S
     std::size_t count = 0;
     for (int from = 0; from < 8; from += lanes) {
         const auto distance2 = distances2_in_double(d, block, from, Vec<double, 3>(ball.center));
-        const auto error =
-            hn::MulAdd(hn::Set(d, 0x1p-49), hn::Add(distance2, radius2), hn::Set(d, 0x1p-1000));
+        const auto error = hn::MulAdd(hn::Set(d, 0x1p-22), hn::Add(distance2, radius2), hn::Set(d, 0x1p-140));
         const auto apart = hn::Abs(hn::Sub(distance2, radius2));
         const auto sure = hn::And(hn::Gt(apart, error), hn::Lt(distance2, radius2));
         count += hn::CountTrue(d, sure);

@@ -1,10 +1,12 @@
 /// A ball as a region: the points within `radius` (not its square) of the center of a Sphere.
 ///
-/// Points and balls are decided exactly. Triangles and segments overlap a ball if a corner lies in it, or if
-/// their squared distance from its center, as `closest_point` rounds it, is at most the radius squared: then
-/// `within` finds them too. A negative radius makes an empty ball, an infinite one all of space.
+/// Points, segments and triangles overlap a ball if their distance from its center, as `closest_point` rounds
+/// it, is within the radius by the rule of geometry/radius.h, so `within` finds the same ones. They lie in a
+/// ball if they overlap it and their corners do. Solid balls are decided exactly, and overlap a ball too if
+/// `within` finds their surface. A negative radius makes an empty ball, an infinite one all of space.
 #pragma once
 
+#include <hedgerow/geometry/radius.h>
 #include <hedgerow/geometry/region.h>
 
 namespace hedgerow {
@@ -23,8 +25,9 @@ int compare_distance(const Vec<double, D>& p, const Vec<double, D>& q, double a,
     for (int k = 0; k < D; ++k) sum.add(p[k], p[k]).subtract(2, p[k], q[k]).add(q[k], q[k]);
     return sum.subtract(a, a).subtract(b, b).subtract(product(2.0, sign), a, b).sign();
 }
-/// What the squared distance of a triangle or segment, rounded to T, is less than the exact one by at most: a
-/// share of it, and what is lost where it underflows.
+/// By how much the exact squared distance of a primitive within a radius exceeds the radius squared at most:
+/// a share of it, and what is lost where it underflows. Both the rounding of the distance and the rule of
+/// radii are in it.
 template <class T>
 inline constexpr double distances_round = std::is_same_v<T, float> ? 0x1p-20 : 0x1p-46;
 template <class T>
@@ -41,8 +44,7 @@ double reach(const Sphere<T, D>& ball) {
 /// Whether a shape has a point within the ball, by its distance from the center.
 template <class T, int D, class Shape>
 bool reaches(const Sphere<T, D>& ball, const Shape& shape) {
-    const double radius = static_cast<double>(ball.radius);
-    return static_cast<double>(closest_point(ball.center, shape).distance2) <= product(radius, radius);
+    return within_radius(closest_point(ball.center, shape).distance2, ball.radius);
 }
 }  // namespace detail
 
@@ -52,7 +54,7 @@ bool is_empty(const Sphere<T, D>& region) {
     return !(region.radius >= 0) || !finite(region.center);
 }
 /// Outside boxes are farther away than the distance of any primitive in them may be rounded. Inside boxes
-/// have their farthest corner in the ball, by more than the roundings here.
+/// have their farthest corner in the ball, by more than the roundings here and those of distances.
 template <class T, class U, int D>
 Containment containment(const Sphere<T, D>& region, const Box<U, D>& box) {
     const Vec<double, D> c(region.center), low(box.low), high(box.high);
@@ -67,7 +69,7 @@ Containment containment(const Sphere<T, D>& region, const Box<U, D>& box) {
     if (least2 > r2 + product(r2, detail::distances_round<T>) + detail::distances_underflow<T>)
         return Containment::outside;
     const bool inside = most2 < std::numeric_limits<double>::infinity() &&
-                        most2 + product(most2, 0x1p-46) + detail::underflow <= r2;
+                        most2 + product(most2, 0x1p-40) + detail::distances_underflow<T> <= r2;
     return inside ? Containment::inside : Containment::across;
 }
 template <class T, int D>
@@ -86,8 +88,15 @@ Extent extent(const Sphere<T, D>& region, const Vec<double, D>& normal) {
 
 template <class T, int D>
 bool lies_in(const Vec<T, D>& p, const Sphere<T, D>& region) {
-    const double radius = static_cast<double>(region.radius);
-    return detail::compare_distance(Vec<double, D>(p), Vec<double, D>(region.center), radius, 0, 1) <= 0;
+    return detail::reaches(region, p);
+}
+template <class T, int D>
+bool lies_in(const Triangle<T, D>& t, const Sphere<T, D>& region) {
+    return lies_in(t.a, region) && lies_in(t.b, region) && lies_in(t.c, region) && detail::reaches(region, t);
+}
+template <class T, int D>
+bool lies_in(const Segment<T, D>& s, const Sphere<T, D>& region) {
+    return lies_in(s.a, region) && lies_in(s.b, region) && detail::reaches(region, s);
 }
 template <class T, int D>
 bool lies_in(const Sphere<T, D>& s, const Sphere<T, D>& region) {
@@ -100,15 +109,16 @@ template <class T, int D>
 bool overlap(const Sphere<T, D>& s, const Sphere<T, D>& region) {
     return detail::compare_distance(Vec<double, D>(s.center), Vec<double, D>(region.center),
                                     static_cast<double>(region.radius), static_cast<double>(s.radius),
-                                    1) <= 0;
+                                    1) <= 0 ||
+           detail::reaches(region, s);
 }
 template <class T, int D>
 bool overlap(const Triangle<T, D>& t, const Sphere<T, D>& region) {
-    return lies_in(t.a, region) || lies_in(t.b, region) || lies_in(t.c, region) || detail::reaches(region, t);
+    return detail::reaches(region, t);
 }
 template <class T, int D>
 bool overlap(const Segment<T, D>& s, const Sphere<T, D>& region) {
-    return lies_in(s.a, region) || lies_in(s.b, region) || detail::reaches(region, s);
+    return detail::reaches(region, s);
 }
 
 }  // namespace hedgerow

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <hedgerow/base/error.h>
-#include <hedgerow/geometry/rounding.h>
+#include <hedgerow/geometry/radius.h>
 #include <hedgerow/walks/query.h>
 
 namespace hedgerow {
@@ -41,8 +41,8 @@ template <std::floating_point T>
 struct NearOptions {
     static constexpr T anywhere = std::numeric_limits<T>::max();
 
-    /// The largest distance, included, and the same squared. Both hold. Nothing is within what is negative or
-    /// NaN.
+    /// The largest distance, included, by the rule of geometry/radius.h; and the largest squared one. Both
+    /// hold. Nothing is within what is negative or NaN.
     T radius = anywhere, radius2 = anywhere;
     /// At least 1. The closest point, and each of the k nearest, is at most this many times as far away as
     /// the exact one of its place; distances are those of what is found. Parts that could only improve on an
@@ -53,8 +53,7 @@ struct NearOptions {
     /// The largest squared distance. Throws InputError for a factor that is not at least 1.
     T max_distance2() const {
         if (!(factor >= 1)) throw InputError("the factor of a point's question is below 1: give 1 or more");
-        if (!(radius >= 0)) return T(-1);
-        const T squared = rounded_to<T>(product(double(radius), double(radius)));
+        const T squared = largest_square_within(radius);
         return squared < radius2 ? squared : radius2;
     }
     /// The limit of a walk that has found something at a squared distance.
