@@ -242,9 +242,8 @@ private:
     template <class R>
     std::size_t count(const R& region, Visits* visits) const {
         if (exclusive()) return answer_region<OverlapCount>(region, visits);
-        // The memory is the thread's own.
-        static thread_local std::vector<PrimitiveId> found;
-        return answer_region<Overlapping>(region, visits, found, Finds::overlapping);
+        const Scratch<std::vector<PrimitiveId>> found;
+        return answer_region<Overlapping>(region, visits, *found, Finds::overlapping);
     }
     /// Walks. The count is a Visits or a NoVisits, or for rays also a TraceLog.
     template <class Probe, class Count>

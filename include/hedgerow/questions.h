@@ -126,7 +126,8 @@ struct AskFeature {
     using Answer = NearAndFeature<T, D>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
                         std::span<Visits> visits = {}, const NearOptions<T>& options = {}) {
-        static thread_local std::vector<Near<T, D>> near;
+        const Scratch<std::vector<Near<T, D>>> kept;
+        std::vector<Near<T, D>>& near = *kept;
         near.resize(points.size());
         index.closest_points(points, near, visits, options);
         for (std::size_t i = 0; i < points.size(); ++i)
@@ -237,7 +238,8 @@ struct AskSide : AskOfSolid<AskSide<T, D>, T, D, std::int8_t> {
     static constexpr std::string_view name = "side", words = "side of a surface", column = "side";
     static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points,
                           std::span<std::int8_t> found, std::span<Visits> visits = {}) {
-        static thread_local std::vector<Side> sides;
+        const Scratch<std::vector<Side>> kept;
+        std::vector<Side>& sides = *kept;
         sides.resize(points.size());
         solid.sides(points, sides, visits);
         for (std::size_t i = 0; i < points.size(); ++i)

@@ -8,6 +8,7 @@
 #include <string>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/base/scratch.h>
 #include <hedgerow/base/strided.h>
 #include <hedgerow/index.h>
 #include <hedgerow/queries/answer_lists.h>

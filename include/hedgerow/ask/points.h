@@ -112,10 +112,10 @@ void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::
             return kernel.answer_many(index, part, k, options, columns.ids.data(), columns.distances2.data());
         },
         [&](std::size_t i) {
-            thread_local std::vector<Found> found;
-            nearest(index, points[i], k, found, options);
+            const Scratch<std::vector<Found>> found;
+            nearest(index, points[i], k, *found, options);
             for (std::size_t j = 0; j < k; ++j) {
-                const Found near = j < found.size() ? found[j] : Found();
+                const Found near = j < found->size() ? (*found)[j] : Found();
                 if (!columns.ids.empty()) columns.ids[i * k + j] = Identity<P>::of(near);
                 if (!columns.distances2.empty()) columns.distances2[i * k + j] = near.distance2;
             }

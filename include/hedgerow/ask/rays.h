@@ -78,8 +78,8 @@ std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P:
     if (index.structure().exclusive() && offers_once(index.primitives())) {
         return index.template answer<HitCount<P, Filter>>(count, ray, filter);
     } else {
-        static thread_local std::vector<Hit<typename P::Scalar>> hits;
-        return all_hits(index, ray, hits, filter, count);
+        const Scratch<std::vector<Hit<typename P::Scalar>>> hits;
+        return all_hits(index, ray, *hits, filter, count);
     }
 }
 

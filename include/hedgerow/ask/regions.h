@@ -46,8 +46,8 @@ std::size_t count_overlapping(const Index<S, P>& index, const R& region, Count& 
     if (index.structure().exclusive() && offers_once(index.primitives())) {
         return index.template answer<OverlapCount<P, R>>(count, region);
     } else {
-        static thread_local std::vector<IdOf<P>> found;
-        return overlapping(index, region, found, count);
+        const Scratch<std::vector<IdOf<P>>> found;
+        return overlapping(index, region, *found, count);
     }
 }
 /// Whether any primitive overlaps a region. Stops at the first.

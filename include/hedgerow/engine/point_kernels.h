@@ -208,10 +208,10 @@ struct Kernel<ClosestPoint<Set>, I> : detail::PointKernel<I> {
 private:
     /// The first of the one nearest, since that search gives up where many points are at one place.
     Near<T, 3> closest_of_crowd(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
-        static thread_local std::vector<Near<T, 3>> found;
-        found.reserve(1);
+        const Scratch<std::vector<Near<T, 3>>> found;
+        found->reserve(1);
         const Kernel<Nearest<Set>, I> nearest;
-        return nearest.answer(index, point, 1, options, found) == 0 ? Near<T, 3>() : found[0];
+        return nearest.answer(index, point, 1, options, *found) == 0 ? Near<T, 3>() : found->front();
     }
 };
 
@@ -244,7 +244,8 @@ private:
     /// Answers the points whose rows the kernel has marked.
     void answer_given_up(const I& index, const PointBatch<float, 3>& points, std::size_t k,
                          const NearOptions<float>& options, PrimitiveId* ids, float* distances2) const {
-        static thread_local std::vector<Near<float, 3>> found;
+        const Scratch<std::vector<Near<float, 3>>> kept;
+        std::vector<Near<float, 3>>& found = *kept;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const std::size_t first = k * points.number(i);
             if (ids != nullptr ? ids[first] != gave_up_id : distances2[first] != gave_up_distance2) continue;

@@ -125,7 +125,8 @@ public:
     double winding_number(const Tree& tree, const Parts& parts, const TriangleBlock<float>* blocks,
                           const Vec3d& point, double error, Count& count) const {
         if (tree.empty()) return 0;
-        const WindingQuery query = this->query(tree, point, error);
+        const Scratch<WindingMemory> memory;
+        const WindingQuery query = this->query(tree, point, error, *memory);
         typename Parts::Sum exact(parts, point, query.to_unit);
         if constexpr (std::same_as<T, float> && std::same_as<std::remove_const_t<Count>, NoVisits>)
             if (const WideKernels* const kernels = wide_kernels(); kernels != nullptr) {
@@ -144,13 +145,12 @@ public:
     }
 
 private:
-    WindingQuery query(const Tree& tree, const Vec3d& point, double error) const {
+    WindingQuery query(const Tree& tree, const Vec3d& point, double error, WindingMemory& memory) const {
         // Farther than 2⁵⁰⁰ of the clusters' units every point sees next to nothing, and squares overflow.
         const auto bounded = [](double x) { return std::clamp(x, -0x1p500, 0x1p500); };
         const Vec3d scaled = map(point * scale_, bounded);
         const double to_unit = std::min(product(scale_, detail::scale_of_offsets(scaled, box_)), 0x1p1000);
-        return {point, scaled, to_unit, error,
-                winding_terms_of_thread(tree.nodes.size(), tree.nodes.width())};
+        return {point, scaled, to_unit, error, memory.terms(tree.nodes.size(), tree.nodes.width())};
     }
     const double* rows() const { return rows_.data()->numbers; }
 

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include <hedgerow/base/bare_vector.h>
+#include <hedgerow/base/scratch.h>
 #include <hedgerow/engine/wide_tree.h>
 #include <hedgerow/structures/bvh/build_tree.h>
 
@@ -25,18 +26,23 @@ struct WindingQuery {
     WindingTerms terms;
 };
 
-/// Memory for the terms of all nodes of a tree, which the thread keeps. Pages that no walk uses take none.
-inline WindingTerms winding_terms_of_thread(std::size_t nodes, int width) {
+/// Memory for the terms of all nodes of a tree. Pages that no walk uses take none.
+class WindingMemory {
+public:
+    WindingTerms terms(std::size_t nodes, int width) {
+        const std::size_t lines = (nodes * static_cast<std::size_t>(width) + 7) / 8;
+        if (kept_.size() < 2 * lines) kept_.clear(), kept_.resize(2 * lines);
+        if (opened_.size() < nodes) opened_.clear(), opened_.resize(nodes);
+        return {kept_.data()->numbers, kept_[lines].numbers, opened_.data()};
+    }
+
+private:
     struct alignas(64) Line {
         double numbers[8];
     };
-    static thread_local SparseVector<Line> kept;
-    static thread_local SparseVector<std::uint32_t> opened;
-    const std::size_t lines = (nodes * static_cast<std::size_t>(width) + 7) / 8;
-    if (kept.size() < 2 * lines) kept.clear(), kept.resize(2 * lines);
-    if (opened.size() < nodes) opened.clear(), opened.resize(nodes);
-    return {kept.data()->numbers, kept[lines].numbers, opened.data()};
-}
+    SparseVector<Line> kept_;
+    SparseVector<std::uint32_t> opened_;
+};
 
 /// How a walk lowers its threshold, and when it ends.
 struct WindingThresholds {

@@ -12,6 +12,7 @@
 #include <array>
 #include <vector>
 
+#include <hedgerow/base/scratch.h>
 #include <hedgerow/geometry/frustum.h>
 #include <hedgerow/geometry/hull.h>
 #include <hedgerow/geometry/kdop.h>
@@ -85,8 +86,9 @@ bool hull_overlaps(const std::array<Vec<double, V::dimension>, n>& corners, cons
     if (inside != 0) return true;
     Point most;
     for (const Point& c : corners) most = max(most, abs(c));
-    // The thread keeps the memory of polygons, since any number of planes may cut corners off.
-    static thread_local std::vector<Point> polygon, clipped;
+    // Any number of planes may cut corners off.
+    const Scratch<std::vector<Point>> polygon_memory, clipped_memory;
+    std::vector<Point>&polygon = *polygon_memory, &clipped = *clipped_memory;
     polygon.assign(corners.begin(), corners.end());
     return for_each_face(region, [&](const Point& normal, double offset) {
         const double limit =
@@ -113,7 +115,9 @@ bool hull_overlaps(const std::array<Vec<double, V::dimension>, n>& corners, cons
 template <int D>
 class BallSeparation {
 public:
-    BallSeparation(const Vec<double, D>& center, double radius) : center_(center), radius_(radius) {}
+    BallSeparation(const Vec<double, D>& center, double radius) : center_(center), radius_(radius) {
+        faces_.clear();
+    }
 
     /// Adds a half-space. Returns false if it holds no point of the ball.
     bool add(const Vec<double, D>& normal, double offset) {
@@ -149,11 +153,6 @@ public:
                     }
             }
         return faces_.size() > D && !have_a_point() && no_point_in_some(0, 0);
-    }
-    static auto& kept_faces() {
-        static thread_local std::vector<Face> faces;
-        faces.clear();
-        return faces;
     }
 
 private:
@@ -220,7 +219,8 @@ private:
 
     Vec<double, D> center_;
     double radius_;
-    std::vector<Face>& faces_ = kept_faces();
+    Scratch<std::vector<Face>> memory_;
+    std::vector<Face>& faces_ = *memory_;
     mutable const Face* chosen_[D + 1] = {};
 };
 }  // namespace detail

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <vector>
 
+#include <hedgerow/base/scratch.h>
 #include <hedgerow/geometry/axis_ray.h>
 #include <hedgerow/primitives/boundary.h>
 #include <hedgerow/walks/query.h>
@@ -62,17 +64,13 @@ public:
     using Probe = BoxProbe<Scalar, dimension>;
     static constexpr Order order = Order::none;
 
-    /// Where structures offer a primitive several times, crossings are collected in memory that the thread
-    /// keeps, and repeated ones are removed. With `past_surface` the search does not end where the origin is
+    /// Where structures offer a primitive several times, crossings are collected, and repeated ones are
+    /// removed. With `past_surface` the search does not end where the origin is
     /// on a primitive, which then counts as behind it.
     template <class I>
     SignedCrossings(const I& index, const RayInBounds<Scalar, dimension>& asked, bool past_surface)
-        : set_(index.primitives()),
-          ray_(asked.ray),
-          probe_(asked.box),
-          once_(index.structure().exclusive()),
-          past_surface_(past_surface) {
-        if (!once_) kept().clear();
+        : set_(index.primitives()), ray_(asked.ray), probe_(asked.box), past_surface_(past_surface) {
+        if (!index.structure().exclusive()) several_.emplace()->clear();
     }
 
     const Probe& probe() const { return probe_; }
@@ -88,15 +86,15 @@ public:
             return past_surface_ ? Flow::go_on : Flow::stop;
         }
         if (found.sign == 0) return Flow::go_on;
-        if (once_)
-            count_.add(found.sign);
+        if (several_)
+            (*several_)->push_back({id, found.sign});
         else
-            kept().push_back({id, found.sign});
+            count_.add(found.sign);
         return Flow::go_on;
     }
     CrossingCount answer() {
-        if (!once_) {
-            auto& all = kept();
+        if (several_) {
+            auto& all = **several_;
             std::sort(all.begin(), all.end());
             all.erase(std::unique(all.begin(), all.end()), all.end());
             for (const auto& [id, sign] : all) count_.add(sign);
@@ -105,15 +103,11 @@ public:
     }
 
 private:
-    static std::vector<std::pair<PrimitiveId, int>>& kept() {
-        static thread_local std::vector<std::pair<PrimitiveId, int>> found;
-        return found;
-    }
-
     const Set& set_;
     AxisRay<dimension> ray_;
     Probe probe_;
-    bool once_, past_surface_;
+    std::optional<Scratch<std::vector<std::pair<PrimitiveId, int>>>> several_;
+    bool past_surface_;
     CrossingCount count_;
 };
 
