@@ -2,6 +2,7 @@
 /// double.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numbers>
 
 #include <hedgerow/hedgerow.h>
@@ -14,6 +15,7 @@
 #include "engine.h"
 #include "exact.h"
 #include "generated.h"
+#include "rational_triangles.h"
 
 using namespace hedgerow;
 
@@ -354,6 +356,136 @@ TYPED_TEST(Insides, AreTheSameByParityAndPseudonormals) {
     auto some = star;
     for (std::size_t i = 0; i < some.size(); i += 3) std::swap(some.segments[i].a, some.segments[i].b);
     expect_equal_methods(star, some);
+}
+
+/// The exact side of a point of tetrahedra that do not meet each other, turned outward or all inward.
+template <class T>
+Side exact_side(const TriangleMesh<T>& tetrahedra, const Vec<T, 3>& p) {
+    using namespace rational;
+    const Point x = point(p);
+    for (std::size_t first = 0; first < tetrahedra.size(); first += 4) {
+        int least = 1, most = -1;
+        for (std::size_t i = first; i < first + 4; ++i) {
+            const auto t = corners(tetrahedra.view().triangle(i));
+            const int behind = -sgn(dot(cross(t[1] - t[0], t[2] - t[0]), x - t[0]));
+            least = std::min(least, behind), most = std::max(most, behind);
+        }
+        if (least > 0 || most < 0) return Side::inside;
+        if (least == 0 || most == 0) return Side::on;
+    }
+    return Side::outside;
+}
+/// Expects the exact side from every way of points on faces, edges and corners, next to them, and far off.
+template <class T>
+void expect_exact_sides(const char* scene, const TriangleMesh<T>& mesh) {
+    SCOPED_TRACE(scene);
+    const auto index = build(mesh);
+    const auto other = build<KdTree>(mesh);
+    const Solid by_crossings(index), by_normals(index, {.by = SideBy::pseudonormal}),
+        by_parity(index, {.by = SideBy::parity});
+    const Solid of_other(other, {.by = SideBy::pseudonormal});
+    std::map<Side, int> sides_found;
+    for (std::uint64_t i = 0; i < 3000; ++i) {
+        Random random(52, i);
+        const auto c = mesh.view().corners(random.bits() % mesh.size());
+        const auto share = [&] { return T(random.bits() % 9) / 8; };
+        // A point of a face, exact where the corners are integers.
+        const T u = share(), v = (1 - u) * share();
+        Vec<T, 3> p = c[0] + (c[1] - c[0]) * u + (c[2] - c[0]) * v;
+        if (i % 4 == 1)  // next to the face
+            for (int k = 0; k < 3; ++k)
+                p[k] = std::nextafter(p[k], random.bits() % 2 == 0 ? T(1e9) : T(-1e9));
+        if (i % 4 == 2)  // far away, up to 2^59 times
+            p = (p - index.bounds().low) * std::ldexp(T(1 + random.uniform()), static_cast<int>(i % 50));
+        if (i % 4 == 3) p = matrix::point_in(index.bounds(), 0.2, random);
+        const Side want = exact_side(mesh, p);
+        ++sides_found[want];
+        const auto found = by_normals.signed_distance(p);
+        ASSERT_EQ(found.side, want) << i;
+        ASSERT_EQ(of_other.signed_distance(p), found) << i;
+        for (const auto* solid : {&by_crossings, &by_normals, &by_parity})
+            ASSERT_EQ(solid->side(p), want) << i;
+        ASSERT_TRUE(want == Side::on ? found.distance == 0
+                                     : (found.distance < 0) == (want == Side::inside) || found.distance == 0)
+            << i;
+        T distance;
+        signed_distances(by_normals, std::vector{p}, std::span(&distance, 1));
+        ASSERT_EQ(distance, found.distance) << i;
+    }
+    for (const Side side : {Side::outside, Side::on, Side::inside}) EXPECT_GT(sides_found[side], 20);
+}
+/// Tetrahedra, flat ones and ones far apart among them, whose distances tie once they are rounded.
+template <class T>
+TriangleMesh<T> apart(std::initializer_list<std::array<Vec<T, 3>, 4>> all) {
+    TriangleMesh<T> mesh;
+    for (const auto& corners : all) {
+        const auto i = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), corners.begin(), corners.end());
+        for (const TriangleIndices t : {TriangleIndices{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+            mesh.triangles.push_back({i + t[0], i + t[1], i + t[2]});
+    }
+    return mesh;
+}
+TYPED_TEST(Insides, AreExactByEveryWay) {
+    using T = TypeParam;
+    using V = Vec<T, 3>;
+    const std::array<V, 4> one = {V(0, 0, 0), V(8, 0, 0), V(0, 8, 0), V(0, 0, 8)};
+    expect_exact_sides("one", apart<T>({one}));
+    expect_exact_sides("inside out", turned(apart<T>({one})));
+    expect_exact_sides("flat", apart<T>({{V(0, 0, 0), V(64, 0, 1), V(0, 64, 1), V(24, 24, 1)}}));
+    expect_exact_sides("skew", apart<T>({{V(0, 0, 0), V(40, 1, 3), V(5, 37, 2), V(7, 9, 4)}}));
+    // Far parts of one scene, the near one last.
+    expect_exact_sides(
+        "far apart",
+        apart<T>({{V(1 << 20, 0, 0), V((1 << 20) + 8, 0, 0), V(1 << 20, 8, 0), V(1 << 20, 0, 8)}, one}));
+    expect_exact_sides(
+        "thin wall",
+        apart<T>({{V(0, 0, 4096), V(4096, 0, 4096), V(0, 4096, 4096), V(1024, 1024, T(4096.25))}, one}));
+    // The case by which far points were inside: a cube, and a place far off one of its edges.
+    const auto cube = cube_at<T>(V(-1, -1, -1), 2);
+    const auto index = build(cube);
+    const Solid solid(index, {.by = SideBy::pseudonormal});
+    EXPECT_GT(solid.signed_distance(V(0, T(63103085), T(77575773))).distance, 0);
+    EXPECT_EQ(solid.side(V(T(0.25), T(0.125), -1)), Side::on);
+}
+
+/// Open surfaces: by pseudonormals the sides of what is closest, as far as rounded distances tell that.
+TYPED_TEST(Insides, OfOpenSurfacesByPseudonormals) {
+    using T = TypeParam;
+    using V = Vec<T, 3>;
+    auto bowl = ball<T>(12);
+    bowl.triangles.resize(bowl.size() / 2);
+    const auto index = build(bowl);
+    const Solid solid(index, {.by = SideBy::pseudonormal});
+    std::vector<V> points;
+    std::vector<T> distances(2000);
+    for (std::uint64_t i = 0; i < distances.size(); ++i) {
+        Random random(53, i);
+        points.push_back(matrix::point_in(index.bounds(), 0.2, random));
+    }
+    signed_distances(solid, points, std::span(distances));
+    int behind = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto found = solid.signed_distance(points[i]);
+        ASSERT_EQ(found.distance, distances[i]);
+        // Where the closest point is on a face, the face tells.
+        if (feature(index, points[i], found.near).feature != Feature::face) continue;
+        const auto c = bowl.view().corners(found.near.element);
+        const int in_front = side(Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2]), Vec3d(points[i]));
+        ASSERT_EQ(found.side, in_front > 0 ? Side::outside : (in_front < 0 ? Side::inside : Side::on)) << i;
+        behind += in_front < 0;
+    }
+    EXPECT_GT(behind, 200);
+    // Points of faces, edges and corners are on the surface.
+    TriangleMesh<T> square;
+    square.vertices = {{0, 0, 0}, {3, 0, 1}, {3, 3, 1}, {0, 3, 0}};
+    square.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const auto of_square = build(square);
+    const Solid flat(of_square, {.by = SideBy::pseudonormal});
+    for (const V& p : {V(0, 0, 0), V(3, T(1.5), 1), V(T(1.5), T(1.5), T(0.5)), V(T(1.5), T(0.75), T(0.5))})
+        EXPECT_EQ(flat.side(p), Side::on);
+    EXPECT_EQ(flat.side(V(1, 1, 2)), Side::outside);
+    EXPECT_EQ(flat.side(V(1, 1, -2)), Side::inside);
 }
 
 /// Compares expansions with the sums, by every structure.

@@ -6,6 +6,7 @@
 
 #include <hedgerow/ask/insides/caps.h>
 #include <hedgerow/ask/points.h>
+#include <hedgerow/base/scratch.h>
 #include <hedgerow/engine/expanded_index.h>
 #include <hedgerow/geometry/closing_angle.h>
 #include <hedgerow/primitives/pseudonormals.h>
@@ -20,8 +21,11 @@ enum class Side : std::uint8_t { outside, on, inside };
 ///   the surface. Right for every mesh.
 /// - `parity`: whether a ray crosses the surface an odd number of times. Triangles may be turned either way,
 ///   but the surface must be closed.
-/// - `pseudonormal`: the side of the surface at the closest point (Bærentzen and Aanæs 2005). Right for
-///   surfaces that are closed, oriented and do not meet themselves, and fastest for signed distances.
+/// - `pseudonormal`: the side of the surface at the closest point (Bærentzen and Aanæs 2005), for open
+///   surfaces that are oriented and do not meet themselves: in front of them is outside, behind them inside,
+///   however far their holes. Of a closed and oriented surface it is the side by crossings, which are exact
+///   and cost less than it takes to make sure of a pseudonormal. Crossings decide too where roundings leave
+///   in doubt which primitive is closest, and these disagree.
 /// - `expansion`: the winding number within a promised error, by multipole expansions (Barill et al. 2018).
 ///   For soups of triangles in space, most of whose edges are open. Points on the surface are not told.
 enum class SideBy : std::uint8_t { crossings, parity, pseudonormal, expansion };
@@ -129,8 +133,7 @@ public:
             if constexpr (dimension == 3)
                 if (!closing_.empty() && closing_.edges() <= index.size() / few_open)
                     caps_ = detail::Caps<Scalar>(closing_, executor);
-            if (by() == SideBy::pseudonormal)
-                pseudonormals_ = Pseudonormals<Scalar, dimension>(index.primitives(), executor);
+            if (by_near()) pseudonormals_ = Pseudonormals<Scalar, dimension>(index.primitives(), executor);
             if constexpr (dimension == 3)
                 if (by() == SideBy::expansion)
                     expansion_.emplace(
@@ -157,7 +160,7 @@ public:
     template <class Count = const NoVisits>
     Side side(const Point& point, Count& count = no_visits) const {
         if (!finite(point)) return Side::outside;
-        if (by() == SideBy::pseudonormal) return signed_distance(point, count).side;
+        if (by_near()) return signed_distance(point, count).side;
         return in_ieee_mode([&] { return side_by_number(point, count); });
     }
     /// On the surface, that of a point next to it.
@@ -181,8 +184,8 @@ public:
         if (!finite(point)) return Distance{.by = by(), .near = {}};
         const auto near = closest_point(*index_, point, {}, count);
         return in_ieee_mode([&] {
-            const bool by_near = by() == SideBy::pseudonormal;
-            return with_side(near, by_near ? side_beside(near, point) : side_by_number(point, count));
+            return with_side(near,
+                             by_near() ? side_beside(near, point, count) : side_by_number(point, count));
         });
     }
 
@@ -190,7 +193,7 @@ public:
     const Box<Scalar, dimension>& bounds() const { return bounds_; }
     /// Write the answer to point number n to place n. Rays and closest points are asked some at a time.
     void write_sides(const Points& points, std::span<Side> sides) const {
-        if (by() == SideBy::pseudonormal || by() == SideBy::expansion) {
+        if (by_near() || by() == SideBy::expansion) {
             for (std::size_t i = 0; i < points.size(); ++i) sides[points.number(i)] = side(points[i]);
             return;
         }
@@ -218,10 +221,10 @@ public:
             for (std::size_t k = 0; k < count; ++k) some[k] = points[begin + k];
             const std::span<const Point> asked(some.data(), count);
             closest_points(*index_, asked, std::span(near), serial_executor());
-            if (by() == SideBy::pseudonormal) {
+            if (by_near()) {
                 for (std::size_t k = 0; k < count; ++k)
                     if (near[k]) pseudonormals_.prefetch(near[k].element);
-                for (std::size_t k = 0; k < count; ++k) sides[k] = side_beside(near[k], some[k]);
+                for (std::size_t k = 0; k < count; ++k) sides[k] = side_beside(near[k], some[k], no_visits);
             } else {
                 write_sides(Points(asked), sides);
             }
@@ -325,11 +328,28 @@ private:
     double number_of(const Ray& asked, const CrossingCount& found) const {
         return static_cast<double>(found.winding) + closing_.missing(asked.ray);
     }
-    /// The side by the pseudonormal of the closest point.
-    Side side_beside(const Near<Scalar, dimension>& near, const Point& p) const {
+    /// Whether the closest point tells the side.
+    bool by_near() const { return by() == SideBy::pseudonormal && !closing_.empty(); }
+    /// The side by the pseudonormal of the closest point, if all primitives that may be closest agree about
+    /// it, since distances are rounded; else the side by number.
+    template <class Count>
+    Side side_beside(const Near<Scalar, dimension>& near, const Point& p, Count& count) const {
         if (!near) return Side::outside;
-        if (near.distance2 == 0) return Side::on;
-        return pseudonormals_.side(near.element, p) < 0 ? Side::inside : Side::outside;
+        // What distances err by: a share of themselves, and roundings of the longest edge in double.
+        constexpr double share = std::is_same_v<Scalar, float> ? 0x1p-20 : 0x1p-40;
+        const double distance = std::sqrt(static_cast<double>(near.distance2));
+        const double error = 0x1p-44 * max_component(Vec<double, dimension>(bounds_.extent()));
+        if (!(distance > 4 * error)) return side_by_number(p, count);
+        const double reach = product(distance, 1 + share) + 2 * error;
+        const Scratch<std::vector<Near<Scalar, dimension>>> closest;
+        within(*index_, p, {.radius2 = rounded_up<Scalar>(product(reach, reach))}, *closest, count);
+        int side = 0;
+        for (const auto& other : *closest) {
+            const int of_other = pseudonormals_.side(other.element, p);
+            if (of_other == 0 || of_other == -side) return side_by_number(p, count);
+            side = of_other;
+        }
+        return side < 0 ? Side::inside : Side::outside;
     }
     Distance with_side(const Near<Scalar, dimension>& near, Side side) const {
         Distance d{std::sqrt(near.distance2), side, by(), near};
