@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <vector>
 
 #include <hedgerow/geometry/shapes.h>
@@ -72,15 +74,7 @@ public:
     /// face, up to roundings, one part is that face, seen from both sides, and the other is the whole
     /// polytope. If the plane misses the polytope, one part has no faces.
     std::pair<Polytope, Polytope> cut(const CutPlane<D>& plane) const {
-        // Find the range of the corners' heights, and what the heights may err by.
-        double lowest = 0, highest = 0, largest = 0;
-        for (const Face& f : faces_)
-            for (const Point& p : f) {
-                const double h = plane.height(p);
-                lowest = std::min(lowest, h), highest = std::max(highest, h);
-                largest = std::max(largest, max_component(abs(p)));
-            }
-        const double rounding = 0x1p-40 * product(plane.reach(), largest);
+        const auto [lowest, highest, rounding] = reach_over(plane);
         // The plane touches or misses the polytope.
         if (highest <= rounding) return {*this, touched(plane, rounding)};
         if (lowest >= -rounding) return {touched(plane, rounding), *this};
@@ -99,7 +93,78 @@ public:
         return sides;
     }
 
+    /// The least and the greatest height of the polytope over a plane.
+    std::pair<double, double> heights(const CutPlane<D>& plane) const {
+        double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+        for (const Face& f : faces_)
+            for (const Point& p : f) {
+                const double h = plane.height(p);
+                lowest = std::min(lowest, h), highest = std::max(highest, h);
+            }
+        return {lowest, highest};
+    }
+    /// The surfaces of the parts that `cut` would make, up to roundings, where `whole` is that of the
+    /// polytope. Allocates nothing where the plane cuts the polytope.
+    std::pair<double, double> surfaces(const CutPlane<D>& plane, double whole) const {
+        const auto [lowest, highest, rounding] = reach_over(plane);
+        if (highest <= rounding || lowest >= -rounding) {
+            const auto sides = cut(plane);
+            return {sides.first.surface(), sides.second.surface()};
+        }
+        double low = 0, cap = 0;
+        std::optional<Point> apex;  // a corner of the section, which is a fan of triangles around it
+        for (const Face& f : faces_) {
+            // Walk around the face's part on the low side, and find where the plane meets the face.
+            Point first, last, sum, ends[2];
+            int corners = 0, crossings = 0;
+            bool below = false;
+            const auto add = [&](const Point& p) {
+                if (corners == 0) first = p;
+                if constexpr (D == 3)
+                    if (corners > 1) sum = sum + cross(last - first, p - first);
+                last = p, ++corners;
+            };
+            const auto meet = [&](const Point& p) { ends[std::min(crossings++, 1)] = p; };
+            const std::size_t n = f.size();
+            double a = plane.height(f[0]);
+            for (std::size_t i = 0; i < n; ++i) {
+                below = below || a < 0;
+                if (a <= 0) add(f[i]);
+                if (a == 0) meet(f[i]);
+                if (D == 2 && i + 1 == n) break;  // an edge has no side back to its first end
+                const Point& q = f[i + 1 < n ? i + 1 : 0];
+                const double b = plane.height(q);
+                if ((a < 0 && b > 0) || (a > 0 && b < 0)) {
+                    const Point crossing = f[i] + (q - f[i]) * (a / (a - b));
+                    add(crossing), meet(crossing);
+                }
+                a = b;
+            }
+            // A face that only touches the plane has no part below it.
+            if (!below) continue;
+            low += D == 2 ? length(last - first) : length(sum) / 2;
+            if (crossings == 0) continue;
+            if (!apex) apex = ends[0];
+            if constexpr (D == 2)
+                cap = std::max(cap, length(ends[0] - *apex));
+            else if (crossings > 1)
+                cap += length(cross(ends[0] - *apex, ends[1] - *apex)) / 2;
+        }
+        return {low + cap, whole - low + cap};
+    }
+
 private:
+    /// The range of the corners' heights over a plane, 0 included, and what the heights may err by.
+    std::array<double, 3> reach_over(const CutPlane<D>& plane) const {
+        double lowest = 0, highest = 0, largest = 0;
+        for (const Face& f : faces_)
+            for (const Point& p : f) {
+                const double h = plane.height(p);
+                lowest = std::min(lowest, h), highest = std::max(highest, h);
+                largest = std::max(largest, max_component(abs(p)));
+            }
+        return {lowest, highest, 0x1p-40 * product(plane.reach(), largest)};
+    }
     /// The face along a plane, for a polytope on one side of it: the corners within `height` of the plane,
     /// seen from both sides. No faces if there are fewer than D corners.
     Polytope touched(const CutPlane<D>& plane, double height) const {

@@ -42,7 +42,7 @@ struct BspOptions {
     double items_per_primitive = 16;
     /// In cells of more primitives than this, only some suggest planes: at least this many, and fewer than
     /// twice as many.
-    std::uint32_t samples = 32;
+    std::uint32_t samples = 16;
     /// Skips most repeated tests of a primitive within a query. Off only to measure its effect.
     bool mailbox = true;
 

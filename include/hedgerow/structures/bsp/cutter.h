@@ -3,56 +3,23 @@
 
 #include <hedgerow/geometry/polytope.h>
 #include <hedgerow/parallel/sort.h>
+#include <hedgerow/structures/bsp/axis_costs.h>
 #include <hedgerow/structures/bsp/build.h>
+#include <hedgerow/structures/bsp/parts.h>
 #include <hedgerow/structures/cells.h>
 #include <hedgerow/structures/kdtree/builders/sweep.h>
 
 namespace hedgerow {
 
-/// A primitive's part in a cell: the corners of a convex part of the primitive (`exact`), or those of its
-/// whole box.
-template <int D>
-struct BspPart {
-    PrimitiveId id;
-    bool exact;
-    std::vector<Vec<double, D>> corners;
-
-    /// Least and greatest height over a plane.
-    std::pair<double, double> heights(const CutPlane<D>& plane) const {
-        double low = plane.height(corners[0]), high = low;
-        for (std::size_t i = 1; i < corners.size(); ++i) {
-            const double h = plane.height(corners[i]);
-            low = std::min(low, h), high = std::max(high, h);
-        }
-        return {low, high};
-    }
-    /// Least and greatest coordinate along an axis.
-    std::pair<double, double> reach(int axis) const {
-        double low = corners[0][axis], high = low;
-        for (const auto& c : corners) low = std::min(low, c[axis]), high = std::max(high, c[axis]);
-        return {low, high};
-    }
-    /// The part on one side of a plane (sign 1: low, −1: high) or within the plane's margin of that side. A
-    /// box stays whole.
-    BspPart side(const CutPlane<D>& plane, double sign) const {
-        if (!exact) return *this;
-        BspPart kept{id, true, {}};
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            const auto &p = corners[i], &q = corners[(i + 1) % corners.size()];
-            const double a = sign * plane.height(p) - plane.margin, b = sign * plane.height(q) - plane.margin;
-            if (a <= 0) kept.corners.push_back(p);
-            if ((a < 0 && b > 0) || (a > 0 && b < 0)) kept.corners.push_back(p + (q - p) * (a / (a - b)));
-        }
-        return kept;
-    }
-};
-
-/// Chooses planes and cuts cells. Candidates are planes across the axes at the bounds of every part, and
+/// Chooses planes and cuts cells. Candidates are planes across the axes beside the bounds of every part, and
 /// planes that the geometry suggests: the plane of a triangle, and the planes through its edges at right
 /// angles to it (Ize, Wald, Parker, RT 2008). The cost of a candidate is the SAH with the surfaces of the two
-/// convex parts of the cell. In cells of more than `samples` primitives only some of them suggest planes
-/// (BspOptions). There the sweep of the kd-tree also finds the best plane across each axis over all bounds,
-/// as if the cell were a box.
+/// convex parts of the cell.
+///
+/// Few candidates are weighed so (docs/design/045-bsp-builds.md). Along each axis a sweep over all bounds
+/// finds the best plane, with surfaces that are interpolated. The other planes are ranked by a guess of the
+/// cost, and only the first few are weighed. In cells of more than `samples` primitives only some of them
+/// suggest planes (BspOptions), and in large ones some parts stand for all where planes are ranked.
 ///
 /// Heights within a fourth of a plane's margin count as on the plane. A primitive that is wholly on a plane
 /// is in the low cell only, since a probe treats a plane as thick as its margin. A probe adds no margin to a
@@ -64,9 +31,10 @@ public:
     struct Cell {
         Polytope<D> shape;
         Box<double, D> box;
-        std::vector<BspPart<D>> inside;
+        bool is_box = true;  // the shape is the box
+        BspParts<D> inside;
 
-        std::uint32_t size() const { return static_cast<std::uint32_t>(inside.size()); }
+        std::uint32_t size() const { return inside.size(); }
         template <class F>
         void for_each_id(F f) const {
             for (const auto& part : inside) f(part.id);
@@ -84,9 +52,13 @@ public:
     Cell root(const ReferenceList<T, D>& references) const {
         Cell cell;
         for (const auto& r : references) {
-            const auto b = r.box();
-            cell.box.expand(Box<double, D>{Vec<double, D>(b.low), Vec<double, D>(b.high)});
-            cell.inside.push_back(whole(r.id(), b));
+            const Box<T, D> own = r.box();
+            const Box<double, D> box{Vec<double, D>(own.low), Vec<double, D>(own.high)};
+            cell.box.expand(box);
+            if (const auto corners = corners_(r.id()))
+                cell.inside.add(r.id(), *corners);
+            else
+                cell.inside.add(r.id(), box);
         }
         cell.shape = Polytope<D>(cell.box);
         return cell;
@@ -95,13 +67,13 @@ public:
     std::optional<Plane> choose(const Cell& cell, int) const {
         if (cell.size() <= leaf_size_) return std::nullopt;
         Best best{{}, costs_.intersection_cost * cell.size()};
+        // A node alone may cost as much as the tests that it could save.
+        if (std::min(costs_.traversal_cost, costs_.plane_cost) >= best.cost) return std::nullopt;
         const double whole = cell.shape.surface();
         if (!(whole > 0)) return std::nullopt;
         const auto offer = [&](const Plane& plane) { weigh(cell, whole, plane, best); };
-        const bool small = cell.size() <= samples_;
-        if (!small) offer_sweep(cell, offer);
-        const std::uint32_t stride = small ? 1 : cell.size() / samples_;
-        for (std::uint32_t i = 0; i < cell.size(); i += stride) offer_around(cell, cell.inside[i], offer);
+        for (int axis = 0; axis < D; ++axis) offer_across(cell, whole, axis, offer);
+        if (costs_.plane_cost < best.cost) offer_through_parts(cell, best.cost, offer);
         return best.plane;
     }
 
@@ -111,14 +83,15 @@ public:
         auto& [low, high] = sides;
         std::tie(low.shape, high.shape) = cell.shape.cut(plane);
         low.box = high.box = cell.box;
+        low.is_box = high.is_box = cell.is_box && chosen.axis >= 0;
         if (chosen.axis >= 0) low.box.high[chosen.axis] = high.box.low[chosen.axis] = plane.offset;
         for (const auto& part : cell.inside) {
-            const auto [to_low, to_high] = sides_of(part, plane, chosen.axis >= 0);
+            const auto [to_low, to_high] = sides_of(cell.inside, part, plane, chosen.axis);
             if (to_low && to_high) {
-                low.inside.push_back(part.side(plane, 1));
-                high.inside.push_back(part.side(plane, -1));
+                low.inside.add_side(cell.inside, part, plane, 1);
+                high.inside.add_side(cell.inside, part, plane, -1);
             } else {
-                (to_low ? low : high).inside.push_back(part);
+                (to_low ? low : high).inside.add(cell.inside, part);
             }
         }
         return sides;
@@ -129,94 +102,143 @@ private:
         std::optional<Plane> plane;
         double cost;
     };
-
-    /// The whole primitive: its corners if the set has them, otherwise the corners of its box.
-    BspPart<D> whole(PrimitiveId id, const Box<T, D>& box) const {
-        BspPart<D> part{id, false, {}};
-        if (const auto corners = corners_(id)) {
-            part.exact = true;
-            for (const auto& c : *corners) part.corners.emplace_back(c);
-        } else {
-            for (int i = 0; i < 1 << D; ++i) {
-                Vec<double, D> p;
-                for (int k = 0; k < D; ++k) p[k] = static_cast<double>(i >> k & 1 ? box.high[k] : box.low[k]);
-                part.corners.push_back(p);
-            }
-        }
-        return part;
-    }
+    struct Counts {
+        std::uint32_t low = 0, high = 0, all = 0;
+    };
+    /// Planes are ranked by the sides of all parts, or in larger cells of at most so many.
+    static constexpr std::uint32_t most_counted = 16;
+    /// How many of the planes that are not across an axis are weighed.
+    static constexpr std::size_t most_weighed = 3;
+    /// Beyond this many parts, their bounds are counted in so many bins along each axis.
+    static constexpr std::uint32_t most_sorted = 1024;
+    static constexpr std::size_t bins = 256;
 
     /// Whether a part is in the low cell of a plane, and whether it is in the high one.
-    static std::pair<bool, bool> sides_of(const BspPart<D>& part, const CutPlane<D>& plane,
-                                          bool across_axis) {
-        const auto [low, high] = part.heights(plane);
-        const double on = across_axis ? -plane.margin : plane.margin / 4;
+    [[gnu::always_inline]] static std::pair<bool, bool> sides_of(const BspParts<D>& parts,
+                                                                 const BspPart<D>& part,
+                                                                 const CutPlane<D>& plane, int axis) {
+        const double on = axis >= 0 ? -plane.margin : plane.margin / 4;
+        const auto [low, high] = parts.heights(part, plane, axis);
         const bool to_high = high > on;
         return {low < -on || !to_high, to_high};
     }
 
+    /// How many of every stride-th part are on the sides of a plane.
+    static Counts count(const Cell& cell, const CutPlane<D>& plane, int axis, std::uint32_t stride) {
+        Counts counts;
+        for (std::uint32_t i = 0; i < cell.size(); i += stride, ++counts.all) {
+            const auto [to_low, to_high] = sides_of(cell.inside, cell.inside[i], plane, axis);
+            counts.low += to_low, counts.high += to_high;
+        }
+        return counts;
+    }
+    /// The SAH of a plane, by the surfaces of its sides over that of the cell.
+    double cost(const Cell& cell, int axis, const Counts& counts, double low_share, double high_share) const {
+        const double node = axis >= 0 ? costs_.traversal_cost : costs_.plane_cost;
+        const double bonus = counts.low == 0 || counts.high == 0 ? 1 - costs_.empty_bonus : 1;
+        const double test = costs_.intersection_cost * bonus * cell.size() / counts.all;
+        return node + product(test, low_share * counts.low + high_share * counts.high);
+    }
+    /// Whether a plane separates no parts, or surely costs no less than `most`: the sides have no less
+    /// surface together than the cell, so the cost is at least that of the smaller side's primitives.
+    bool is_useless(const Cell& cell, int axis, const Counts& counts, double most) const {
+        if (counts.low == counts.all && counts.high == counts.all) return true;
+        const bool fewer_low = counts.low < counts.high;
+        return cost(cell, axis, counts, fewer_low, !fewer_low) >= most;
+    }
     void weigh(const Cell& cell, double whole, const Plane& candidate, Best& best) const {
         if (cell.size() > worth_a_task) executor_.look();
         const CutPlane<D> plane = candidate.in_double(margin_);
-        // Count the parts on each side, and skip a plane that separates none.
-        std::uint32_t on_low = 0, on_high = 0;
-        for (const auto& part : cell.inside) {
-            const auto [to_low, to_high] = sides_of(part, plane, candidate.axis >= 0);
-            on_low += to_low, on_high += to_high;
-        }
-        if (on_low == cell.size() && on_high == cell.size()) return;
-        // Cutting the cell is dear. Skip it where the node alone costs as much as the best plane so far.
-        const double node = candidate.axis >= 0 ? costs_.traversal_cost : costs_.plane_cost;
-        const double bonus = on_low == 0 || on_high == 0 ? 1 - costs_.empty_bonus : 1;
-        if (node >= best.cost) return;
-        const auto [low, high] = cell.shape.cut(plane);
-        const double low_share = low.surface() / whole, high_share = high.surface() / whole;
+        const Counts counts = count(cell, plane, candidate.axis, 1);
+        if (is_useless(cell, candidate.axis, counts, best.cost)) return;
+        const auto [low, high] = cell.shape.surfaces(plane, whole);
+        const double low_share = low / whole, high_share = high / whole;
         if (!(low_share > 0 && high_share > 0)) return;  // the plane misses the cell
         // A plane along a face that parts no primitives changes nothing. The next cell would choose it again.
         constexpr double all = 1 - 1e-9;
-        if ((on_low == 0 && high_share >= all) || (on_high == 0 && low_share >= all)) return;
-        // The SAH, with areas relative to the cell's.
-        const double cost =
-            node + product(costs_.intersection_cost * bonus, low_share * on_low + high_share * on_high);
+        if ((counts.low == 0 && high_share >= all) || (counts.high == 0 && low_share >= all)) return;
+        const double cost = this->cost(cell, candidate.axis, counts, low_share, high_share);
         if (cost < best.cost) best = {candidate, cost};
     }
 
     /// Positions along an axis 1.5 margins outside of a part: a plane there has the part on one side only.
     std::pair<T, T> beside(const BspPart<D>& part, int axis) const {
-        const auto [low, high] = part.reach(axis);
-        return {rounded_to<T>(low - 1.5 * margin_), rounded_to<T>(high + 1.5 * margin_)};
+        return {rounded_to<T>(part.bounds.low[axis] - 1.5 * margin_),
+                rounded_to<T>(part.bounds.high[axis] + 1.5 * margin_)};
     }
-    /// Offers for each axis the plane that the kd-tree would choose. O(n log n).
+    /// Offers the best of the planes across an axis, by surfaces that are interpolated.
     template <class Offer>
-    void offer_sweep(const Cell& cell, Offer offer) const {
-        const KdCosts costs{costs_.traversal_cost, costs_.intersection_cost, costs_.empty_bonus};
-        const Box<double, D> bounds = intersection(cell.shape.bounds(), cell.box);
-        const Box<T, D> box{Vec<T, D>(bounds.low), Vec<T, D>(bounds.high)};
+    void offer_across(const Cell& cell, double whole, int axis, Offer offer) const {
+        const BspAxisCosts<T, D> costs({costs_.traversal_cost, costs_.intersection_cost, costs_.empty_bonus},
+                                       cell.shape, whole, cell.is_box, axis);
+        KdBest<T> best;
+        if (cell.size() > most_sorted)
+            offer_borders(cell, costs, axis, best);
+        else
+            offer_bounds(cell, costs, axis, best);
+        if (best.cost < std::numeric_limits<double>::infinity())
+            offer(Plane::across(axis, best.plane.position));
+    }
+    /// Offers the planes beside all parts. O(n log n).
+    void offer_bounds(const Cell& cell, const BspAxisCosts<T, D>& costs, int axis, KdBest<T>& best) const {
         std::vector<KdEvent<T>> events;
-        events.reserve(2 * cell.inside.size());
-        for (int axis = 0; axis < D; ++axis) {
-            events.clear();
-            for (std::uint32_t i = 0; i < cell.size(); ++i) {
-                const auto [low, high] = beside(cell.inside[i], axis);
-                events.emplace_back(low, i, true);
-                events.emplace_back(high, i, false);
-            }
-            sort_watched(events.begin(), events.end(), executor_);
-            KdBest<T> best;
-            sweep_events(events, cell.size(), KdAxisCosts<T, D>(costs, box, axis), best);
-            if (best.cost < std::numeric_limits<double>::infinity())
-                offer(Plane::across(axis, best.plane.position));
+        events.reserve(2 * cell.size());
+        for (std::uint32_t i = 0; i < cell.size(); ++i) {
+            const auto [low, high] = beside(cell.inside[i], axis);
+            events.emplace_back(low, i, true);
+            events.emplace_back(high, i, false);
+        }
+        std::sort(events.begin(), events.end());
+        sweep_events(events, cell.size(), costs, best);
+    }
+    /// Offers the borders of equal bins. O(n).
+    void offer_borders(const Cell& cell, const BspAxisCosts<T, D>& costs, int axis, KdBest<T>& best) const {
+        if (!(costs.width() > 0)) return;
+        const double scale = static_cast<double>(bins) / costs.width();
+        const auto bin = [&](double x) {
+            const double place = product(x - costs.low(), scale);
+            return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(bins - 1)));
+        };
+        std::array<std::uint32_t, bins> begins{}, ends{};
+        for (const auto& part : cell.inside)
+            ++begins[bin(part.bounds.low[axis])], ++ends[bin(part.bounds.high[axis])];
+        std::uint32_t on_low = 0, on_high = cell.size();
+        for (std::size_t b = 1; b < bins; ++b) {
+            on_low += begins[b - 1], on_high -= ends[b - 1];
+            costs.offer(rounded_to<T>(costs.low() + static_cast<double>(b) / scale), on_low, on_high, best);
         }
     }
-    /// Offers the planes that a part suggests.
+
+    /// Offers the best of the planes that parts suggest and that may cost less than `most`, by a guess: the
+    /// surfaces of a plane's sides are taken to be in proportion to their extents across it.
     template <class Offer>
-    void offer_around(const Cell& cell, const BspPart<D>& part, Offer offer) const {
-        for (int axis = 0; axis < D; ++axis) {
-            const auto [low, high] = beside(part, axis);
-            if (static_cast<double>(low) > cell.box.low[axis]) offer(Plane::across(axis, low));
-            if (static_cast<double>(high) < cell.box.high[axis]) offer(Plane::across(axis, high));
+    void offer_through_parts(const Cell& cell, double most, Offer offer) const {
+        const std::uint32_t apart = cell.size() > samples_ ? cell.size() / samples_ : 1;
+        const std::uint32_t stride = (cell.size() + most_counted - 1) / most_counted;
+        std::array<std::pair<double, Plane>, most_weighed> ranked;
+        std::size_t kept = 0;
+        const auto rank = [&](const Plane& candidate) {
+            const CutPlane<D> plane = candidate.in_double(margin_);
+            const Counts counts = count(cell, plane, candidate.axis, stride);
+            if (is_useless(cell, candidate.axis, counts, most)) return;
+            const auto [low, high] = cell.shape.heights(plane);
+            const double share = std::clamp(-low / (high - low), 0.0, 1.0);
+            const double guess = cost(cell, candidate.axis, counts, share, 1 - share);
+            // Insert the plane before those of higher guesses.
+            std::size_t place = kept;
+            while (place > 0 && guess < ranked[place - 1].first) --place;
+            if (place == most_weighed) return;
+            kept = std::min(kept + 1, most_weighed);
+            std::move_backward(ranked.begin() + static_cast<std::ptrdiff_t>(place),
+                               ranked.begin() + static_cast<std::ptrdiff_t>(kept) - 1,
+                               ranked.begin() + static_cast<std::ptrdiff_t>(kept));
+            ranked[place] = {guess, candidate};
+        };
+        for (std::uint32_t i = 0; i < cell.size(); i += apart) {
+            if (cell.inside[i].count == 0) continue;
+            if (const auto corners = corners_(cell.inside[i].id)) for_each_plane_through(*corners, rank);
         }
-        if (const auto corners = corners_(part.id)) for_each_plane_through(*corners, offer);
+        for (std::size_t i = 0; i < kept; ++i) offer(ranked[i].second);
     }
 
     /// Offers the plane of a triangle, and the planes through its edges at right angles to it.

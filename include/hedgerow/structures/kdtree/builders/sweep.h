@@ -25,8 +25,8 @@ struct KdEvent {
 };
 
 /// Offers the planes at all sorted events of `count` parts. O(events).
-template <std::floating_point T, int D>
-void sweep_events(const std::vector<KdEvent<T>>& events, std::uint32_t count, const KdAxisCosts<T, D>& costs,
+template <std::floating_point T, class AxisCosts>
+void sweep_events(const std::vector<KdEvent<T>>& events, std::uint32_t count, const AxisCosts& costs,
                   KdBest<T>& best) {
     std::uint32_t on_low = 0, on_high = count;
     for (std::size_t i = 0; i < events.size();) {
