@@ -405,6 +405,74 @@ TEST_F(Query, RadiiAndFactorsAreThoseOfTheLibrary) {
     EXPECT_TRUE(none[0]["primitive"].is_null() || none[0]["primitive"] == 4294967295u) << none;
 }
 
+/// Each distance that is printed finds its primitive as a radius, with the digits of text.
+TEST_F(Query, PrintedDistancesAreRadii) {
+    for (const std::string precision : {"", " --precision double"}) {
+        const std::string scene = "gen:points:300";
+        std::vector<double> numbers(60);
+        Random random(9, 0);
+        for (double& x : numbers) x = random.uniform();
+        save_npy<double>(file("p.npy"), numbers, {numbers.size() / 3, 3});
+        const std::string rest = " " + scene + precision + " --quiet --from " + file("p.npy") + " -o ";
+        expect_done("query nearest -k 4" + rest + file("near.csv"));
+        std::ifstream lines(file("near.csv"));
+        std::string line;
+        std::getline(lines, line);
+        for (int row = 0; std::getline(lines, line); ++row) {
+            if (row % 7 != 0) continue;
+            const std::string query = line.substr(0, line.find(',')),
+                              primitive = line.substr(query.size() + 1, line.rfind(',') - query.size() - 1),
+                              distance = line.substr(line.rfind(',') + 1);
+            expect_done("query within --radius " + distance + rest + file("within.csv"));
+            EXPECT_NE(bytes_of(file("within.csv")).find("\n" + query + "," + primitive + ","),
+                      std::string::npos)
+                << line;
+            expect_done("query overlap --radius " + distance + rest + file("overlap.csv"));
+            const auto within = rows_of(file("within.csv"), {"query", "primitive"}),
+                       overlap = rows_of(file("overlap.csv"), {"query", "primitive"});
+            EXPECT_EQ(std::count(within.begin(), within.end(), std::stod(primitive)),
+                      std::count(overlap.begin(), overlap.end(), std::stod(primitive)));
+            EXPECT_EQ(within.size(), overlap.size());
+        }
+    }
+}
+
+/// Places so far away that squares may overflow have no answer, and the tool says so. Zeros of text have no
+/// sign.
+TEST_F(Query, FarPlacesHaveNoAnswer) {
+    write("rays.csv", "0,0,-5,0,0,1\n0,0,-2e18,0,0,1\n");
+    const std::string rest = " gen:cube --quiet -o " + file("a.csv") + " --from ";
+    for (const std::string query : {"closest-hit", "any-hit"}) {
+        const auto r = run("query " + query + rest + file("rays.csv"));
+        EXPECT_EQ(r.code, 0);
+        EXPECT_NE(r.output.find("row 1, counted from 0, has no answer"), std::string::npos) << r.output;
+    }
+    write("points.csv", "0,0,1e18\n0,0,2e19\n");
+    for (const std::string query : {"closest-point", "side", "nearest -k 1"}) {
+        const auto r = run("query " + query + rest + file("points.csv"));
+        EXPECT_EQ(r.code, 0);
+        EXPECT_NE(r.output.find("row 1, counted from 0, has no answer"), std::string::npos) << r.output;
+    }
+    write("flat.obj", "v 0 0 0\nv -1 0 0\nv -2 0 0\nf 1 2 3\n");
+    write("at.csv", "-1.5,-0,3\n");
+    expect_done("query closest-point " + file("flat.obj") + " --feature --quiet --from " + file("at.csv") +
+                " -o " + file("flat.csv"));
+    const std::string text = bytes_of(file("flat.csv"));
+    EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+    EXPECT_EQ(text.find("-0,"), std::string::npos) << text;
+}
+
+/// Sides of a closed mesh with a triangle turned over: the tool says that the mesh counts as open.
+TEST_F(Query, TurnedTrianglesAreTold) {
+    write("turned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 4 1\n");
+    write("p.csv", "0.1,0.1,0.1\n");
+    const std::string rest = file("turned.obj") + " --quiet --from " + file("p.csv") + " -o " + file("s.csv");
+    EXPECT_NE(run("query side " + rest).output.find("--by parity"), std::string::npos);
+    const auto r = run("query side --by parity " + rest);
+    EXPECT_EQ(r.output, "");
+    EXPECT_EQ(rows_of(file("s.csv"), {"side"}), std::vector<double>{1});
+}
+
 TEST_F(Query, HausdorffDistancesAnswerAsTheLibraryDoes) {
     const auto a = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:teapot:400")));
     const auto b = std::get<TriangleMesh<float>>(generate<float>(parse_scene_spec("gen:cube")));

@@ -282,6 +282,29 @@ TEST(Surface, FeaturesOfInstances) {
     EXPECT_GT(expect_features(build<Bvh>(set), 1e-4)[Feature::face], 100);
 }
 
+/// Triangles that are a segment or a point: the feature is an edge or a vertex, and the normal is 0.
+TYPED_TEST(Surface, FeaturesOfTrianglesWithoutArea) {
+    using T = TypeParam;
+    TriangleMesh<T> mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 2, 3}, {2, 4, 6}};
+    for (const TriangleIndices& t : {TriangleIndices{0, 1, 2}, {0, 2, 2}, {1, 1, 1}}) {
+        mesh.triangles = {t};
+        const auto index = build(mesh);
+        for (const Vec<T, 3>& p : {Vec<T, 3>(1, 2, 4), {-1, 0, 0}, {1, 2, 3}, {5, 5, 5}}) {
+            const auto on = feature(index, p, closest_point(index, p));
+            EXPECT_NE(on.feature, Feature::face);
+            EXPECT_EQ(on.normal, (Vec<T, 3>()));
+            T sum = 0;
+            for (const T weight : on.weights) sum += weight;
+            EXPECT_NEAR(sum, 1, 1e-6);
+        }
+    }
+    SegmentSet<T> point;
+    point.segments = {{{1, 1}, {1, 1}}};
+    const auto index = build(point);
+    EXPECT_EQ(feature(index, {2, 3}, closest_point(index, {2, 3})).normal, (Vec<T, 2>()));
+}
+
 /// A square of two triangles: above its corners, its sides, its diagonal and the rest.
 TEST(Surface, FeaturesOfASquare) {
     TriangleMesh<double> mesh;

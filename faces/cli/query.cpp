@@ -96,6 +96,18 @@ SolidOptions solid_options(const QueryArguments& a) {
     return options;
 }
 
+/// Says what it means for sides that neighbours are turned in opposite ways.
+template <std::floating_point T, int D>
+void warn_of_turns(const QueryArguments& a, const AnySolid<T, D>& solid) {
+    if (solid.oriented() || a.by == "parity" || a.by == "expansion") return;
+    fmt::print(stderr,
+               "hedgerow: {}: some neighbours are turned in opposite ways, so it counts as open where they "
+               "meet. {}\n",
+               a.scene,
+               solid.closed() ? "It is closed: --by parity tells sides whichever way they are turned"
+                              : "Turn them the same way");
+}
+
 template <class Question, std::floating_point T, int D>
 int query(const QueryArguments& a, RowReader<T>& in, const AnyIndex<T, D>& index, QueryReport report) {
     const RowOptions options{a.count, a.radius >= 0 ? a.radius : std::numeric_limits<double>::infinity(),
@@ -109,6 +121,7 @@ int query(const QueryArguments& a, RowReader<T>& in, const AnyIndex<T, D>& index
         const double start = now();
         by.solid = index.make_solid(solid_options(a), watched);
         report.build_seconds += now() - start;
+        warn_of_turns(a, *by.solid);
     }
     return answer_all<T>(
         a, in, {columns, answer_columns<Question>(), is_list<typename Question::Answer>},
@@ -248,9 +261,10 @@ int print_report(const QueryArguments& a, const QueryReport& r) {
     if (r.unusable > 0)
         fmt::print(
             stderr,
-            "hedgerow: {}: row {}, counted from 0, is not finite, so it has no answer{}. Repair the row\n",
+            "hedgerow: {}: row {}, counted from 0, has no answer{}: a number is not finite, or a place "
+            "is farther than 2^60 from 0 (2^480 with --precision double). Repair the row\n",
             a.from, r.first_unusable,
-            r.unusable > 1 ? fmt::format("; nor have {} later rows", r.unusable - 1) : "");
+            r.unusable > 1 ? fmt::format(", nor have {} later rows", r.unusable - 1) : "");
     if (a.json && !to_pipe) {
         print_json({{"kind", a.kind},
                     {"structure", a.structure},

@@ -78,8 +78,10 @@ measure::RaySet load_rays(const std::string& file) {
         for (std::size_t i = 0; i < rows; ++i) {
             const float* const row = &numbers[columns * i];
             if (!Rows::usable(row))
-                throw InputError(fmt::format("{}: row {} is no ray, since not all its numbers are finite",
-                                             file, set.rays.size()));
+                throw InputError(
+                    fmt::format("{}: row {} is no ray: a number is not finite, or the origin is "
+                                "farther than 2^60 from 0",
+                                file, set.rays.size()));
             set.rays.push_back(Rows::of(row, {}));
         }
     if (set.rays.empty()) throw InputError(file + ": has no rays");

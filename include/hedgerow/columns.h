@@ -44,11 +44,17 @@ Vec<T, D> vec_at(const T* numbers) {
     for (int k = 0; k < D; ++k) v[k] = numbers[k];
     return v;
 }
+/// Whether all numbers are finite, and no larger than `most`.
 template <class T>
-bool all_finite(const T* numbers, int count) {
+bool all_finite(const T* numbers, int count, T most = std::numeric_limits<T>::max()) {
     for (int k = 0; k < count; ++k)
-        if (!std::isfinite(numbers[k])) return false;
+        if (!(std::abs(numbers[k]) <= most)) return false;
     return true;
+}
+/// Whether the coordinates of a place are such that distances from it and to it are finite.
+template <int D, class T>
+bool is_place(const T* numbers) {
+    return all_finite(numbers, D, largest_coordinate<T>);
 }
 
 /// The rows of questions about a point.
@@ -59,14 +65,14 @@ struct PointRows {
         add_axes<D>(all.names, "");
         return all;
     }
-    static bool usable(const T* row) { return all_finite(row, D); }
+    static bool usable(const T* row) { return is_place<D>(row); }
 };
 
 }  // namespace detail
 
 /// How a row of numbers becomes what is given to a question. `columns` says which numbers a row has; `usable`
-/// whether they are such that there can be an answer (none is NaN, and places are finite); `of` makes the
-/// query. `takes_count` and `takes_radius` say which options it reads.
+/// whether they are such that there can be an answer (none is NaN, and places are finite and within
+/// `largest_coordinate`); `of` makes the query. `takes_count` and `takes_radius` say which options it reads.
 template <class Given>
 struct RowsOf;
 
@@ -83,7 +89,7 @@ struct RowsOf<Ray<T, D>> {
         return all;
     }
     static bool usable(const T* row) {
-        return detail::all_finite(row, 2 * D + 1) && !std::isnan(row[2 * D + 1]);
+        return detail::is_place<D>(row) && detail::all_finite(row + D, D + 1) && !std::isnan(row[2 * D + 1]);
     }
     static Ray<T, D> of(const T* row, const RowOptions&) {
         return {detail::vec_at<D>(row), detail::vec_at<D>(row + D), row[2 * D], row[2 * D + 1]};

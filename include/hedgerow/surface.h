@@ -33,12 +33,14 @@ template <Instanced P>
 inline constexpr bool has_coordinates<P> =
     has_coordinates<typename std::remove_cvref_t<decltype(std::declval<const P&>()[0].index())>::Primitives>;
 
+/// a / |a|, and 0 for 0. Divides by the largest component first, so squares fit.
 template <int D>
-Vec<double, D> unit(const Vec<double, D>& a) {  // divides by the largest component first, so squares fit
-    return normalized(a / max_component(abs(a)));
+Vec<double, D> unit(const Vec<double, D>& a) {
+    const double most = max_component(abs(a));
+    return most > 0 ? normalized(a / most) : a;
 }
-/// The unit normal of any triangle that rays can hit. On slivers, where the computed cross product cancels to
-/// 0, the exact signs of its components are normalised instead.
+/// The unit normal of a triangle; 0 if it has no area, which no ray hits. On slivers, where the computed
+/// cross product cancels to 0, the exact signs of its components are normalised instead.
 inline Vec3d unit_normal(const Triangle<double, 3>& t) {
     Vec3d e1 = t.b - t.a, e2 = t.c - t.a, n;
     const double scale = scale_to_one(max_component(max(abs(e1), abs(e2))));
@@ -161,8 +163,8 @@ enum class Feature : std::uint8_t { face, edge, vertex };
 /// Where a closest point is on its triangle, or its segment in the plane. `number` is that of the corner, or
 /// of the edge from that corner to the next; 0 for a face. The closest point is the sum of the corners by
 /// their weights, which are 0 for corners that the feature lacks. `normal` is that of the primitive, of
-/// length
-/// 1. Neighbors share their edges and vertices, so which of them is the closest primitive says nothing there.
+/// length one, or zero where the primitive has no area (in the plane: no length). Neighbors share their edges
+/// and vertices, so which of them is the closest primitive says nothing there.
 template <std::floating_point T, int D>
 struct FeatureOfNear {
     Feature feature = Feature::face;

@@ -38,12 +38,17 @@ void with_number(NumberType type, const char* at, F f) {
     }
 }
 
+/// Appends a number. A zero has no sign in text.
+template <class N>
+void append_unsigned_zero(std::string& text, N number) {
+    detail::append_number(text, number == 0 ? N(0) : number);
+}
 void append_csv(std::string& text, NumberType type, const char* at) {
     with_number(type, at, [&]<class N>(N number) {
         if constexpr (std::is_same_v<N, bool>)
             text.push_back(number ? '1' : '0');
         else
-            detail::append_number(text, number);
+            append_unsigned_zero(text, number);
     });
 }
 void append_json(std::string& text, NumberType type, const char* at) {
@@ -60,7 +65,7 @@ void append_json(std::string& text, NumberType type, const char* at) {
             if (none)
                 text += "null";
             else
-                detail::append_number(text, number);
+                append_unsigned_zero(text, number);
         }
     });
 }
