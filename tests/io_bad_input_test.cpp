@@ -43,6 +43,58 @@ TEST_F(BadInput, EmptyFile) {
         expect_bad(name, "", {"the file is empty"});
 }
 
+TEST_F(BadInput, PointerOfGitLfs) {
+    const std::string pointer =
+        "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab2935c943f9e0ff69d2\nsize 12345\n";
+    for (const std::string name : {"a.ply", "a.stl", "a.obj", "a.off", "a.gltf", "a.glb", "a.ply.gz"})
+        expect_bad(name, pointer, {"Git LFS", "git lfs pull"});
+}
+
+TEST_F(BadInput, OtherEncodings) {
+    for (const std::string mark : {"\xFF\xFE", "\xFE\xFF"})
+        for (const std::string name : {"a.ply", "a.obj", "a.off", "a.gltf"})
+            expect_bad(name, mark + "v\n", {"UTF-16", "UTF-8"});
+}
+
+TEST_F(BadInput, LongNumbersAreShort) {
+    const auto path = folder.file("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1e300 0\nf 1 2 3\n");
+    expect_input_error([&] { load_mesh<double>(path); }, {"vertex 2 is (0, 1e+300, 0)"});
+}
+
+TEST_F(BadInput, CompressedGltf) {
+    const std::string start =
+        R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"accessors":[{"type":"VEC3",)"
+        R"("componentType":5126,"count":3}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},)"
+        R"("extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{}}}}]}])";
+    expect_bad("a.gltf", start + "}", {"Draco", "KHR_draco_mesh_compression"});
+    expect_bad("b.gltf", start + R"(,"extensionsRequired":["KHR_draco_mesh_compression"]})",
+               {"KHR_draco_mesh_compression"});
+    expect_bad("c.gltf", start + R"(,"extensionsRequired":["EXT_meshopt_compression"]})",
+               {"EXT_meshopt_compression"});
+}
+
+TEST_F(BadInput, SurplusElementsAreTold) {
+    const auto told = [&](const std::string& name, const std::string& bytes) {
+        LoadReport report;
+        load_mesh(folder.file(name, bytes), {.report = &report});
+        ASSERT_EQ(report.warnings.size(), 1u) << name;
+        EXPECT_NE(report.warnings[0].find("follow"), std::string::npos) << report.warnings[0];
+    };
+    told("a.ply", ply("3", "1", corners + "3 0 1 2\n3 2 1 0\n"));
+    told("a.off", "OFF\n3 1 0\n" + corners + "3 0 1 2\n3 2 1 0\n");
+    std::string stl(80, ' ');
+    append(stl, std::uint32_t(1));
+    told("a.stl", stl + std::string(12, '\0') + std::string(36, '\1') + std::string(2 + 30, '\0'));
+}
+
+TEST_F(BadInput, NumbersThatStlCannotHold) {
+    const auto path = folder.file("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1e100 0\nf 1 2 3\n");
+    const auto mesh = load_mesh<double>(path);
+    expect_input_error([&] { save_mesh(folder / "a.stl", mesh); }, {"vertex 2", "1e+100", ".ply"});
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.stl"));
+    EXPECT_NO_THROW(save_mesh(folder / "a.ply", mesh));
+}
+
 TEST_F(BadInput, UnknownExtension) {
     expect_bad("a.what", "x", {"'.what' is not known", ".ply .stl .obj .off .gltf .glb"});
     expect_bad("noextension", "x", {"no extension", ".ply"});
@@ -50,8 +102,8 @@ TEST_F(BadInput, UnknownExtension) {
 }
 
 TEST_F(BadInput, OnlyPoints) {
-    expect_bad("a.ply", ply("3", "0", corners), {"only points (3", "as points"});
-    expect_bad("a.obj", "v 0 0 0\nf 1 1\n", {"only points", "as points"});
+    expect_bad("a.ply", ply("3", "0", corners), {"only points (3", "load_points"});
+    expect_bad("a.obj", "v 0 0 0\nf 1 1\n", {"only points", "load_points"});
     expect_bad("a.off", "OFF\n3 0 0\n" + corners, {"only points"});
 }
 

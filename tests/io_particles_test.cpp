@@ -155,6 +155,60 @@ with h5py.File(sys.argv[1], 'w') as f:
     EXPECT_EQ(state.particles.masses, (std::vector{0.5, 0.5, 2.0}));
     EXPECT_TRUE(state.accelerations.empty());
 }
+/// Snapshots in several files, with SWIFT's seven types and masses of black holes.
+TEST(Gadget, SeveralFilesAreOneSnapshot) {
+    if (!has_hdf5) GTEST_SKIP() << "no HDF5";
+    const TempFolder folder;
+    EXPECT_PYTHON("h5py", R"(
+import h5py, sys
+for part in range(2):
+    with h5py.File(sys.argv[1].replace('.0.', '.%d.' % part), 'w') as f:
+        header = f.create_group('Header').attrs
+        header['NumPart_ThisFile'] = [1, 0, 0, 0, 0, part, 0]
+        header['MassTable'] = [0, 0, 0, 0, 0, 0, 0]
+        header['NumFilesPerSnapshot'] = [2]
+        header['Time'] = [1.5]
+        gas = f.create_group('PartType0')
+        gas.create_dataset('Coordinates', data=[[part, 2, 3]], dtype='f8')
+        gas.create_dataset('Velocities', data=[[0, 0, 1]], dtype='f4')
+        gas.create_dataset('Masses', data=[1 + part], dtype='f4')
+        if part:
+            hole = f.create_group('PartType5')
+            hole.create_dataset('Coordinates', data=[[7, 8, 9]], dtype='f8')
+            hole.create_dataset('Velocities', data=[[0, 0, 0]], dtype='f4')
+            hole.create_dataset('DynamicalMasses', data=[5], dtype='f4')
+)",
+                  (folder / "a.0.hdf5").string());
+    for (const char* name : {"a.0.hdf5", "a.1.hdf5"}) {
+        const MotionState state = load_state(folder / name);
+        EXPECT_EQ(state.time, 1.5);
+        EXPECT_EQ(state.particles.places, (std::vector<Vec3d>{{0, 2, 3}, {1, 2, 3}, {7, 8, 9}}));
+        EXPECT_EQ(state.particles.masses, (std::vector{1.0, 2.0, 5.0}));
+    }
+    std::filesystem::remove(folder / "a.1.hdf5");
+    testing_io::expect_input_error([&] { load_state(folder / "a.0.hdf5"); }, {"a.1.hdf5", "no such file"});
+    std::filesystem::rename(folder / "a.0.hdf5", folder / "b.hdf5");
+    testing_io::expect_input_error([&] { load_state(folder / "b.hdf5"); }, {"NAME.0.hdf5"});
+}
+TEST(Gadget, ParticlesWithoutMassesAreRefused) {
+    if (!has_hdf5) GTEST_SKIP() << "no HDF5";
+    const TempFolder folder;
+    EXPECT_PYTHON("h5py", R"(
+import h5py, sys
+with h5py.File(sys.argv[1], 'w') as f:
+    header = f.create_group('Header').attrs
+    header['NumPart_ThisFile'] = [0, 2, 0, 0, 0, 0]
+    header['MassTable'] = [1, 0, 0, 0, 0, 0]
+    header['NumFilesPerSnapshot'] = 1
+    header['Time'] = 0
+    halo = f.create_group('PartType1')
+    halo.create_dataset('Coordinates', data=[[1, 2, 3], [4, 5, 6]])
+    halo.create_dataset('Velocities', data=[[0, 0, 1], [0, 1, 0]])
+)",
+                  (folder / "a.hdf5").string());
+    testing_io::expect_input_error([&] { load_state(folder / "a.hdf5"); },
+                                   {"PartType1", "no masses", "MassTable"});
+}
 TEST(Gadget, RefusesBadFiles) {
     if (!has_hdf5) {
         EXPECT_THROW(save_state("a.hdf5", MotionState()), UsageError);

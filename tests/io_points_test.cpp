@@ -50,8 +50,40 @@ TEST(Csv, AnySeparatorAndHeader) {
     for (const std::string text :
          {"1,2,3\n-.5,+1e10,4", "1;2;3\r\n-0.5 ; 1e10;4\r\n", "# x y z\n\n1 2\t3\n  -0.5   1e10 4\n",
           "\xEF\xBB\xBFx,y,z\n1,2,3\n-0.5,1e10,4\n", "\"Z\";id;\"X\";Y\n3;7;1;2\n4;8;-0.5;1e10\n",
-          "east north up\n1 2 3\n-0.5 1e10 4\n"})
+          "1,0;2;3\n-,5;1e10;4,\n", "// east north up\n1 2 3\n-0.5 1e10 4\n"})
         EXPECT_EQ((load_points<double, 3>(folder.file("a.csv", text)).points), expected) << text;
+}
+
+TEST(PointFile, ReportsWhatFloatsLose) {
+    TempFolder folder;
+    const auto report_of = [&](const std::string& text) {
+        LoadReport report;
+        load_points<float, 3>(folder.file("a.csv", text), {.report = &report});
+        return report;
+    };
+    // Half a metre apart, at coordinates of the Earth's grid.
+    const LoadReport lost = report_of("431234,5412345.2,210\n431234,5412345.7,210\n");
+    EXPECT_TRUE(lost.loses_detail);
+    EXPECT_NEAR(lost.rounding, 0.2, 1e-6);
+    LoadReport exact;
+    load_points<double, 3>(folder / "a.csv", {.report = &exact});
+    EXPECT_FALSE(exact.loses_detail);
+    EXPECT_EQ(exact.rounding, 0);
+    for (const std::string text : {"0.1,0.2,0.3\n0.4,0.5,0.6\n", "431234,5412345,210\n431235,5412345,210\n",
+                                   "1000.1,0,0\n1001.2,0,0\n1002.3,0,0\n", "0.1,0.1,0.1\n0.1,0.1,0.1\n"})
+        EXPECT_FALSE(report_of(text).loses_detail) << text;
+    save_npy<double>(folder / "a.npy", std::vector<double>{5412345.25, 0, 0, 5412345.5, 0, 0}, {2, 3});
+    LoadReport of_array;
+    load_points<float, 3>(folder / "a.npy", {.report = &of_array});
+    EXPECT_TRUE(of_array.loses_detail);
+}
+
+TEST(PointFile, NumbersAreRoundedOnce) {
+    TempFolder folder;
+    // Just above the middle of two floats: as a double it would be that middle.
+    const auto cloud = load_points<float, 3>(
+        folder.file("a.csv", "1.00000005960464477539062500001,1.000000059604644775390625,7e-46\n"));
+    EXPECT_EQ(cloud.points[0], Vec3f(1.00000011920928955078125f, 1.0f, 0.0f));
 }
 
 TEST(PointFile, BadInput) {
@@ -69,8 +101,11 @@ TEST(PointFile, BadInput) {
     expect_bad("a.csv", "1,2\n", {"line 1", "2 columns, not 3"});
     expect_bad("a.csv", "x,y,z,w\n1,2,3\n", {"line 2", "3 columns, not 4"});
     expect_bad("a.csv", "1,2,3\n1,2,\n", {"line 2", "''"});
-    expect_bad("a.csv", "1,5;2;3\n", {"no points"});
-    expect_bad("b.csv", "1;2;3\n1,5;2;3\n", {"line 2", "'1,5'"});
+    expect_bad("a.csv", "1.000,5;2;3\n", {"line 1", "'1.000,5'", "x, y, z"});
+    expect_bad("b.csv", "1;2;3\n1,5,5;2;3\n", {"line 2", "'1,5,5'"});
+    expect_bad("c.csv", "east north up\n1 2 3\n", {"line 1", "'east'", "does not name the column x"});
+    expect_bad("d.csv", "0,5 0,25 0\n1,5 0,25 0\n", {"line 1", "'5 0'", "semicolons"});
+    expect_bad("a.xyz", "3\n0 0 0\n1 0 0\n", {"promises 3 points, but there are 2"});
     expect_bad("a.csv", "1,2,3\n1,nan,3\n", {"point 1 is (", "drop_bad"});
     expect_bad("a.csv", "1,2,3\n1,-inf,3\n", {"point 1 is ("});
     expect_bad("a.pts", "1 2 3\n", {"'.pts'", ".ply .npy .csv .xyz"});
@@ -81,6 +116,11 @@ TEST(PointFile, BadInput) {
               (std::vector<Vec3f>{{1, 2, 3}}));
     expect_input_error([&] { load_points(folder.file("a.csv", "1,nan,2\n"), {.drop_bad = true}); },
                        {"none is left"});
+    LoadReport report;
+    load_points(folder.file("a.csv", "0,0,0\nnan,0,0\n1,0,0\n2,0,0\n"),
+                {.drop_bad = true, .report = &report});
+    EXPECT_EQ(report.dropped_points, 1u);
+    EXPECT_EQ(report.kept_points, (std::vector<std::uint32_t>{0, 2, 3}));
     // PLY files with integer coordinates, read into the plane: z must be absent or 0.
     const std::string flat = "ply\nformat ascii 1.0\nelement vertex 2\nproperty int x\nproperty int y\n";
     EXPECT_EQ((load_points<float, 2>(folder.file("a.ply", flat + "end_header\n1 2\n3 4\n")).size()), 2u);

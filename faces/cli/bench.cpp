@@ -91,7 +91,7 @@ std::vector<NamedMesh> load_all(const BenchArguments& a) {
     std::vector<NamedMesh> all;
     for (const std::string& scene : scenes) {
         Common one = a;
-        one.scene = scene;
+        one.scene = scene, one.precision = "float";
         const std::string name =
             scene.starts_with("gen:") ? scene : std::filesystem::path(scene).filename().string();
         auto loaded = load<float>(one);

@@ -94,7 +94,11 @@ int load_and_build(const BuildArguments& a) {
     constexpr bool in_double = std::is_same_v<T, double>;
     const std::optional<SceneSize> size = known_size(a);
     if (size) refuse_unsavable(a, *size, in_double, 0);
-    const Scene<T> scene = load<T>(a);
+    LoadReport told;
+    const Scene<T> scene = load<T>(a, &told);
+    if (!told.kept_points.empty())
+        fmt::print(stderr, "hedgerow: {}: has no numbers of {}: it counts the points that are left\n",
+                   a.output, a.scene);
     const SceneSize loaded = size_of(scene);
     refuse_unsavable(a, loaded, in_double, loaded.bytes(sizeof(T)));
     return std::visit(

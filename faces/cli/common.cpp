@@ -36,7 +36,8 @@ Executor& interruptible_executor() {
 }
 
 std::string precision_of(const Common& c) {
-    return names_index_file(c.scene) ? std::string(index_file_info(c.scene).scalar) : c.precision;
+    if (names_index_file(c.scene)) return std::string(index_file_info(c.scene).scalar);
+    return c.precision == "double" ? "double" : "float";
 }
 
 std::string ending_of(const std::string& path) {
@@ -50,9 +51,41 @@ double shortest(float number) {
     return std::stod(fmt::format("{}", number));
 }
 
+namespace {
+std::uint64_t all_dropped = 0;
+}  // namespace
+
+void refuse_floats(const Common& c, const LoadReport& report) {
+    if (!c.quiet)
+        fmt::print(
+            stderr,
+            "hedgerow: {}: is read in double, since floats would move its coordinates by up to {:.2g}. "
+            "--precision float reads it in float all the same\n",
+            c.scene, report.rounding);
+    throw DoublesNeeded();
+}
+
+void tell(const Common& c, const LoadReport& report) {
+    for (const std::string& warning : report.warnings) fmt::print(stderr, "hedgerow: {}\n", warning);
+    if (report.loses_detail)
+        fmt::print(
+            stderr,
+            "hedgerow: {}: floats move its coordinates by up to {:.2g}, which matters. --precision double "
+            "keeps them\n",
+            c.scene, report.rounding);
+    if (report.dropped_faces > 0)
+        fmt::print(stderr, "hedgerow: {}: {} faces were left out, with {} vertices\n", c.scene,
+                   report.dropped_faces, report.dropped_points);
+    else if (report.dropped_points > 0)
+        fmt::print(stderr, "hedgerow: {}: {} points were left out\n", c.scene, report.dropped_points);
+    all_dropped += report.dropped_faces > 0 ? report.dropped_faces : report.dropped_points;
+}
+
 void print_json(const nlohmann::ordered_json& results) {
     using nlohmann::ordered_json;
-    fmt::print("{}\n", results.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+    ordered_json all = results;
+    if (all_dropped > 0 && all.is_object()) all["dropped"] = all_dropped;
+    fmt::print("{}\n", all.dump(2, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t letters) {

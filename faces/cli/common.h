@@ -20,7 +20,8 @@
 namespace hedgerow::cli {
 
 struct Common {
-    std::string scene, output, precision = "float";
+    std::string scene, output;
+    std::string precision = "auto";  // float, double, or double where float loses detail of a file
     bool json = false, quiet = false, drop_bad = false;
     std::uint64_t seed = 0;
 };
@@ -42,11 +43,26 @@ Scene<T> generate_scene(const Common& c, SceneSpec spec) {
     ProgressLine line("generating gen:" + spec.name, c.quiet, "elements");
     return generate<T>(spec, line.progress());
 }
+/// Thrown where floats lose detail of a file, and the user named no precision.
+struct DoublesNeeded {};
+/// Tells that a file will be read in double, and throws DoublesNeeded.
+[[noreturn]] void refuse_floats(const Common& c, const LoadReport& report);
+/// Prints to stderr what the loader of a file reports, and remembers for print_json what was left out.
+void tell(const Common& c, const LoadReport& report);
+
+/// Loads or generates the scene. `told`, if not null, gets what the loader of a file reports.
 template <class T>
-Scene<T> load(const Common& c) {
+Scene<T> load(const Common& c, LoadReport* told = nullptr) {
     if (c.scene.starts_with("gen:")) return generate_scene<T>(c, parse_scene_spec(c.scene));
-    ProgressLine line("loading " + c.scene, c.quiet, "bytes");
-    return load_scene<T>(c.scene, {c.drop_bad}, line.progress());
+    LoadReport report;
+    Scene<T> scene = [&] {
+        ProgressLine line("loading " + c.scene, c.quiet, "bytes");
+        return load_scene<T>(c.scene, {c.drop_bad, &report}, line.progress());
+    }();
+    if (report.loses_detail && c.precision == "auto") refuse_floats(c, report);
+    tell(c, report);
+    if (told != nullptr) *told = std::move(report);
+    return scene;
 }
 
 /// An executor on all cores, whose work throws Cancelled after Ctrl-C.
@@ -61,13 +77,19 @@ auto build_shown(const Common& c, const std::string& structure, const P& primiti
     return build_any(structure, primitives, watched);
 }
 
-/// "float" or "double": the precision of a saved index, or else the one that the user chose.
+/// "float" or "double": the precision of a saved index, or else the one that the user chose, or else float.
 std::string precision_of(const Common& c);
 
-/// Calls f(float()) or f(double()), by `precision_of`. Returns the result of f.
+/// Calls f(float()) or f(double()), by `precision_of`; f(double()) also if f(float()) found that it needs
+/// doubles. Returns the result of f.
 template <class F>
 int in_precision(const Common& c, F f) {
-    return precision_of(c) == "double" ? f(double()) : f(float());
+    if (precision_of(c) == "double") return f(double());
+    try {
+        return f(float());
+    } catch (const DoublesNeeded&) {
+        return f(double());
+    }
 }
 
 /// The double with the shortest decimal digits of the number: 0.05f becomes 0.05, not 0.05000000074505806.
@@ -76,7 +98,8 @@ inline double shortest(double number) {
     return number;
 }
 
-/// Prints results to stdout. Bytes of names that are not UTF-8 are replaced.
+/// Prints results to stdout, with the number of points or faces that --drop-bad left out. Bytes of names that
+/// are not UTF-8 are replaced.
 void print_json(const nlohmann::ordered_json& results);
 
 /// Breaks a text at blanks into lines of at most `letters` bytes. A longer word has a line of its own.

@@ -28,15 +28,17 @@ void add_common(CLI::App& verb, Common& c, bool output) {
     verb.add_option("scene", c.scene, "a mesh, point or .hedgerow file, or gen:NAME[:SIZE]")->required();
     if (output) verb.add_option("-o,--output", c.output, "the file to write")->required();
     verb.add_option("--precision", c.precision,
-                    "of coordinates: float or double; a .hedgerow file has its own")
+                    "of coordinates: float, double, or double where floats would lose what tells a file's "
+                    "points apart; a .hedgerow file has its own")
         ->capture_default_str()
-        ->check(CLI::IsMember({"float", "double"}));
+        ->check(CLI::IsMember({"auto", "float", "double"}));
     add_reporting(verb, c);
 }
 void add_reporting(CLI::App& verb, Common& c) {
     verb.add_flag("--json", c.json, "results as JSON");
     verb.add_flag("--quiet", c.quiet, "no progress and no summary");
-    verb.add_flag("--drop-bad", c.drop_bad, "leave out faces with NaN or infinite vertices");
+    verb.add_flag("--drop-bad", c.drop_bad,
+                  "leave out points that are NaN, infinite or too large, and faces with such vertices");
     verb.add_option("--seed", c.seed, "of random scenes and samples");
 }
 

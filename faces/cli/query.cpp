@@ -54,6 +54,7 @@ template <std::floating_point T, int D>
 struct Answering {
     const AnyIndex<T, D>& index;
     std::unique_ptr<const AnySolid<T, D>> solid;
+    const FileNumbers& numbers;
 };
 
 /// Puts a question to an index for each of `count` rows.
@@ -67,7 +68,10 @@ void answer_piece(const Answering<T, D>& by, const RowOptions& options, const T*
         answer_by_lists<Given, typename Answer::value_type>(
             options, numbers, first, count, answers,
             [&](const Given& given, Answer& found) { Question::ask(index, given, found); },
-            [&](const auto& item, Record& record) { list_item_columns(index, item, record); });
+            [&](const auto& item, Record& record) {
+                ByFileNumbers<Record> numbered{record, by.numbers};
+                list_item_columns(index, item, numbered);
+            });
     } else {
         answer_by_rows<Given>(
             options, numbers, first, count, answers, no_answer<Question>(),
@@ -81,7 +85,10 @@ void answer_piece(const Answering<T, D>& by, const RowOptions& options, const T*
                 else
                     for (std::size_t i = 0; i < count; ++i) Question::ask(index, given[i], found[i]);
             },
-            [](const Answer& answer, auto& record) { list_answer<Question>(answer, record); });
+            [&]<class R>(const Answer& answer, R& record) {
+                ByFileNumbers<R> numbered{record, by.numbers};
+                list_answer<Question>(answer, numbered);
+            });
     }
 }
 
@@ -114,7 +121,7 @@ int query(const QueryArguments& a, RowReader<T>& in, const AnyIndex<T, D>& index
                              a.factor};
     const std::size_t columns = RowsOf<typename Question::Given>::columns().size();
     report.primitives = index.size();
-    Answering<T, D> by{index, nullptr};
+    Answering<T, D> by{index, nullptr, a.numbers};
     if constexpr (AsksSolid<Question>) {
         ProgressLine line("looking for open edges", a.quiet);
         WatchedExecutor watched(default_executor(), line.progress());
@@ -363,7 +370,11 @@ Run add_query(CLI::App& verb) {
             throw InputError(a->from + ": there is no such file. Check the path");
         return in_precision(*a, [&]<class T>(T) {
             if (names_index_file(a->scene) && a->structure == "wide") return query_saved<T>(*a);
-            return std::visit([&](const auto& set) { return query_set(*a, set); }, load<T>(*a));
+            QueryArguments numbered = *a;
+            LoadReport report;
+            const Scene<T> scene = load<T>(*a, &report);
+            numbered.numbers = FileNumbers(std::move(report.kept_points));
+            return std::visit([&](const auto& set) { return query_set(numbered, set); }, scene);
         });
     };
 }

@@ -4,6 +4,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include <hedgerow/columns.h>
 #include <hedgerow/io/rows.h>
@@ -12,12 +15,41 @@
 
 namespace hedgerow::cli {
 
+/// The numbers that the points of a scene have in its file, where --drop-bad left some out. Else numbers are
+/// what they are.
+class FileNumbers {
+public:
+    FileNumbers() = default;
+    explicit FileNumbers(std::vector<std::uint32_t> of_points) : of_points_(std::move(of_points)) {}
+
+    std::uint32_t operator()(std::uint32_t number) const {
+        return number < of_points_.size() ? of_points_[number] : number;
+    }
+
+private:
+    std::vector<std::uint32_t> of_points_;
+};
+/// Passes columns on to `to`, a record or what counts its bytes; primitives by their numbers in the file.
+template <class To>
+struct ByFileNumbers {
+    To& to;
+    const FileNumbers& numbers;
+
+    template <class N>
+    void operator()(std::string_view name, N value) {
+        if constexpr (std::is_same_v<N, std::uint32_t>)
+            if (name == "primitive") value = numbers(value);
+        to(name, value);
+    }
+};
+
 struct QueryArguments : Common {
     std::string kind, from, with, format, output_format, structure = "wide", by;
     std::uint64_t count = 0;
     double radius = -1, factor = 1, error = 1e-3, tolerance = 1e-3;
     bool feature = false;
     unsigned threads = 0;
+    FileNumbers numbers, numbers_with;  // of the scene, and of the one of --with
 };
 
 /// What a query is done with.

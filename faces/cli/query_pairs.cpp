@@ -72,7 +72,7 @@ void write_pairs(const QueryArguments& a, const A& one, const B& other, const st
                  QueryReport& report) {
     write_all(a, pairs.size(), report, [&](auto& f, std::optional<std::uint64_t> i) {
         const ElementPair pair = i ? pairs[*i] : ElementPair{no_primitive, no_primitive};
-        f("a", id_of(one, pair.a)), f("b", id_of(other, pair.b));
+        f("a", a.numbers(id_of(one, pair.a))), f("b", a.numbers_with(id_of(other, pair.b)));
     });
 }
 template <class T, class A, class B>
@@ -80,7 +80,7 @@ void write_pairs(const QueryArguments& a, const A& one, const B& other,
                  const std::vector<PairWithin<T>>& pairs, QueryReport& report) {
     write_all(a, pairs.size(), report, [&](auto& f, std::optional<std::uint64_t> i) {
         const PairWithin<T> pair = i ? pairs[*i] : PairWithin<T>{no_primitive, no_primitive, 0};
-        f("a", id_of(one, pair.a)), f("b", id_of(other, pair.b));
+        f("a", a.numbers(id_of(one, pair.a))), f("b", a.numbers_with(id_of(other, pair.b)));
         f("distance", rounded_to<T>(std::sqrt(static_cast<double>(pair.distance2))));
     });
 }
@@ -167,7 +167,8 @@ int query_two(const QueryArguments& a, const A& set, const B& with) {
         const auto one_row = [&](auto list) {
             return [&, list](const auto& one, const auto& other, const auto& found) {
                 write_all(a, 1, report, [&](auto& f, std::optional<std::uint64_t>) {
-                    list(f, found, id_of(one, found.element_a), id_of(other, found.element_b));
+                    list(f, found, a.numbers(id_of(one, found.element_a)),
+                         a.numbers_with(id_of(other, found.element_b)));
                 });
             };
         };
@@ -232,13 +233,18 @@ int query_pairs(const QueryArguments& a) {
     if (!kind.takes_radius && a.radius >= 0) throw UsageError(a.kind + " takes no --radius");
     if (!(a.tolerance >= 0)) throw UsageError("--tolerance: a tolerance is at least 0");
     return in_precision(a, [&]<class T>(T) {
-        const Scene<T> scene = load<T>(a);
-        if (a.with.empty()) return std::visit([&](const auto& set) { return query_self(a, set); }, scene);
+        QueryArguments numbered = a;
+        LoadReport report, report_with;
+        const Scene<T> scene = load<T>(a, &report);
+        numbered.numbers = numbered.numbers_with = FileNumbers(std::move(report.kept_points));
+        if (a.with.empty())
+            return std::visit([&](const auto& set) { return query_self(numbered, set); }, scene);
         Common of_other = a;
         of_other.scene = a.with;
-        const Scene<T> other = load<T>(of_other);
-        return std::visit([&](const auto& set, const auto& with) { return query_two(a, set, with); }, scene,
-                          other);
+        const Scene<T> other = load<T>(of_other, &report_with);
+        numbered.numbers_with = FileNumbers(std::move(report_with.kept_points));
+        return std::visit([&](const auto& set, const auto& with) { return query_two(numbered, set, with); },
+                          scene, other);
     });
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <fstream>
 #include <limits>
 #include <system_error>
 
@@ -18,10 +19,19 @@ namespace hedgerow::detail {
 
 namespace {
 constexpr std::size_t buffer_size = std::size_t(1) << 18;
-constexpr std::size_t longest_line = std::size_t(1) << 26;
 /// A file that unpacks to more than this, at more than this ratio, repeats itself without an end. Scenes
 /// reach about 50 to 1.
 constexpr std::uint64_t bomb_size = std::uint64_t(1) << 28, bomb_ratio = 500;
+}  // namespace
+
+namespace {
+/// Git LFS leaves a text of about 130 bytes where a file was not fetched.
+bool is_lfs_pointer(const std::filesystem::path& path) {
+    constexpr std::string_view beginning = "version https://git-lfs.github.com/spec/";
+    char start[beginning.size()];
+    std::ifstream file(path, std::ios::binary);
+    return file.read(start, sizeof start) && std::string_view(start, sizeof start) == beginning;
+}
 }  // namespace
 
 void check_readable(const std::filesystem::path& path) {
@@ -35,8 +45,10 @@ void check_readable(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(status)) throw InputError(name + ": is a directory. Name a file in it");
     if (!std::filesystem::is_regular_file(status))
         throw InputError(name + ": is not a regular file. Copy what it yields to a file first");
-    if (std::filesystem::file_size(path, error) == 0 && !error)
-        throw InputError(name + ": the file is empty. Write it again");
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (size == 0 && !error) throw InputError(name + ": the file is empty. Write it again");
+    if (size < 1024 && is_lfs_pointer(path))
+        throw InputError(name + ": is a pointer of Git LFS, and not the file itself. Fetch it: git lfs pull");
 }
 
 namespace {
@@ -169,19 +181,11 @@ std::string_view ByteSource::ahead() {
     return {reinterpret_cast<const char*>(buffer_.data()) + at_, filled_ - at_};
 }
 
-bool ByteSource::line(std::string& text) {
-    text.clear();
-    if (at_end()) return false;
-    for (int c = next(); c != -1 && c != '\n'; c = next()) {
-        if (c == '\r') {
-            if (peek() == '\n') next();
-            break;
-        }
-        text.push_back(static_cast<char>(c));
-        if (text.size() > longest_line)
-            fail_here("a line is longer than 64 MiB. Is this a text file of the kind its extension says?");
-    }
-    return true;
+void ByteSource::rewind() {
+    errno = 0;
+    if (gzrewind(file_) != 0) fail("cannot be read again: " + std::generic_category().message(errno));
+    before_ = 0, at_ = filled_ = 0;
+    ended_ = false;
 }
 
 void ByteSource::fail(const std::string& what) const {

@@ -16,7 +16,8 @@ struct gzFile_s;
 
 namespace hedgerow::detail {
 
-/// Throws InputError if there is no regular, non-empty file.
+/// Throws InputError if there is no regular, non-empty file, or only the pointer to one that Git LFS leaves
+/// in its place.
 void check_readable(const std::filesystem::path& path);
 
 /// Whether a ByteSource may read pipes: "-" is then the standard input.
@@ -51,8 +52,8 @@ public:
     /// The unread part of the buffer: at the start of a file its first 256 KiB, or the whole file if it is
     /// shorter.
     std::string_view ahead();
-    /// The next line without its end (\n, \r\n or \r); false at the end of the file.
-    bool line(std::string& text);
+    /// Starts again at the first byte. Not of a pipe.
+    void rewind();
     /// Reads a U whose bytes are in the order `order`; false if the file ends before.
     template <class U>
     bool value(U& v, std::endian order) {
@@ -68,6 +69,13 @@ public:
         std::memcpy(&v, bytes, sizeof(U));
         return true;
     }
+
+    /// Keeps the sentence "NAME: WHAT" for the report of the loader.
+    void warn(const std::string& what) { warnings_.push_back(name_ + ": " + what); }
+    std::vector<std::string> take_warnings() { return std::move(warnings_); }
+    /// How far coordinates of the file were moved when they were rounded, at most: whoever rounds one writes
+    /// it here (text.h).
+    double& rounding() { return rounding_; }
 
     /// Throws InputError "NAME: WHAT".
     [[noreturn]] void fail(const std::string& what) const;
@@ -89,6 +97,8 @@ private:
     std::vector<unsigned char> buffer_;
     std::size_t at_ = 0, filled_ = 0;
     bool ended_ = false;
+    std::vector<std::string> warnings_;
+    double rounding_ = 0;
 };
 
 }  // namespace hedgerow::detail

@@ -20,12 +20,18 @@ inline bool is_finite(const Rgba& value) {
     return finite(value.colour) && std::isfinite(value.alpha);
 }
 
-/// Throws InputError if a corner names a value that does not exist. Leaves out values that are not finite,
+/// Throws InputError if a corner names a value that does not exist. Leaves out ordinals where there are no
+/// values at all, and values that are not finite,
 /// with a warning. `what` names one of them. O(triangles + values).
 template <class T, class V>
 void check_values(const ByteSource& file, const TriangleMesh<T>& mesh, CornerValues<V>& values,
                   const std::string& what, NamedOnce& warnings) {
     const std::size_t count = values.values.size();
+    // Programs that write no coordinates name them all the same.
+    if (count == 0 && !values.corners.empty()) {
+        warnings.add(file.name() + ": faces name " + what + "s, and there are none. They are left out");
+        values.corners.clear();
+    }
     const auto face = [&](std::size_t i) { return mesh.faces.empty() ? i : mesh.faces[i]; };
     for (std::size_t i = 0; i < values.corners.size(); ++i)
         for (const std::uint32_t v : values.corners[i])

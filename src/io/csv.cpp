@@ -5,7 +5,6 @@
 
 #include "mesh_parts.h"
 #include "readers.h"
-#include "text.h"
 
 namespace hedgerow::detail {
 
@@ -26,6 +25,14 @@ PointCloud<T, D> read_points(ByteSource& file, bool more) {
         check_room(file, cloud.points.size(), "points");
         append(file, cloud.points, p);
     }
+    if (const auto count = rows.count()) {
+        // The count tells a comment of numbers from a point.
+        if (cloud.size() == *count + 1) cloud.points.erase(cloud.points.begin());
+        if (cloud.size() != *count)
+            file.fail("its first line promises " + std::to_string(*count) + " points, but there are " +
+                      std::to_string(cloud.size()) +
+                      ". It was cut off, or the count is wrong: fetch it again");
+    }
     return cloud;
 }
 
@@ -33,14 +40,12 @@ PointCloud<T, D> read_points(ByteSource& file, bool more) {
 
 template <class T>
 bool CsvRows::next(T* numbers) {
-    while (file_.line(text_)) {
-        ++line_;
-        std::string_view line = text_;
-        if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-        line = trimmed(line);
-        if (line.empty() || line.front() == '#') continue;
+    while (lines_.next(text_)) {
+        const std::string_view line = trimmed(text_);
+        if (line.empty() || line.front() == '#' || line.starts_with("//")) continue;
         split(line);
-        const bool names = !begun_ && !parse_real<T>(fields_[0]);
+        if (more_ && skip_of_counted()) continue;
+        const bool names = !begun_ && !number<double>(fields_[0]);
         if (!begun_) begin(names);
         if (names) continue;
         read_row(numbers);
@@ -49,15 +54,39 @@ bool CsvRows::next(T* numbers) {
     return false;
 }
 
+bool CsvRows::skip_of_counted() {
+    if (!begun_ && !count_ && fields_.size() == 1)
+        if ((count_ = parse_integer<std::uint64_t>(fields_[0]))) return true;
+    if (!count_) return false;
+    if (fields_.size() > columns_.required() && !number<double>(fields_[0])) fields_.erase(fields_.begin());
+    if (begun_) return false;
+    const auto is_number = [&](std::string_view field) { return number<double>(field).has_value(); };
+    return fields_.size() < columns_.required() ||
+           !std::all_of(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(columns_.required()),
+                        is_number);
+}
+
+template <class T>
+std::optional<T> CsvRows::number(std::string_view field) {
+    // Where semicolons divide a line, a comma may stand for the decimal point.
+    if (separator_ == ';' && field.find('.') == field.npos && field.find(',') != field.npos) {
+        decimal_ = field;
+        decimal_[decimal_.find(',')] = '.';
+        field = decimal_;
+    }
+    return parse_coordinate<T>(field, lines_.file().rounding());
+}
+
 void CsvRows::split(std::string_view line) {
     fields_.clear();
-    const char separator = line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
-    if (separator == ' ') {
-        for (auto word = take_word(line); !word.empty(); word = take_word(line)) fields_.push_back(word);
+    separator_ = line.find(';') != line.npos ? ';' : line.find(',') != line.npos ? ',' : ' ';
+    if (separator_ == ' ') {
+        for (auto word = take_word(line); !word.empty(); word = take_word(line))
+            fields_.push_back(unquoted(word));
         return;
     }
     for (std::size_t end = 0; end != line.npos;) {
-        end = line.find(separator);
+        end = line.find(separator_);
         fields_.push_back(unquoted(trimmed(line.substr(0, end))));
         if (end != line.npos) line.remove_prefix(end + 1);
     }
@@ -77,8 +106,16 @@ void CsvRows::begin(bool has_names) {
         if (place == fields_.size()) break;
         place_.push_back(place);
     }
-    named_ = has_names && place_.size() >= columns_.required();
+    named_ = has_names;
     if (named_) {
+        if (place_.size() < columns_.required()) {
+            std::string all;
+            for (std::size_t i = 0; i < columns_.required(); ++i)
+                all += (i == 0 ? "" : ", ") + columns_.names[i];
+            fail(shown(fields_[0]) + " is no number, and the line does not name the column " +
+                 columns_.names[place_.size()] + ". Name the columns " + all +
+                 ", or leave the line out if it is no row");
+        }
         if (place_.size() < columns_.size()) place_.resize(columns_.required());
         width_ = fields_.size();
         return;
@@ -98,8 +135,11 @@ void CsvRows::read_row(T* numbers) {
                            columns_.names[1] + ", ... in the first line"));
     for (std::size_t i = 0; i < place_.size(); ++i) {
         const std::string_view field = fields_[place_[i]];
-        const auto x = parse_real<T>(field);
-        if (!x) fail(shown(field) + " where a number should stand. Repair the file");
+        const auto x = number<T>(field);
+        if (!x)
+            fail(shown(field) + " where a number should stand. " +
+                 (field.find(' ') == field.npos ? "Repair the file"
+                                                : "Divide columns by semicolons if numbers have commas"));
         numbers[i] = *x;
     }
     for (std::size_t i = place_.size(); i < columns_.size(); ++i)
@@ -107,7 +147,7 @@ void CsvRows::read_row(T* numbers) {
 }
 
 void CsvRows::fail(const std::string& what) const {
-    file_.fail("line " + std::to_string(line_) + ": " + what);
+    lines_.fail(what);
 }
 
 template bool CsvRows::next(float*);

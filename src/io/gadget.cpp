@@ -10,6 +10,7 @@
 #if HEDGEROW_HAS_HDF5
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -18,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "byte_source.h"
 #include "output_file.h"
 #endif
 
@@ -66,8 +68,8 @@ private:
     void* data_ = nullptr;
 };
 
-constexpr std::size_t types = 6;  // of particles: gas, halo, disc, bulge, stars, boundary
-constexpr std::size_t halo = 1;   // what gravity alone moves
+constexpr std::size_t written_types = 6;  // of particles: gas, halo, disc, bulge, stars, boundary
+constexpr std::size_t halo = 1;           // what gravity alone moves
 
 std::string group_of(std::size_t type) {
     return "PartType" + std::to_string(type);
@@ -90,19 +92,28 @@ public:
             if (end == std::string::npos) return true;
         }
     }
-    /// The numbers of an attribute of the header. Throws if there is not the count of them.
-    template <std::size_t count>
-    std::array<double, count> attribute(const char* name) const {
+    /// The numbers of an attribute of the header.
+    std::vector<double> attribute(const char* name) const {
         const Handle attribute(H5Aopen_by_name(file_, "Header", name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
         if (!attribute) fault(std::string("its Header has no attribute ") + name);
         const Handle space(H5Aget_space(attribute), H5Sclose);
-        std::array<double, count> numbers{};
-        if (H5Sget_simple_extent_npoints(space) != static_cast<hssize_t>(count) ||
-            !is_number(H5Aget_type(attribute)) || H5Aread(attribute, H5T_NATIVE_DOUBLE, numbers.data()) < 0)
-            fault(std::string("attribute ") + name + " of its Header is not " + std::to_string(count) +
+        constexpr hssize_t most = 64;
+        const hssize_t count = H5Sget_simple_extent_npoints(space);
+        std::vector<double> numbers(static_cast<std::size_t>(std::clamp<hssize_t>(count, 0, most)));
+        if (count < 1 || count > most || !is_number(H5Aget_type(attribute)) ||
+            H5Aread(attribute, H5T_NATIVE_DOUBLE, numbers.data()) < 0)
+            fault(std::string("attribute ") + name + " of its Header is no list of numbers");
+        return numbers;
+    }
+    /// The numbers of an attribute that has one for each type of particles.
+    std::vector<double> attribute_of_types(const char* name, std::size_t types) const {
+        std::vector<double> numbers = attribute(name);
+        if (numbers.size() != types)
+            fault(std::string("attribute ") + name + " of its Header is not " + std::to_string(types) +
                   " numbers");
         return numbers;
     }
+    double number(const char* name) const { return attribute_of_types(name, 1)[0]; }
     /// The rows of a dataset, each of so many columns.
     std::vector<double> rows(const std::string& name, std::size_t columns) const {
         const Handle data(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), H5Dclose);
@@ -229,33 +240,73 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// The files of a snapshot: NAME.0.hdf5 to NAME.N.hdf5, if `path` is one of these.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& path, const Reader& first) {
+    const double count = first.number("NumFilesPerSnapshot");
+    if (!(count > 1)) return {path};
+    constexpr double most = 65536;
+    const std::filesystem::path stem = path.stem();
+    const std::string number = stem.extension().string();
+    if (!(count <= most) || number.size() < 2 ||
+        !std::all_of(number.begin() + 1, number.end(), [](char c) { return c >= '0' && c <= '9'; }))
+        first.fault("is one of several files of a snapshot, which are found if they are called NAME.0" +
+                    path.extension().string() + ", NAME.1" + path.extension().string() + ", and so on");
+    std::vector<std::filesystem::path> files;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+        files.push_back(path.parent_path() /
+                        (stem.stem().string() + "." + std::to_string(i) + path.extension().string()));
+    return files;
+}
+
+/// The masses of so many particles of a type: a number each, or one for all in the header.
+std::vector<double> masses_of(const Reader& file, std::size_t type, std::size_t count) {
+    const std::string group = group_of(type) + "/";
+    for (const char* const name : {"Masses", "DynamicalMasses"})  // the latter of black holes (SWIFT)
+        if (file.has(group + name)) return file.scalars(group + name, count);
+    const std::vector<double> of_type = file.attribute("MassTable");
+    if (type >= of_type.size() || !(of_type[type] > 0))
+        file.fault("the particles of " + group_of(type) + " have no masses: there is no dataset " + group +
+                   "Masses, and MassTable has none for them. Write either");
+    return std::vector<double>(count, of_type[type]);
+}
+
+/// Adds the particles of a type to those of a state. Returns whether it has their forces.
+bool add_type(const Reader& file, std::size_t type, MotionState& state) {
+    const auto counts = file.attribute("NumPart_ThisFile");
+    if (type >= counts.size() || !(counts[type] > 0)) return true;
+    if (!(counts[type] < 0x1p40)) file.fault("claims too many particles");
+    const std::size_t count = static_cast<std::size_t>(counts[type]);
+    const std::string group = group_of(type) + "/";
+    Particles& all = state.particles;
+    append(all.places, file.vectors(group + "Coordinates", count));
+    append(all.velocities, file.vectors(group + "Velocities", count));
+    append(all.masses, masses_of(file, type, count));
+    if (!file.has(group + "Potential") || !file.has(group + "Acceleration")) return false;
+    append(state.potentials, file.scalars(group + "Potential", count));
+    append(state.accelerations, file.vectors(group + "Acceleration", count));
+    return true;
+}
+
+}  // namespace
+
 MotionState load_gadget(const std::filesystem::path& path) {
+    check_readable(path);
     const std::lock_guard lock(one_at_a_time);
     const Quiet quiet;
-    const Reader file(path);
-    if (!file.has("Header")) file.fault("has no group Header: it is no snapshot in GADGET's layout");
-    const auto counts = file.attribute<types>("NumPart_ThisFile");
-    if (file.attribute<1>("NumFilesPerSnapshot")[0] > 1)
-        file.fault("is one of several files of a snapshot. Join them into one");
-    const auto of_type = file.attribute<types>("MassTable");
+    const Reader first(path);
+    if (!first.has("Header")) first.fault("has no group Header: it is no snapshot in GADGET's layout");
+    const std::size_t types = first.attribute("NumPart_ThisFile").size();
     MotionState state;
-    state.time = file.attribute<1>("Time")[0];
-    Particles& all = state.particles;
+    state.time = first.number("Time");
+    const auto files = files_of(path, first);
     bool known = true;
-    for (std::size_t type = 0; type < types; ++type) {
-        if (!(counts[type] > 0)) continue;
-        if (!(counts[type] < 0x1p40)) file.fault("claims too many particles");
-        const std::size_t count = static_cast<std::size_t>(counts[type]);
-        const std::string group = group_of(type) + "/";
-        append(all.places, file.vectors(group + "Coordinates", count));
-        append(all.velocities, file.vectors(group + "Velocities", count));
-        append(all.masses, file.has(group + "Masses") ? file.scalars(group + "Masses", count)
-                                                      : std::vector<double>(count, of_type[type]));
-        known = known && file.has(group + "Potential") && file.has(group + "Acceleration");
-        if (!known) continue;
-        append(state.potentials, file.scalars(group + "Potential", count));
-        append(state.accelerations, file.vectors(group + "Acceleration", count));
-    }
+    for (std::size_t type = 0; type < types; ++type)
+        for (const auto& file : files) {
+            check_readable(file);
+            known = add_type(Reader(file), type, state) && known;
+        }
     if (!known) state.potentials.clear(), state.accelerations.clear();
     return state;
 }
@@ -270,12 +321,12 @@ void save_gadget(const std::filesystem::path& path, const MotionState& state, do
     const std::uint64_t n = all.size();
     if (n > std::numeric_limits<std::int32_t>::max())
         throw OutputError(path.string() + ": " + std::to_string(n) + " particles are more than a file holds");
-    Counts counts(types);
+    Counts counts(written_types);
     counts[halo] = static_cast<std::int32_t>(n);
     file.attribute(header, "NumPart_ThisFile", counts);
     file.attribute(header, "NumPart_Total", counts);
-    file.attribute(header, "NumPart_Total_HighWord", Counts(types));
-    file.attribute(header, "MassTable", std::vector<double>(types));
+    file.attribute(header, "NumPart_Total_HighWord", Counts(written_types));
+    file.attribute(header, "MassTable", std::vector<double>(written_types));
     const std::pair<const char*, double> numbers[] = {{"Time", state.time}, {"Redshift", 0},
                                                       {"BoxSize", period},  {"Omega0", 0},
                                                       {"OmegaLambda", 0},   {"HubbleParam", 1}};

@@ -27,6 +27,21 @@ public:
     GltfReader(ByteSource& source, const std::filesystem::path& path)
         : source_(source), file_(source, path) {}
 
+    /// The positions that points name.
+    TriangleMesh<T> read_points() {
+        TriangleMesh<T> mesh;
+        for (const GltfPlacedNode& n : placed_nodes(file_)) {
+            const auto number = file_.number(*n.node, "mesh");
+            if (!number) continue;
+            for (const GltfPart& part : meshes_.mesh(*number).clouds)
+                for (std::uint64_t i = 0; i < part.named(); ++i) {
+                    if (i % 65536 == 0) source_.expect_not_cancelled();
+                    check_room(source_, mesh.vertices.size(), "points");
+                    append(source_, mesh.vertices, position(part, part.name(i), n.to_scene));
+                }
+        }
+        return mesh;
+    }
     TriangleMesh<T> read() {
         for (const Placed& p : placed_meshes())
             for (const GltfPart& part : p.mesh->parts) add_part(part, p.to_scene);
@@ -67,10 +82,14 @@ private:
         }
     }
     std::uint32_t vertex(const GltfPart& part, std::uint64_t named, const Affine<3>& to_scene) {
-        if (named >= part.positions->size()) meshes_.fail_corner(faces_.face_count(), named, part);
         check_room(source_, welder_.size(), "vertices");
+        return welder_.vertex(position(part, named, to_scene));
+    }
+    Vec<T, 3> position(const GltfPart& part, std::uint64_t named, const Affine<3>& to_scene) {
+        if (named >= part.positions->size()) meshes_.fail_corner(faces_.face_count(), named, part);
         const Vec3d p = to_scene.point(part.positions->point(named));
-        return welder_.vertex({rounded<T>(p[0]), rounded<T>(p[1]), rounded<T>(p[2])});
+        double& rounding = source_.rounding();
+        return {coordinate<T>(p[0], rounding), coordinate<T>(p[1], rounding), coordinate<T>(p[2], rounding)};
     }
 
     ByteSource& source_;
@@ -87,7 +106,14 @@ TriangleMesh<T> read_gltf(ByteSource& file, const std::filesystem::path& path) {
     return GltfReader<T>(file, path).read();
 }
 
+template <class T>
+TriangleMesh<T> read_gltf_points(ByteSource& file, const std::filesystem::path& path) {
+    return GltfReader<T>(file, path).read_points();
+}
+
 template TriangleMesh<float> read_gltf(ByteSource&, const std::filesystem::path&);
 template TriangleMesh<double> read_gltf(ByteSource&, const std::filesystem::path&);
+template TriangleMesh<float> read_gltf_points(ByteSource&, const std::filesystem::path&);
+template TriangleMesh<double> read_gltf_points(ByteSource&, const std::filesystem::path&);
 
 }  // namespace hedgerow::detail

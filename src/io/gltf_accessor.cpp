@@ -9,8 +9,8 @@ namespace hedgerow::detail {
 
 namespace {
 
-/// The most elements of a sparse accessor without a buffer view. They are zeros, which cost a file nothing;
-/// no scene has use for more.
+/// The most elements of an accessor without a buffer view. They are zeros, which cost a file nothing; no
+/// scene has use for more.
 constexpr std::uint64_t most_zeros = std::uint64_t(1) << 22;
 constexpr std::uint64_t longest_stride = 1u << 16;
 
@@ -65,13 +65,14 @@ GltfAccessor::GltfAccessor(GltfFile& file, std::uint64_t number, int components)
     size_ = file.needed_number(accessor, "count");
     if (size_ >= most_ordinals) file.fail(place + " has more than 4294967295 elements");
     base_ = numbers(file, accessor, type_of(file, accessor), size_, components);
+    if (base_.bytes.empty()) base_.bytes = file.given(number);
     if (const auto found = accessor.find("normalized"); found != accessor.end())
         base_.normalized = found->is_boolean() && found->get<bool>();
     if (const auto sparse = accessor.find("sparse"); sparse != accessor.end()) {
         if (!sparse->is_object()) file.fail("'sparse' of " + place + " is no object");
         read_sparse(file, *sparse, components);
     }
-    if (base_.bytes.empty() && size_ > (replaced_ > 0 ? most_zeros : 0))
+    if (base_.bytes.empty() && size_ > most_zeros)
         file.fail(place + " has " + std::to_string(size_) + " elements and no buffer view that holds them");
 }
 

@@ -7,10 +7,11 @@
 
 #include <hedgerow/base/error.h>
 
+#include "gltf_draco.h"
 #include "gltf_uri.h"
 #include "json_text.h"
 #include "memory.h"
-#include "text.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
@@ -49,6 +50,7 @@ bool leaves_geometry_alone(const std::string& extension) {
                                                "KHR_animation_",      "KHR_xmp",      "KHR_techniques_",
                                                "KHR_node_visibility", "MSFT_packing_"};
     return extension == "KHR_mesh_quantization" ||  // the accessors read it
+           (extension == "KHR_draco_mesh_compression" && draco_supported()) ||
            std::any_of(std::begin(beginnings), std::end(beginnings),
                        [&](std::string_view b) { return extension.starts_with(b); });
 }
@@ -59,10 +61,11 @@ const nlohmann::json empty_array = nlohmann::json::array();
 
 GltfFile::GltfFile(ByteSource& file, std::filesystem::path path)
     : source_(file), path_(std::move(path)), name_(path_.string()) {
+    open_text(file);
     container_ = read_all(file);
     const bool is_container = container_.starts_with("glTF");
-    std::string_view text = is_container ? json_of_container() : std::string_view(container_);
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    const std::string_view text =
+        is_container ? without_mark(json_of_container()) : std::string_view(container_);
     root_ = parse_json(text, name_);
     if (!is_container) container_ = std::string();
     expect_known();

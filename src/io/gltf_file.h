@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -64,6 +66,13 @@ public:
     std::string_view bytes(std::uint64_t view, std::uint64_t offset, std::uint64_t size);
     /// Bytes from one element of a buffer view to the next; 0 if the elements are adjacent.
     std::uint64_t stride(std::uint64_t view) const;
+    /// The elements of an accessor that no buffer has, one after the other: those that `give` brought, else
+    /// empty.
+    std::string_view given(std::uint64_t accessor) const {
+        const auto found = given_.find(accessor);
+        return found == given_.end() ? std::string_view() : found->second;
+    }
+    void give(std::uint64_t accessor, std::string elements) { given_[accessor] = std::move(elements); }
     std::optional<std::uint64_t> scene() const { return number(root_, "scene"); }
 
     void expect_not_cancelled() const { source_.expect_not_cancelled(); }
@@ -91,6 +100,7 @@ private:
     std::optional<std::string_view> binary_;  // the container's binary chunk
     Json root_;
     std::vector<Buffer> buffers_;
+    std::map<std::uint64_t, std::string> given_;
 };
 
 }  // namespace hedgerow::detail

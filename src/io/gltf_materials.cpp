@@ -8,6 +8,7 @@
 
 #include <hedgerow/geometry/elementary.h>
 
+#include "gltf_draco.h"
 #include "text.h"
 
 namespace hedgerow::detail {
@@ -51,9 +52,12 @@ Vec3f colour_of(const GltfFile& file, const std::vector<double>& numbers, const 
 
 bool is_read_by_models(const std::string& extension) {
     constexpr std::string_view known[] = {
-        "KHR_materials_transmission", "KHR_materials_ior",      "KHR_materials_volume",
-        "KHR_materials_unlit",        "KHR_materials_specular", "KHR_materials_emissive_strength",
-        "KHR_texture_transform",      "KHR_lights_punctual",    "KHR_mesh_quantization"};
+        "KHR_materials_transmission", "KHR_materials_ior",
+        "KHR_materials_volume",       "KHR_materials_unlit",
+        "KHR_materials_specular",     "KHR_materials_emissive_strength",
+        "KHR_texture_transform",      "KHR_lights_punctual",
+        "KHR_mesh_quantization",      "KHR_materials_pbrSpecularGlossiness"};
+    if (extension == "KHR_draco_mesh_compression") return draco_supported();
     return std::find(std::begin(known), std::end(known), extension) != std::end(known);
 }
 
@@ -71,6 +75,7 @@ Material GltfMaterials::read(std::uint64_t number) {
     Material m = standard();
     m.name = file_.text(json, "name");
     if (const Json* const pbr = file_.member(json, "pbrMetallicRoughness")) read_metallic_roughness(*pbr, m);
+    read_specular_glossiness(json, m);
     read_alpha(json, m);
     read_emission(json, m);
     read_specular(json, m);
@@ -97,6 +102,22 @@ void GltfMaterials::read_metallic_roughness(const Json& json, Material& m) {
     m.roughness = factor(json, "roughnessFactor", 1);
     m.roughness_texture = slot(json, "metallicRoughnessTexture", ColourSpace::linear, 1);
     m.metallic_texture = slot(json, "metallicRoughnessTexture", ColourSpace::linear, 2);
+}
+
+void GltfMaterials::read_specular_glossiness(const Json& json, Material& m) {
+    const Json* const old = file_.extension(json, "KHR_materials_pbrSpecularGlossiness");
+    if (old == nullptr) return;
+    const auto diffuse = file_.numbers(*old, "diffuseFactor", 4).value_or(std::vector<double>{1, 1, 1, 1});
+    m.base_colour = colour_of(file_, diffuse, "diffuseFactor");
+    m.alpha = static_cast<float>(std::clamp(diffuse[3], 0.0, 1.0));
+    m.base_colour_texture = slot(*old, "diffuseTexture", ColourSpace::srgb);
+    m.metallic = 0, m.metallic_texture = {};
+    m.roughness = 1 - factor(*old, "glossinessFactor", 1);
+    m.roughness_texture = {};
+    // The reflection at normal incidence, as a share of that of the usual index of refraction.
+    m.specular_colour = colour(*old, "specularFactor", Vec3f::all(1)) * 25.f;
+    if (old->contains("specularGlossinessTexture"))
+        not_shown_.add("specularGlossinessTexture of KHR_materials_pbrSpecularGlossiness");
 }
 
 void GltfMaterials::read_alpha(const Json& json, Material& m) {
@@ -203,7 +224,14 @@ std::optional<std::uint32_t> GltfMaterials::texture(std::uint64_t number, Colour
             like.filter = TextureFilter::nearest;
     }
     return textures_.texture(like, space == ColourSpace::srgb, [&](const PixelLimits& limits) {
-        if (!image) file_.fail("texture " + std::to_string(number) + " has no 'source' that is read");
+        if (!image) {
+            std::string others;
+            if (const Json* const all = file_.member(json, "extensions"))
+                for (const auto& [name, value] : all->items()) others += (others.empty() ? "" : ", ") + name;
+            file_.fail("texture " + std::to_string(number) +
+                       (others.empty() ? " has no 'source'"
+                                       : " has only an image of " + others + ", which is not read"));
+        }
         std::string own;
         const std::string_view bytes = file_.image(*image, own);
         return decode_pixels(bytes, file_.name() + ", " + like.name, limits);

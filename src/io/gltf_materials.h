@@ -27,6 +27,7 @@ private:
     using Json = GltfFile::Json;
 
     void read_metallic_roughness(const Json& json, Material& m);
+    void read_specular_glossiness(const Json& json, Material& m);
     void read_alpha(const Json& json, Material& m);
     void read_emission(const Json& json, Material& m);
     void read_specular(const Json& json, Material& m);

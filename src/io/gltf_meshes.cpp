@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "gltf_draco.h"
+
 namespace hedgerow::detail {
 
 namespace {
@@ -9,6 +11,7 @@ namespace {
 using Json = GltfFile::Json;
 
 std::uint64_t triangle_count(GltfMode mode, std::uint64_t corners) {
+    if (mode == GltfMode::points) return 0;
     return mode == GltfMode::triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
 }
 
@@ -23,8 +26,7 @@ std::array<std::uint64_t, 3> corners_of(GltfMode mode, std::uint64_t i) {
 
 std::array<std::uint64_t, 3> GltfPart::corners(std::uint64_t i) const {
     std::array<std::uint64_t, 3> named = corners_of(mode, i);
-    if (indices != nullptr)
-        for (std::uint64_t& corner : named) corner = static_cast<std::uint64_t>(indices->value(corner, 0));
+    for (std::uint64_t& corner : named) corner = name(corner);
     return named;
 }
 
@@ -58,14 +60,22 @@ GltfMesh GltfMeshes::read_mesh(std::uint64_t number) {
         if (attributes == primitive.end() || !attributes->is_object())
             file_.fail("a primitive of " + name + " has no 'attributes'");
         const auto positions = file_.number(*attributes, "POSITION");
-        if (mode < 4 || !positions) continue;  // points or lines, or nothing to draw
-        // Keep the parts that have triangles.
+        if ((mode > 0 && mode < 4) || !positions) continue;  // lines, or nothing to draw
+        decompress_if_needed(primitive, *positions);
+        // Keep the parts that have triangles or points.
         const GltfPart part = read_part(primitive, static_cast<GltfMode>(mode), accessor(*positions, 3));
+        if (part.mode == GltfMode::points) mesh.clouds.push_back(part);
         if (part.triangles == 0) continue;
         mesh.parts.push_back(part);
         mesh.triangles += part.triangles;
     }
     return mesh;
+}
+
+void GltfMeshes::decompress_if_needed(const Json& primitive, std::uint64_t positions) {
+    const Json* const draco = file_.extension(primitive, "KHR_draco_mesh_compression");
+    if (draco == nullptr || file_.object("accessors", positions).contains("bufferView")) return;
+    if (file_.given(positions).empty()) decompress(file_, primitive, *draco);
 }
 
 GltfPart GltfMeshes::read_part(const Json& primitive, GltfMode mode, const GltfAccessor& positions) {

@@ -13,9 +13,9 @@
 namespace hedgerow::detail {
 
 /// How the indices of a primitive make triangles. The values are glTF's.
-enum class GltfMode : std::uint64_t { triangles = 4, strip = 5, fan = 6 };
+enum class GltfMode : std::uint64_t { points = 0, triangles = 4, strip = 5, fan = 6 };
 
-/// A primitive of triangles.
+/// A primitive of triangles or of points.
 struct GltfPart {
     const GltfFile::Json* primitive;
     GltfMode mode;
@@ -23,13 +23,18 @@ struct GltfPart {
     const GltfAccessor* indices;  // null: the positions are the corners, in their order
     std::uint64_t triangles;
 
+    /// How many positions are named, and the one that is named at place i. It may be out of range.
+    std::uint64_t named() const { return (indices != nullptr ? *indices : *positions).size(); }
+    std::uint64_t name(std::uint64_t i) const {
+        return indices != nullptr ? static_cast<std::uint64_t>(indices->value(i, 0)) : i;
+    }
     /// The positions that the corners of triangle `i` name. They may be out of range.
     std::array<std::uint64_t, 3> corners(std::uint64_t i) const;
 };
 
-/// The parts of a mesh that have triangles, and the number of these triangles.
+/// The parts of a mesh that have triangles, the number of these triangles, and the parts that are points.
 struct GltfMesh {
-    std::vector<GltfPart> parts;
+    std::vector<GltfPart> parts, clouds;
     std::uint64_t triangles = 0;
 };
 
@@ -47,6 +52,8 @@ public:
 
 private:
     GltfMesh read_mesh(std::uint64_t number);
+    /// Decodes a primitive whose positions only a compressed buffer view has.
+    void decompress_if_needed(const GltfFile::Json& primitive, std::uint64_t positions);
     GltfPart read_part(const GltfFile::Json& primitive, GltfMode mode, const GltfAccessor& positions);
 
     GltfFile& file_;

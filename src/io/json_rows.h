@@ -6,7 +6,7 @@
 
 #include <hedgerow/base/column.h>
 
-#include "byte_source.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
@@ -14,7 +14,9 @@ namespace hedgerow::detail {
 /// text of a row is found by its brackets, and then parsed.
 class JsonRows {
 public:
-    JsonRows(ByteSource& file, InputColumns columns) : file_(file), columns_(std::move(columns)) {}
+    JsonRows(ByteSource& file, InputColumns columns) : file_(file), columns_(std::move(columns)) {
+        open_text(file_);
+    }
 
     /// Reads a number for each column; false at the end. Throws InputError with the row's number. T is float
     /// or double.

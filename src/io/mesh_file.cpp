@@ -4,6 +4,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/validate.h>
 
+#include "load_report.h"
 #include "memory.h"
 #include "mesh_writers.h"
 #include "readers.h"
@@ -29,9 +30,14 @@ namespace {
 }
 
 template <class T>
-TriangleMesh<T> read_any(const std::filesystem::path& path, const Progress& progress) {
+using ReadMesh = TriangleMesh<T> (*)(ByteSource&, const std::filesystem::path&);
+
+/// The reader that the extension names. Throws InputError for a file that is not there and for an extension
+/// that is not known.
+template <class T>
+ReadMesh<T> reader_of(const std::filesystem::path& path) {
     const std::string format = format_of(path);
-    TriangleMesh<T> (*read)(ByteSource&, const std::filesystem::path&) = nullptr;
+    ReadMesh<T> read = nullptr;
     if (format == ".ply") read = [](ByteSource& file, const auto&) { return read_ply_mesh<T>(file); };
     if (format == ".stl") read = [](ByteSource& file, const auto&) { return read_stl<T>(file); };
     if (format == ".obj") read = [](ByteSource& file, const auto&) { return read_obj<T>(file); };
@@ -41,8 +47,7 @@ TriangleMesh<T> read_any(const std::filesystem::path& path, const Progress& prog
     if (read == nullptr)
         fail_unknown(path,
                      ".ply .stl .obj .off .gltf .glb, each also with .gz: convert the file to one of these");
-    ByteSource file(path, progress);
-    return read(file, path);
+    return read;
 }
 
 /// Throws InputError if an index is out of range. The writers need no other check.
@@ -62,8 +67,13 @@ void check_indices(const TriangleMesh<T>& mesh) {
 template <class T>
 TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& options,
                           const Progress& progress) {
-    return detail::within_memory(
-        path, [&] { return validated(detail::read_any<T>(path, progress), path.string(), options); });
+    const auto read = detail::reader_of<T>(path);
+    return detail::within_memory(path, [&] {
+        detail::ByteSource file(path, progress);
+        TriangleMesh<T> mesh = validated(read(file, path), path.string(), options);
+        detail::report_on(file, mesh.vertices, options);
+        return mesh;
+    });
 }
 
 template <class T>

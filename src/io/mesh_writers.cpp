@@ -1,6 +1,8 @@
 /// PLY, STL, OBJ and OFF.
 #include "mesh_writers.h"
 
+#include <cmath>
+
 #include <hedgerow/base/error.h>
 
 #include "text.h"
@@ -19,6 +21,16 @@ void append_point(std::string& line, const Vec<T, 3>& p) {
 template <class T>
 void write_point(OutputFile& file, const Vec<T, 3>& p) {
     for (int i = 0; i < 3; ++i) file.little(p[i]);
+}
+
+/// Throws InputError for a finite coordinate that a float makes infinite.
+template <class T>
+void expect_floats(const Vec<T, 3>& p, std::uint32_t vertex) {
+    for (int i = 0; i < 3; ++i)
+        if (std::isfinite(p[i]) && std::isinf(rounded<float>(static_cast<double>(p[i]))))
+            throw InputError("vertex " + std::to_string(vertex) + " of the mesh to save has the coordinate " +
+                             shortest_text(p[i]) +
+                             ", but STL has floats, which end at 3.4e+38. Save it as .ply, .obj or .off");
 }
 }  // namespace
 
@@ -55,6 +67,7 @@ void write_stl(OutputFile& file, const TriangleMesh<T>& mesh) {
     file.little(static_cast<std::uint32_t>(mesh.size()));
     for (const auto& [a, b, c] : mesh.triangles) {
         file.advance();
+        for (const std::uint32_t v : {a, b, c}) expect_floats(mesh.vertices[v], v);
         const Vec3d p(mesh.vertices[a]), q(mesh.vertices[b]), r(mesh.vertices[c]);
         write_point(file, Vec3f(normalized(cross(q - p, r - p))));
         for (const std::uint32_t v : {a, b, c}) {

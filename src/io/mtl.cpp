@@ -8,7 +8,7 @@
 
 #include "byte_source.h"
 #include "gltf_uri.h"
-#include "text.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
@@ -105,7 +105,7 @@ public:
 
     void read(MaterialsByName& materials) {
         std::string text;
-        for (; file_.line(text); ++line_) {
+        while (lines_.next(text)) {
             rest_ = trimmed(text);
             const std::string_view word = take_word(rest_);
             if (word == "newmtl") {
@@ -123,9 +123,7 @@ private:
     void finish(MaterialsByName& materials) {
         if (entry_) materials.try_emplace(entry_->name, material_of(*entry_));
     }
-    [[noreturn]] void fail(const std::string& what) const {
-        file_.fail("line " + std::to_string(line_) + ": " + what + ". Repair the file");
-    }
+    [[noreturn]] void fail(const std::string& what) const { lines_.fail(what + ". Repair the file"); }
     float number() {
         const std::string_view word = take_word(rest_);
         const auto x = parse_real<float>(word);
@@ -156,8 +154,8 @@ private:
         }
         const Vec3f value = numbers({}, true), light = max(value, Vec3f());
         if (value != light)
-            warnings_.add(file_.name() + ": line " + std::to_string(line_) + ": " + std::string(word) +
-                          " has a negative number, which counts as 0");
+            warnings_.add(file_.name() + ": line " + std::to_string(lines_.number()) + ": " +
+                          std::string(word) + " has a negative number, which counts as 0");
         return light;
     }
 
@@ -279,10 +277,10 @@ private:
 
     const std::filesystem::path& path_;
     ByteSource file_;
+    LineSource lines_{file_};
     TextureShelf& textures_;
     NamedOnce& not_shown_;
     NamedOnce& warnings_;
-    std::uint64_t line_ = 1;
     std::string_view rest_;
     std::optional<MtlEntry> entry_;
 };

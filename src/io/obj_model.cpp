@@ -99,6 +99,7 @@ private:
         if (!index || *index == 0)
             place.fail(std::string("the face names ") + what + " " + shown(word) +
                        ". Indices are whole numbers and begin at 1");
+        if (count == 0) return 0;  // there is none yet; check_attributes tells whether one came
         const std::int64_t v = *index > 0 ? *index - 1 : static_cast<std::int64_t>(count) + *index;
         if (v < 0 || v >= static_cast<std::int64_t>(most_ordinals))
             place.fail(std::string("the face names ") + what + " " + std::to_string(*index) +

@@ -3,17 +3,19 @@
 /// correctly.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mesh_parts.h"
-#include "text.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
-/// A file and the number of the line that is being read.
+/// A file and the number of the line where the statement begins that is being read.
 struct ObjPlace {
     ByteSource& file;
     std::uint64_t line = 0;
@@ -22,6 +24,16 @@ struct ObjPlace {
         file.fail("line " + std::to_string(line) + ": " + what);
     }
 };
+
+/// Whether a \ at the end of a statement joins the next line to it. The format joins any statements, but
+/// programs end names of objects and files in a \, too, and mean no more by it. So only lists of numbers are
+/// joined.
+inline bool may_be_joined(std::string_view word) {
+    constexpr std::string_view lists[] = {"v",    "vt",   "vn",   "vp",    "f",    "fo",
+                                          "l",    "p",    "curv", "curv2", "surf", "parm",
+                                          "trim", "hole", "scrv", "sp",    "con",  "bmat"};
+    return std::find(std::begin(lists), std::end(lists), word) != std::end(lists);
+}
 
 /// Looks of a mesh that has none. It shows what a class of looks needs.
 struct NoObjLooks {
@@ -40,7 +52,7 @@ struct NoObjLooks {
 template <class T, class Looks>
 class ObjReader {
 public:
-    ObjReader(ByteSource& file, Looks& looks) : place_{file}, looks_(looks) {}
+    ObjReader(ByteSource& file, Looks& looks) : lines_(file), place_{file}, looks_(looks) {}
 
     TriangleMesh<T> read() {
         std::string line;
@@ -61,20 +73,28 @@ public:
     std::vector<TriangleIndices> take_others(std::size_t list) { return faces_.take_others(list); }
 
 private:
-    /// Reads a line and the lines that a \ at its end joins to it.
-    bool next(std::string& line) {
-        if (!place_.file.line(line)) return false;
-        place_.line += 1 + joined_;
-        joined_ = 0;
-        while (line.ends_with('\\')) {
-            line.back() = ' ';
-            if (!place_.file.line(more_)) break;
-            line += more_;
-            ++joined_;
-            if (line.size() > (std::size_t(1) << 26))
+    /// Reads a statement: a line without its comment, and the lines that a \ at its end joins to it.
+    bool next(std::string& statement) {
+        if (!lines_.next(statement)) return false;
+        place_.line = lines_.number();
+        while (ends_in_join(statement)) {
+            statement.back() = ' ';
+            if (!lines_.next(more_)) break;
+            statement += more_;
+            if (statement.size() > (std::size_t(1) << 26))
                 place_.fail("a line of more than 64 MiB. Is this an OBJ file?");
         }
         return true;
+    }
+    /// Whether a statement goes on in the next line. Removes what follows its \ or its numbers.
+    static bool ends_in_join(std::string& statement) {
+        if (statement.find('\\') == statement.npos) return false;
+        std::string_view rest = statement;
+        if (!may_be_joined(take_word(rest))) return false;
+        statement.resize(std::min(statement.find('#'), statement.size()));
+        while (!statement.empty() && is_space(static_cast<unsigned char>(statement.back())))
+            statement.pop_back();
+        return statement.ends_with('\\');
     }
     void read_vertex(std::string_view rest) {
         check_room(place_.file, mesh_.vertices.size(), "vertices");
@@ -82,7 +102,7 @@ private:
         for (int i = 0; i < 3; ++i) {
             const std::string_view number = take_word(rest);
             if (number.empty()) place_.fail("a vertex with fewer than 3 coordinates. Was the file cut off?");
-            const auto x = parse_real<T>(number);
+            const auto x = parse_coordinate<T>(number, place_.file.rounding());
             if (!x) place_.fail(shown(number) + " where a coordinate should stand. Repair the file");
             p[i] = *x;
         }
@@ -111,9 +131,9 @@ private:
         looks_.end_face(faces_.triangle_count());
     }
 
+    LineSource lines_;
     ObjPlace place_;
     Looks& looks_;
-    std::uint64_t joined_ = 0;
     std::string more_;
     TriangleMesh<T> mesh_;
     FaceList faces_{place_.file};

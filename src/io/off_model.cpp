@@ -22,6 +22,7 @@ public:
         has_places_ = lower.starts_with("st");
         has_colours_ = lower.find('c') != lower.npos;
         has_normals_ = lower.find('n') != lower.npos;
+        normals_.clear(), places_.clear(), vertex_colours_.clear(), face_colours_.clear();
     }
     /// Normals come first, then colours, then texture coordinates. What is missing stays 0, or white.
     void vertex(std::string_view rest, const ByteSource& file) {

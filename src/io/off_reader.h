@@ -1,25 +1,29 @@
-/// Reads the lines of OFF files (Geomview's text form): places and faces here, what follows them on their
-/// lines by a class of looks.
+/// Reads OFF files (Geomview's text and binary forms): places and faces here, what follows them by a class of
+/// looks.
 #pragma once
 
+#include <algorithm>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesh_parts.h"
-#include "text.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
 /// Looks of a mesh that has none. It shows what a class of looks needs.
 struct NoOffLooks {
-    /// The letters before "OFF": "ST", "C" and "N" for texture coordinates, colours and normals of vertices.
+    /// Begins, or begins anew. The letters are those before "OFF": "ST", "C" and "N" for texture coordinates,
+    /// colours and normals of vertices.
     void begin(std::string_view) {}
-    /// The rest of a vertex's line, after its coordinates.
+    /// The numbers of a vertex after its coordinates.
     void vertex(std::string_view, const ByteSource&) {}
-    /// The rest of the line of a face with so many corners. Returns further ordinals of these, as a FaceList
-    /// wants them.
+    /// The numbers of a face after its corners, of which there are so many. Returns further ordinals of
+    /// these, as a FaceList wants them.
     std::span<const std::vector<std::uint32_t>> face(std::string_view, std::size_t) { return {}; }
 };
 
@@ -28,92 +32,215 @@ class OffReader {
 public:
     OffReader(ByteSource& file, Looks& looks) : file_(file), looks_(looks) {}
 
+    /// Reads a vertex a line, as programs write them. A few write several vertices on a line, so where that
+    /// fails, or leaves something behind the last face, reads them word by word.
     TriangleMesh<T> read() {
-        read_keyword();
-        const std::uint64_t vertices = count("vertices"), faces = count("faces");
-        check_declared(file_, vertices, 6, sizeof(Vec<T, 3>), "vertices");  // "0 0 0" and the line's end
-        check_declared(file_, faces, 2, sizeof(TriangleIndices), "faces");
-        for (std::uint64_t i = 0; i < vertices; ++i) read_vertex(i, vertices);
-        for (std::uint64_t i = 0; i < faces; ++i) read_face(i, faces);
-        faces_.move_to(mesh_);
-        return std::move(mesh_);
+        for (const bool by_lines : {true, false}) {
+            try {
+                TriangleMesh<T> mesh = read_as(by_lines);
+                if (!has_more()) return mesh;
+            } catch (const InputError&) {
+            }
+            file_.rewind();
+        }
+        TriangleMesh<T> mesh = read_as(true);
+        file_.warn("something follows the faces that its header counts. It is not read");
+        return mesh;
     }
     /// The lists of further ordinals, once the mesh is read.
-    std::vector<TriangleIndices> take_others(std::size_t list) { return faces_.take_others(list); }
+    std::vector<TriangleIndices> take_others(std::size_t list) { return faces_->take_others(list); }
 
 private:
+    /// What is being read: for a message about a file that ends before it.
+    struct Entry {
+        const char* what = "header line";
+        std::uint64_t number = 0, all = 0;
+    };
+
+    TriangleMesh<T> read_as(bool by_lines) {
+        lines_.emplace(file_);
+        is_pending_ = false;
+        faces_.emplace(file_);
+        mesh_ = {};
+        entry_ = {"header line", 1, 2};
+        read_keyword();
+        if (is_binary_)
+            read_binary();
+        else
+            read_text(by_lines);
+        faces_->move_to(mesh_);
+        return std::move(mesh_);
+    }
     /// The keyword may be missing: the file then begins with the counts.
     void read_keyword() {
-        need_line("header line", 1, 2);
+        need_line();
+        is_binary_ = false, numbers_behind_ = 0;
         std::string_view first = rest_;
         const std::string_view keyword = take_word(first);
-        if (lower_case(keyword).ends_with("off")) {
-            if (keyword.find_first_of("4n") != keyword.npos)
-                fail(shown(keyword) + ": only points in three dimensions are read. Write the file as OFF");
-            rest_ = first;
-            if (trimmed(rest_) == "BINARY") fail("binary OFF is not read. Write the file as text");
-            looks_.begin(keyword.substr(0, keyword.size() - 3));
-        } else if (!parse_integer<std::uint64_t>(keyword)) {
-            fail("does not begin with 'OFF'. Check the extension");
+        const std::string lower = lower_case(keyword);
+        if (!lower.ends_with("off")) {
+            if (!parse_integer<std::uint64_t>(keyword))
+                lines_->fail("does not begin with 'OFF'. Check the extension");
+            return looks_.begin({});
+        }
+        const std::string letters = lower.substr(0, lower.size() - 3);
+        if (keyword.find_first_of("4n") != keyword.npos)
+            lines_->fail(shown(keyword) +
+                         ": only points in three dimensions are read. Write the file as OFF");
+        rest_ = first;
+        is_binary_ = lower_case(trimmed(rest_)) == "binary";
+        const auto has = [&](std::string_view l) { return letters.find(l) != letters.npos; };
+        numbers_behind_ = 3 * has("n") + 4 * has("c") + 2 * letters.starts_with("st");
+        looks_.begin(letters);
+    }
+    /// Throws InputError for counts that the file cannot hold.
+    void expect_room(std::uint64_t vertices, std::uint64_t faces, std::uint64_t vertex_bytes,
+                     std::uint64_t face_bytes) const {
+        check_declared(file_, vertices, vertex_bytes, sizeof(Vec<T, 3>), "vertices");
+        check_declared(file_, faces, face_bytes, sizeof(TriangleIndices), "faces");
+    }
+    [[noreturn]] void fail_cut() const {
+        file_.fail(std::string("the file ends in ") + entry_.what + " " + std::to_string(entry_.number) +
+                   " of " + std::to_string(entry_.all) +
+                   ". It was cut off, or a count is wrong: fetch it again");
+    }
+    bool has_more() {
+        if (is_binary_) return !file_.at_end();
+        return next_line();
+    }
+
+    // ---- Text ----
+
+    void read_text(bool by_lines) {
+        entry_ = {"header line", 2, 2};
+        const auto vertices = number<std::uint64_t>("the number of vertices");
+        const auto faces = number<std::uint64_t>("the number of faces");
+        expect_room(vertices, faces, 6, 2);  // "0 0 0" and the line's end
+        skip_edges();
+        for (std::uint64_t i = 0; i < vertices; ++i) {
+            entry_ = {"vertex", i, vertices};
+            read_vertex(by_lines);
+        }
+        if (!by_lines && !trimmed(rest_).empty()) lines_->fail("goes on after the last vertex");
+        for (std::uint64_t i = 0; i < faces; ++i) {
+            entry_ = {"face", i, faces};
+            read_face();
         }
     }
-    /// Reads the next line that has more than a comment. The message for a file that ends before it names
-    /// line `i` of `all`.
-    void need_line(const char* what, std::uint64_t i, std::uint64_t all) {
+    /// The number of edges ends the line or has one of its own. Some programs leave it out.
+    void skip_edges() {
+        const bool ends_line = !trimmed(rest_).empty();
+        rest_ = {};
+        if (ends_line || !next_line()) return;
+        std::string_view after = rest_;
+        const bool is_edges = parse_integer<std::uint64_t>(take_word(after)) && after.empty();
+        is_pending_ = !is_edges;
+        rest_ = {};
+    }
+    /// Reads the next line that has more than a comment; false at the end of the file.
+    bool next_line() {
+        if (std::exchange(is_pending_, false)) {
+            rest_ = trimmed(std::string_view(text_).substr(0, text_.find('#')));
+            return true;
+        }
         do {
-            if (!file_.line(text_))
-                file_.fail(std::string("the file ends in ") + what + " " + std::to_string(i) + " of " +
-                           std::to_string(all) + ". It was cut off, or a count is wrong: fetch it again");
-            ++line_;
+            if (!lines_->next(text_)) return false;
             rest_ = trimmed(std::string_view(text_).substr(0, text_.find('#')));
         } while (rest_.empty());
+        return true;
     }
-    std::uint64_t count(const char* what) {
-        if (trimmed(rest_).empty()) need_line("header line", 2, 2);
-        const std::string_view word = take_word(rest_);
-        const auto n = parse_integer<std::uint64_t>(word);
-        if (!n) fail(shown(word) + " where the number of " + what + " should stand. Repair the file");
+    void need_line() {
+        if (!next_line()) fail_cut();
+    }
+    /// The next word of this line or of a further one.
+    std::string_view word() {
+        if (rest_ = trimmed(rest_); rest_.empty()) need_line();
+        return take_word(rest_);
+    }
+    template <class I>
+    I number(const std::string& what) {
+        const std::string_view w = word();
+        const auto n = parse_integer<I>(w);
+        if (!n) lines_->fail(shown(w) + " where " + what + " should stand. Repair the file");
         return *n;
     }
-    void read_vertex(std::uint64_t i, std::uint64_t all) {
-        need_line("vertex", i, all);
+    void read_vertex(bool by_lines) {
+        if (by_lines) need_line();
         Vec<T, 3> p;
         for (int k = 0; k < 3; ++k) {
-            const std::string_view word = take_word(rest_);
-            const auto x = parse_real<T>(word);
-            if (!x) fail(shown(word) + " where a coordinate should stand. Repair the file");
+            const std::string_view w = by_lines ? take_word(rest_) : word();
+            const auto x = parse_coordinate<T>(w, file_.rounding());
+            if (!x) lines_->fail(shown(w) + " where a coordinate should stand. Repair the file");
             p[k] = *x;
         }
         append(file_, mesh_.vertices, p);
-        looks_.vertex(rest_, file_);
+        if (by_lines) return looks_.vertex(rest_, file_);
+        behind_.clear();
+        for (int k = 0; k < numbers_behind_; ++k) (behind_ += word()) += ' ';
+        looks_.vertex(behind_, file_);
     }
-    void read_face(std::uint64_t i, std::uint64_t all) {
-        need_line("face", i, all);
-        const std::string_view size = take_word(rest_);
-        const auto n = parse_integer<std::uint32_t>(size);
-        if (!n) fail(shown(size) + " where a number of corners should stand. Repair the file");
+    /// A face begins a line, whose rest behind the corners is the face's colour.
+    void read_face() {
+        need_line();
+        const auto n = number<std::uint32_t>("a number of corners");
         corners_.clear();
-        for (std::uint32_t k = 0; k < *n; ++k) {
-            const std::string_view word = take_word(rest_);
-            const auto v = parse_integer<std::uint32_t>(word);
-            if (!v)
-                fail(shown(word) + " where a vertex of face " + std::to_string(i) +
-                     " should stand. Repair it");
-            append(file_, corners_, *v);
+        for (std::uint32_t k = 0; k < n; ++k)
+            append(file_, corners_,
+                   number<std::uint32_t>("a vertex of face " + std::to_string(entry_.number)));
+        faces_->add(corners_, looks_.face(rest_, corners_.size()));
+    }
+
+    // ---- Binary: integers and floats of 4 bytes, the largest first ----
+
+    void read_binary() {
+        const auto vertices = binary<std::uint32_t>(), faces = binary<std::uint32_t>();
+        binary<std::uint32_t>();  // the number of edges
+        expect_room(vertices, faces, 12, 8);
+        for (std::uint32_t i = 0; i < vertices; ++i) {
+            entry_ = {"vertex", i, vertices};
+            Vec<T, 3> p;
+            for (int k = 0; k < 3; ++k) p[k] = static_cast<T>(binary<float>());
+            append(file_, mesh_.vertices, p);
+            looks_.vertex(floats(static_cast<std::uint32_t>(numbers_behind_)), file_);
         }
-        faces_.add(corners_, looks_.face(rest_, corners_.size()));
+        for (std::uint32_t i = 0; i < faces; ++i) {
+            entry_ = {"face", i, faces};
+            corners_.clear();
+            for (auto n = binary<std::uint32_t>(); n > 0; --n)
+                append(file_, corners_, binary<std::uint32_t>());
+            const auto colours = binary<std::uint32_t>();
+            faces_->add(corners_, looks_.face(floats(colours), corners_.size()));
+        }
     }
-    [[noreturn]] void fail(const std::string& what) const {
-        file_.fail("line " + std::to_string(line_) + ": " + what);
+    template <class U>
+    U binary() {
+        U value;
+        if (!file_.value(value, std::endian::big)) fail_cut();
+        return value;
     }
+    /// So many floats as text, the form in which looks are read.
+    std::string_view floats(std::uint32_t count) {
+        behind_.clear();
+        for (; count > 0; --count) {
+            const float x = binary<float>();
+            if (behind_.size() < most_behind) append_number(behind_, x), behind_ += ' ';
+        }
+        return behind_;
+    }
+
+    static constexpr std::size_t most_behind = 1024;
 
     ByteSource& file_;
     Looks& looks_;
-    std::string text_;
+    std::optional<LineSource> lines_;
+    std::string text_, behind_;
     std::string_view rest_;
-    std::uint64_t line_ = 0;
+    Entry entry_;
+    bool is_pending_ = false;  // the line was read, and its words were not
+    bool is_binary_ = false;
+    int numbers_behind_ = 0;  // of a vertex, by the keyword
     TriangleMesh<T> mesh_;
-    FaceList faces_{file_};
+    std::optional<FaceList> faces_;
     std::vector<std::uint32_t> corners_;
 };
 

@@ -21,10 +21,16 @@ TriangleMesh<T> read_ply_mesh(ByteSource& file) {
         } else if (element.name == "face") {
             read_element(values, element, corners_of(file, element), sizeof(TriangleIndices),
                          [&](const PlyEntry<T>& entry) { faces.add(entry.corners); });
+        } else if (element.name == "tristrips") {
+            read_element(values, element, corners_of(file, element), sizeof(TriangleIndices),
+                         [&](const PlyEntry<T>& entry) {
+                             for_each_of_strips(entry.corners, [&](const auto& t) { faces.add(t); });
+                         });
         } else {
             read_element(values, element, PlyWanted{}, 0, [](const PlyEntry<T>&) {});
         }
     }
+    values.tell_surplus();
     faces.move_to(mesh);
     return mesh;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,15 @@ struct PlyWanted {
     int corners = -1;
     std::vector<int> numbers;  // further properties that are no lists
     int list = -1;             // a further list
+    bool strips = false;       // corners are those of strips, each but the last with a −1 behind it
 
     int axis_of(int property) const {
         return static_cast<int>(std::find(axis, axis + 3, property) - axis);  // 3: none
     }
 };
+
+/// Stands between the strips of an entry.
+inline constexpr auto end_of_strip = static_cast<std::uint32_t>(most_ordinals);
 
 /// The wanted values of an entry of an element.
 template <class T>
@@ -45,7 +50,7 @@ void read_element(PlyValues<T>& values, const PlyElement& element, const PlyWant
     // Refuse a count that the file or the memory cannot hold.
     if (memory_bytes > 0)
         check_declared(values.file(), element.count, values.least_bytes(element), memory_bytes,
-                       element.name == "face" ? "faces" : "vertices");
+                       wanted.corners >= 0 ? element.name == "face" ? "faces" : "strips" : "vertices");
     PlyEntry<T> entry;
     entry.numbers.resize(wanted.numbers.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {
@@ -59,12 +64,16 @@ void read_element(PlyValues<T>& values, const PlyElement& element, const PlyWant
                 entry.corners.clear();
                 for (std::uint64_t j = 0; j < n; ++j) {
                     const std::int64_t v = values.integer(p.type);
+                    if (v == -1 && wanted.strips) {
+                        append(values.file(), entry.corners, end_of_strip);
+                        continue;
+                    }
                     if (v < 0 || v >= static_cast<std::int64_t>(most_ordinals))
                         values.fail("names vertex " + std::to_string(v) + ", which cannot be");
                     append(values.file(), entry.corners, static_cast<std::uint32_t>(v));
                 }
             } else if (const int axis = wanted.axis_of(k); axis < 3) {
-                entry.point[axis] = values.real(p.type);
+                entry.point[axis] = values.coordinate(p.type);
             } else if (k == wanted.list) {
                 entry.list.clear();
                 for (std::uint64_t j = 0; j < n; ++j)
@@ -100,19 +109,36 @@ inline void need_axes(const ByteSource& file, const PlyWanted& wanted, int dimen
             file.fail(std::string("the vertices have no property '") + "xyz"[a] + "'. Write them with it");
 }
 
+/// Calls add(corners) for each triangle of strips, whose every second triangle is turned over.
+template <class F>
+void for_each_of_strips(std::span<const std::uint32_t> corners, F add) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (corners[i] == end_of_strip) {
+            begin = i + 1;
+        } else if (i >= begin + 2) {
+            const bool is_turned = (i - begin) % 2 != 0;
+            add(TriangleIndices{corners[i - (is_turned ? 1 : 2)], corners[i - (is_turned ? 2 : 1)],
+                                corners[i]});
+        }
+    }
+}
+
+/// The corners of faces or of strips.
 inline PlyWanted corners_of(const ByteSource& file, const PlyElement& element) {
     PlyWanted wanted;
+    wanted.strips = element.name == "tristrips";
     for (std::size_t k = 0; k < element.properties.size(); ++k) {
         const PlyProperty& p = element.properties[k];
         if (wanted.corners >= 0 || (p.name != "vertex_indices" && p.name != "vertex_index")) continue;
         if (!p.count || p.type >= PlyType::f4)
-            file.fail("the property '" + p.name +
-                      "' of the faces is not a list of whole numbers. Write it as " +
+            file.fail("the property '" + p.name + "' of the element '" + element.name +
+                      "' is not a list of whole numbers. Write it as " +
                       "'property list uchar int vertex_indices'");
         wanted.corners = static_cast<int>(k);
     }
     if (wanted.corners < 0 && element.count > 0)
-        file.fail("the faces have no property 'vertex_indices'. Write them with it");
+        file.fail("the element '" + element.name + "' has no property 'vertex_indices'. Write them with it");
     return wanted;
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "text.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
@@ -20,14 +20,14 @@ constexpr std::pair<std::string_view, PlyType> type_names[] = {
 /// Reads the lines of one header.
 class HeaderReader {
 public:
-    explicit HeaderReader(ByteSource& file) : file_(file) {}
+    explicit HeaderReader(ByteSource& file) : file_(file), lines_(file) {}
 
     PlyHeader read() {
         std::string line;
         if (!file_.ahead().starts_with("ply"))
             file_.fail("does not begin with 'ply', so it is no PLY file. Check the extension");
         bool has_format = false;
-        for (file_.line(line), header_.lines = 1; next(line);) {
+        for (next(line); next(line);) {
             rest_ = line;
             const std::string_view word = take_word(rest_);
             if (word == "end_header") {
@@ -55,7 +55,7 @@ private:
         if (++header_.lines > most_lines)
             file_.fail("the header has more than " + std::to_string(most_lines) +
                        " lines. Is this a PLY file?");
-        return file_.line(line);
+        return lines_.next(line);
     }
     [[noreturn]] void fail(const std::string& what) const {
         file_.fail("line " + std::to_string(header_.lines) + " of the header " + what +
@@ -108,6 +108,7 @@ private:
     }
 
     ByteSource& file_;
+    LineSource lines_;
     PlyHeader header_;
     std::string_view rest_;
 };

@@ -113,9 +113,12 @@ public:
                 read_vertices(element);
             else if (element.name == "face")
                 read_faces(element);
+            else if (element.name == "tristrips")
+                read_strips(element);
             else
                 skip(element);
         }
+        values_.tell_surplus();
         Model<T> model = model_of(context_.path, std::move(mesh_));
         Object<T>& object = model.objects[0];
         faces_.move_to(object.mesh);
@@ -176,6 +179,17 @@ private:
             const float named = number >= 0 && number <= last ? number : 0;
             while (materials_.size() < faces_.triangle_count())
                 append(file_, materials_, static_cast<std::uint32_t>(named));
+        });
+    }
+    void read_strips(const PlyElement& element) {
+        PlyWanted wanted = corners_of(file_, element);
+        PlyFields(element, wanted).tell_unused(context_.not_shown);
+        std::array<std::vector<std::uint32_t>, lists> others;
+        for (auto& list : others) list.assign(3, FaceList::nothing);
+        read_element(values_, element, wanted, sizeof(TriangleIndices), [&](const PlyEntry<T>& entry) {
+            for_each_of_strips(entry.corners, [&](const auto& t) { faces_.add(t, others); });
+            if (header_.textures.empty()) return;
+            while (materials_.size() < faces_.triangle_count()) append(file_, materials_, 0u);
         });
     }
     void skip(const PlyElement& element) {

@@ -9,8 +9,7 @@
 
 #include "byte_source.h"
 #include "ply_header.h"
-#include "text.h"
-#include "word_source.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
@@ -35,9 +34,19 @@ public:
         return bytes;
     }
 
+    /// A coordinate, whose rounding the file notes.
+    T coordinate(PlyType type) {
+        double& rounding = file_.rounding();
+        if (encoding_ == PlyEncoding::ascii)
+            return number_word([&](std::string_view w) { return parse_coordinate<T>(w, rounding); });
+        if (type == PlyType::f8) return detail::coordinate<T>(raw<double>(), rounding);
+        return real(type);
+    }
+    /// Another number.
     T real(PlyType type) {
-        if (encoding_ == PlyEncoding::ascii) return real_word();
-        if (type == PlyType::f4) return rounded<T>(static_cast<double>(raw<float>()));  // the usual type
+        if (encoding_ == PlyEncoding::ascii)
+            return number_word([](std::string_view w) { return parse_real<T>(w); });
+        if (type == PlyType::f4) return static_cast<T>(raw<float>());  // the usual type
         return decode<T>(type, [](auto x) {
             if constexpr (std::is_same_v<decltype(x), double>)
                 return rounded<T>(x);
@@ -69,6 +78,11 @@ public:
         if (n < 0 || n > 0xFFFFFFFF) fail("a list of " + std::to_string(n) + " values");
         return static_cast<std::uint64_t>(n);
     }
+    /// Warns of what follows the last element.
+    void tell_surplus() {
+        const bool has_more = encoding_ == PlyEncoding::ascii ? !words_.next().empty() : !file_.at_end();
+        if (has_more) file_.warn("something follows the elements that its header counts. It is not read");
+    }
     [[noreturn]] void fail(const std::string& what) {
         const std::string message = what + " (" + place() + "). Repair the file";
         if (encoding_ == PlyEncoding::ascii) words_.fail(message);
@@ -85,9 +99,10 @@ private:
         if (w.empty()) fail_truncated();
         return w;
     }
-    T real_word() {
+    template <class Parse>
+    T number_word(Parse parse) {
         const std::string_view w = word();
-        if (const auto x = parse_real<T>(w)) return *x;
+        if (const auto x = parse(w)) return *x;
         fail(shown(w) + " is not a number");
     }
     std::int64_t integer_word() {

@@ -4,7 +4,9 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/validate.h>
 
+#include "load_report.h"
 #include "memory.h"
+#include "mesh_parts.h"
 #include "npy_format.h"
 #include "output_file.h"
 #include "readers.h"
@@ -13,6 +15,22 @@
 namespace hedgerow {
 
 namespace detail {
+
+/// Points alone of a mesh, whatever connects them. Throws InputError if they do not lie in the plane that is
+/// asked for.
+template <int D, class T>
+PointCloud<T, D> vertices_of(const ByteSource& file, TriangleMesh<T> mesh) {
+    if constexpr (D == 3) {
+        return {std::move(mesh.vertices)};
+    } else {
+        PointCloud<T, D> cloud;
+        for (const Vec<T, 3>& p : mesh.vertices) {
+            if (p[2] != 0) file.fail("z is not 0, but the points are read in 2D. Read them in 3D");
+            append(file, cloud.points, Vec<T, D>(p[0], p[1]));
+        }
+        return cloud;
+    }
+}
 
 template <class T, int D>
 PointCloud<T, D> read_npy_points(ByteSource& file) {
@@ -24,11 +42,17 @@ PointCloud<T, D> read_npy_points(ByteSource& file) {
                   std::to_string(D) + "). Reshape it, or load it with another dimension");
     }
     expect_memory(file.name(), "its " + std::to_string(array.size()) + " numbers",
-                  2 * array.size() * sizeof(T));
-    const std::vector<T> values = array.as<T>();
+                  2 * array.size() * sizeof(double));
     PointCloud<T, D> cloud;
     cloud.points.resize(array.shape[0]);
-    for (std::size_t i = 0; i < values.size(); ++i) cloud.points[i / D][static_cast<int>(i % D)] = values[i];
+    const auto take = [&](const auto& values, auto convert) {
+        for (std::size_t i = 0; i < values.size(); ++i)
+            cloud.points[i / D][static_cast<int>(i % D)] = convert(values[i]);
+    };
+    if (array.dtype == "f8")
+        take(array.as<double>(), [&](double x) { return coordinate<T>(x, file.rounding()); });
+    else
+        take(array.as<T>(), [](T x) { return x; });
     return cloud;
 }
 
@@ -98,13 +122,22 @@ PointCloud<T, D> load_points(const std::filesystem::path& path, const LoadOption
     if (format == ".npy") read = detail::read_npy_points<T, D>;
     if (format == ".csv") read = detail::read_csv_points<T, D>;
     if (format == ".xyz") read = detail::read_xyz_points<T, D>;
-    if (read == nullptr) {
+    if (format == ".obj")
+        read = [](auto& file) { return detail::vertices_of<D>(file, detail::read_obj<T>(file)); };
+    if (format == ".off")
+        read = [](auto& file) { return detail::vertices_of<D>(file, detail::read_off<T>(file)); };
+    const bool is_gltf = format == ".gltf" || format == ".glb";
+    if (read == nullptr && !is_gltf) {
         detail::check_readable(path);
-        detail::fail_unknown_points(path, ".ply .npy .csv .xyz, each also with .gz");
+        detail::fail_unknown_points(path, ".ply .npy .csv .xyz .obj .off .gltf .glb, each also with .gz");
     }
     return detail::within_memory(path, [&] {
         detail::ByteSource file(path, progress);
-        return validated(read(file), path.string(), options);
+        PointCloud<T, D> cloud = validated(
+            is_gltf ? detail::vertices_of<D>(file, detail::read_gltf_points<T>(file, path)) : read(file),
+            path.string(), options);
+        detail::report_on(file, cloud.points, options);
+        return cloud;
     });
 }
 

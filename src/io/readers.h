@@ -23,6 +23,11 @@ TriangleMesh<T> read_off(ByteSource& file);
 template <class T>
 TriangleMesh<T> read_gltf(ByteSource& file, const std::filesystem::path& path);
 
+/// Reads the positions of the primitives that are points, in the scene's coordinates, as vertices without
+/// triangles.
+template <class T>
+TriangleMesh<T> read_gltf_points(ByteSource& file, const std::filesystem::path& path);
+
 template <class T, int D>
 PointCloud<T, D> read_ply_points(ByteSource& file);
 template <class T, int D>

@@ -7,6 +7,7 @@
 #include <hedgerow/parallel/watched_executor.h>
 
 #include "memory.h"
+#include "no_faces.h"
 #include "npy_format.h"
 #include "ply_header.h"
 #include "readers.h"
@@ -15,7 +16,7 @@ namespace hedgerow {
 
 namespace {
 
-enum class Holds { mesh, points, points2d, index };
+enum class Holds { mesh, mesh_or_points, points, points2d, index };
 
 /// What a file holds: by its extension and, for PLY and NumPy files, by its header.
 Holds look_into(const std::filesystem::path& path) {
@@ -32,6 +33,8 @@ Holds look_into(const std::filesystem::path& path) {
         const auto shape = detail::read_npy_shape(file);
         return shape.size() == 2 && shape[1] == 2 ? Holds::points2d : Holds::points;
     }
+    if (format == ".obj" || format == ".off" || format == ".gltf" || format == ".glb")
+        return Holds::mesh_or_points;
     return Holds::mesh;
 }
 
@@ -55,6 +58,21 @@ PointCloud<T, D> cloud_of(const PointCloudView<T, D>& view) {
     return cloud;
 }
 
+/// The mesh of a file, or, where nothing in it has three corners, its points.
+template <class T>
+Scene<T> load_mesh_or_points(const std::filesystem::path& path, const LoadOptions& options,
+                             const Progress& progress) {
+    try {
+        return load_mesh<T>(path, options, progress);
+    } catch (const detail::NoFaces& fault) {
+        try {
+            return load_points<T, 3>(path, options, progress);
+        } catch (const InputError&) {
+            throw fault;  // no points either
+        }
+    }
+}
+
 /// The mesh or the points of a saved index.
 template <class T>
 Scene<T> load_scene_of_index(const std::filesystem::path& path, const Progress& progress) {
@@ -76,6 +94,8 @@ Scene<T> load_scene(const std::filesystem::path& path, const LoadOptions& option
             return load_points<T, 2>(path, options, progress);
         case Holds::index:
             return detail::within_memory(path, [&] { return load_scene_of_index<T>(path, progress); });
+        case Holds::mesh_or_points:
+            return load_mesh_or_points<T>(path, options, progress);
         case Holds::mesh:
             break;
     }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "mesh_parts.h"
-#include "word_source.h"
+#include "text_source.h"
 
 namespace hedgerow::detail {
 
@@ -33,12 +35,12 @@ private:
     /// Whether a file is text. Binary files may begin with "solid" too. A file is text if "facet" or
     /// "endsolid" comes after that line, or if its first 512 bytes are all text.
     static bool is_ascii(std::string_view start) {
-        if (start.starts_with("\xEF\xBB\xBF")) start.remove_prefix(3);
+        start = without_mark(start);
         std::string_view rest = start;
         if (lower_case(take_word(rest)) != "solid") return false;
-        rest.remove_prefix(std::min(rest.find('\n'), rest.size()));
+        rest.remove_prefix(std::min(rest.find_first_of("\r\n"), rest.size()));
         const std::string word = lower_case(take_word(rest));
-        if (word == "facet" || word == "endsolid") return true;
+        if (word == "facet" || word == "endsolid" || word == "end") return true;
         const std::string_view sample = start.substr(0, 512);
         return std::all_of(sample.begin(), sample.end(), [](char c) {
             const auto u = static_cast<unsigned char>(c);
@@ -56,10 +58,7 @@ private:
     }
     bool next_of_binary(std::vector<Vec<T, 3>>& corners) {
         if (at_ == count_) {
-            // Refuse more triangles than the header declares.
-            if (file_.skip(50))
-                file_.fail("its header promises " + std::to_string(count_) +
-                           " triangles, but there are more. The header is wrong: write the file again");
+            expect_end();
             return false;
         }
         float numbers[12];  // the normal, then three corners
@@ -76,6 +75,20 @@ private:
         ++at_;
         return true;
     }
+    /// Refuses further triangles. Some programs fill a file up with other bytes.
+    void expect_end() {
+        constexpr std::uint64_t facet = 50;
+        std::uint64_t spare = 0;
+        for (; !file_.at_end(); spare += file_.ahead().size(), file_.skip(file_.ahead().size())) {
+        }
+        if (spare == 0) return;
+        if (spare % facet == 0)
+            file_.fail("its header promises " + std::to_string(count_) +
+                       " triangles, but there are more. The header is wrong: write the file again");
+        file_.warn(std::to_string(spare) +
+                   " bytes follow the triangles that its header counts. They are not "
+                   "read");
+    }
     [[noreturn]] void fail_truncated() const {
         file_.fail_here("the file ends in triangle " + std::to_string(at_) + " of the " +
                         std::to_string(count_) +
@@ -85,53 +98,74 @@ private:
     // ---- Text ----
 
     bool next_of_text(std::vector<Vec<T, 3>>& corners) {
-        WordSource& words = *words_;
-        for (std::string w = lower_case(words.next()); !w.empty(); w = lower_case(words.next())) {
-            if (w.ends_with("solid")) {  // also "endsolid", and a first word with a byte order mark
+        for (std::string w = keyword(); !w.empty(); w = keyword()) {
+            if (w == "solid" || w == "endsolid") {
                 closed_ = w == "endsolid";
-                words.skip_line();
+                words_->skip_line();
             } else if (w == "facet") {
-                read_facet(words, corners);
+                read_facet(corners);
                 return true;
             } else {
-                words.fail(shown(w) + " where 'facet' or 'endsolid' should stand. Repair the file");
+                words_->fail(shown(w) + " where 'facet' or 'endsolid' should stand. Repair the file");
             }
         }
-        if (!closed_) words.fail("the file ends before 'endsolid'. It was cut off: fetch it again");
+        if (!closed_) words_->fail("the file ends before 'endsolid'. It was cut off: fetch it again");
         return false;
     }
-    static void read_facet(WordSource& words, std::vector<Vec<T, 3>>& corners) {
-        expect(words, "normal");
-        for (int i = 0; i < 3; ++i) words.next();
-        expect(words, "outer");
-        expect(words, "loop");
-        std::string w = lower_case(words.next());
-        for (; w == "vertex"; w = lower_case(words.next())) {
+    void read_facet(std::vector<Vec<T, 3>>& corners) {
+        expect("normal");
+        for (int i = 0; i < 3; ++i) words_->next();
+        skip_words();
+        expect("outer");
+        expect("loop");
+        std::string w = keyword_after_words();
+        for (; w == "vertex"; w = keyword_after_words()) {
             Vec<T, 3> p;
             for (int i = 0; i < 3; ++i) {
-                const std::string_view number = words.next();
-                const auto x = parse_real<T>(number);
-                if (!x) words.fail(shown(number) + " where a coordinate should stand. Repair the file");
+                const std::string_view number = words_->next();
+                const auto x = parse_coordinate<T>(number, file_.rounding());
+                if (!x) words_->fail(shown(number) + " where a coordinate should stand. Repair the file");
                 p[i] = *x;
             }
-            append(words.file(), corners, p);
+            append(file_, corners, p);
         }
-        if (w != "endloop") fail_expected(words, w, "endloop");
-        expect(words, "endfacet");
+        if (w != "endloop") fail_expected(w, "endloop");
+        if (w = keyword_after_words(); w != "endfacet") fail_expected(w, "endfacet");
+        skip_words();
     }
-    static void expect(WordSource& words, std::string_view wanted) {
-        const std::string_view w = words.next();
-        if (lower_case(w) != wanted) fail_expected(words, w, wanted);
+    /// The next word in lower case; "end solid" counts as one.
+    std::string keyword() {
+        std::string w = std::move(pending_);
+        pending_.clear();
+        if (w.empty()) w = lower_case(words_->next());
+        if (w == "end") w += lower_case(words_->next_of_line());
+        return w;
     }
-    [[noreturn]] static void fail_expected(const WordSource& words, std::string_view w,
-                                           std::string_view wanted) {
-        if (w.empty()) words.fail("the file ends in a facet. It was cut off: fetch it again");
-        words.fail(shown(w) + " where " + shown(wanted) + " should stand. Repair the file");
+    std::string keyword_after_words() {
+        skip_words();
+        return keyword();
+    }
+    /// Skips the rest of the line up to a keyword.
+    void skip_words() {
+        constexpr std::string_view keywords[] = {"outer",    "vertex", "end",   "endloop",
+                                                 "endfacet", "facet",  "solid", "endsolid"};
+        do pending_ = lower_case(words_->next_of_line());
+        while (!pending_.empty() &&
+               std::find(std::begin(keywords), std::end(keywords), pending_) == std::end(keywords));
+    }
+    void expect(std::string_view wanted) {
+        const std::string w = keyword();
+        if (w != wanted) fail_expected(w, wanted);
+    }
+    [[noreturn]] void fail_expected(std::string_view w, std::string_view wanted) const {
+        if (w.empty()) words_->fail("the file ends in a facet. It was cut off: fetch it again");
+        words_->fail(shown(w) + " where " + shown(wanted) + " should stand. Repair the file");
     }
 
     ByteSource& file_;
     std::uint32_t count_ = 0, at_ = 0, zeros_ = 0;  // of a binary file
     std::optional<WordSource> words_;               // of a text
+    std::string pending_;                           // a word that was read ahead
     bool closed_ = true;
 };
 

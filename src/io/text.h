@@ -1,8 +1,10 @@
 /// Words and numbers of text files, in any locale.
 #pragma once
 
+#include <bit>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -10,6 +12,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 
 namespace hedgerow::detail {
 
@@ -93,12 +96,51 @@ T rounded(double x) {
     return static_cast<T>(x);
 }
 
+/// A coordinate of a file, rounded to T. `most` becomes how far rounding moved it, if that is more.
+template <std::floating_point T>
+T coordinate(double x, double& most) {
+    if constexpr (std::is_same_v<T, double>) {
+        return x;
+    } else {
+        const T near = rounded<T>(x);
+        const double moved = std::abs(x - static_cast<double>(near));
+        if (moved > most && std::isfinite(near)) most = moved;
+        return near;
+    }
+}
+/// All of `text` as a coordinate, correctly rounded to T, as parse_real.
+template <std::floating_point T>
+std::optional<T> parse_coordinate(std::string_view text, double& most) {
+    const auto wide = parse_real<double>(text);
+    if constexpr (std::is_same_v<T, double>) {
+        return wide;
+    } else {
+        if (!wide) return std::nullopt;
+        const T near = coordinate<T>(*wide, most);
+        // A double halfway between two floats may have been rounded to there. Subnormal floats are farther
+        // apart than the bits that are looked at.
+        constexpr std::uint64_t lower_bits = (std::uint64_t(1) << 29) - 1, half = std::uint64_t(1) << 28;
+        const bool is_halfway = (std::bit_cast<std::uint64_t>(*wide) & lower_bits) == half;
+        if (is_halfway || std::abs(near) <= 2 * std::numeric_limits<T>::min() ||
+            std::abs(near) >= std::numeric_limits<T>::max())
+            return parse_real<T>(text);
+        return near;
+    }
+}
+
 /// Appends the shortest decimals that read back as the same number.
 template <class T>
 void append_number(std::string& text, T value) {
     char digits[64];
     const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
     text.append(digits, end);
+}
+
+template <class T>
+std::string shortest_text(T value) {
+    std::string text;
+    append_number(text, value);
+    return text;
 }
 
 }  // namespace hedgerow::detail

@@ -45,7 +45,7 @@ private:
         for (const Vec<T, 3>& p : corners_)
             for (int k = 0; k < 3; ++k)
                 if (!(std::abs(p[k]) <= largest_coordinate<T>))  // NaN too
-                    file_->fail(facet + " has the coordinate " + std::to_string(p[k]) +
+                    file_->fail(facet + " has the coordinate " + detail::shortest_text(p[k]) +
                                 ", which is not within " + (std::is_same_v<T, float> ? "±2^60" : "±2^480") +
                                 ". Repair the file");
     }

@@ -7,6 +7,9 @@
 
 #include <hedgerow/base/error.h>
 
+#include "no_faces.h"
+#include "text.h"
+
 namespace hedgerow {
 
 namespace {
@@ -22,7 +25,7 @@ bool is_good(const Vec<T, D>& p) {
 template <class T, int D>
 std::string bad_coordinates(std::string_view name, const std::string& what, const Vec<T, D>& p) {
     std::string message = std::string(name) + ": " + what + " is (";
-    for (int i = 0; i < D; ++i) message += (i == 0 ? "" : ", ") + std::to_string(p[i]);
+    for (int i = 0; i < D; ++i) message += (i == 0 ? "" : ", ") + detail::shortest_text(p[i]);
     return message + "), which is " + (std::is_same_v<T, float> ? "not within ±2^60" : "not within ±2^480") +
            ". Repair the file, or drop what is bad (--drop-bad, LoadOptions::drop_bad)";
 }
@@ -39,10 +42,12 @@ void validate_faces(const TriangleMesh<T>& mesh, std::string_view name) {
     const std::size_t count = mesh.vertices.size();
     // There must be triangles.
     if (mesh.triangles.empty() && count == 0)
-        throw InputError(start + "holds neither faces nor points. Is it the right file?");
+        throw detail::NoFaces(start + "holds neither faces nor points. Is it the right file?");
     if (mesh.triangles.empty())
-        throw InputError(start + "holds only points (" + std::to_string(count) +
-                         " vertices, and no face with three corners). Read them as points");
+        throw detail::NoFaces(
+            start + "holds only points (" + std::to_string(count) +
+            " vertices, and no face with three corners), and a mesh is needed. load_points reads "
+            "them, and load_scene, as most verbs do");
     // Ids: none, or one per triangle, never descending.
     if (!mesh.faces.empty() && mesh.faces.size() != mesh.triangles.size())
         throw InputError(start + "has " + std::to_string(mesh.faces.size()) + " face ids for " +
@@ -91,6 +96,24 @@ TriangleMesh<T> without_bad(const TriangleMesh<T>& mesh) {
     return kept;
 }
 
+/// The positions of the good points.
+template <class T, int D>
+std::vector<std::uint32_t> good_ones(const PointCloud<T, D>& cloud) {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        if (is_good(cloud.points[i])) kept.push_back(static_cast<std::uint32_t>(i));
+    return kept;
+}
+
+/// The number of faces that have triangles.
+template <class T>
+std::size_t face_count(const TriangleMesh<T>& mesh) {
+    std::size_t faces = 0;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        faces += mesh.faces.empty() || i == 0 || mesh.faces[i] != mesh.faces[i - 1];
+    return faces;
+}
+
 template <class Points>
 std::size_t first_bad(const Points& points) {
     return static_cast<std::size_t>(
@@ -124,7 +147,12 @@ TriangleMesh<T> validated(TriangleMesh<T> mesh, std::string_view name, const Loa
     if (!options.drop_bad) {
         validate_vertices(mesh, name);
     } else if (first_bad(mesh.vertices) < mesh.vertices.size()) {
+        const std::size_t vertices = mesh.vertices.size(), faces = face_count(mesh);
         mesh = without_bad(mesh);
+        if (options.report != nullptr) {
+            options.report->dropped_points += vertices - mesh.vertices.size();
+            options.report->dropped_faces += faces - face_count(mesh);
+        }
         if (mesh.triangles.empty())
             throw InputError(std::string(name) +
                              ": every face has a vertex that is NaN, infinite or too far " +
@@ -143,8 +171,14 @@ void validate_points(const PointCloud<T, D>& cloud, std::string_view name) {
 template <class T, int D>
 PointCloud<T, D> validated(PointCloud<T, D> cloud, std::string_view name, const LoadOptions& options) {
     validate_count(cloud, name);
-    if (options.drop_bad) {
-        std::erase_if(cloud.points, [](const Vec<T, D>& p) { return !is_good(p); });
+    if (options.drop_bad && first_bad(cloud.points) < cloud.size()) {
+        std::vector<std::uint32_t> kept = good_ones(cloud);
+        for (std::size_t i = 0; i < kept.size(); ++i) cloud.points[i] = cloud.points[kept[i]];
+        if (options.report != nullptr) {
+            options.report->dropped_points += cloud.size() - kept.size();
+            options.report->kept_points = kept;
+        }
+        cloud.points.resize(kept.size());
         if (cloud.points.empty())
             throw InputError(std::string(name) +
                              ": every point is NaN, infinite or too far away, so none is " +

@@ -17,5 +17,7 @@ struct Report {
 Report hunt_instances(std::uint64_t seed, std::uint64_t round);
 /// Runs a round over pairs of primitives (pairs.cpp).
 Report hunt_pairs(std::uint64_t seed, std::uint64_t round);
+/// Runs a round over texts of every format (files.cpp).
+Report hunt_files(std::uint64_t seed, std::uint64_t round);
 
 }  // namespace hedgerow::hunter

@@ -11,9 +11,10 @@ namespace hedgerow {
 
 /// Reads a mesh. The extension, in upper or lower case, names the format:
 ///
-/// - `.ply` (ascii, little and big endian), `.stl` (ascii and binary), `.obj`, `.off` (text). Numbers are
-///   rounded once, from the file's value to T, so doubles are kept. Constant memory beyond the mesh, except
-///   for a table of the vertices of STL and for large concave polygons.
+/// - `.ply` (ascii, little and big endian; faces and triangle strips), `.stl` (ascii and binary), `.obj`,
+///   `.off` (text and binary). Numbers are rounded once, from the file's value to T, so doubles are kept; the
+///   report of LoadOptions says how far others were moved. Constant memory beyond the mesh, except for a
+///   table of the vertices of STL and for large concave polygons.
 /// - `.gltf`, `.glb`: glTF 2.0, with every instance of every mesh written out in the scene's coordinates.
 ///   Transforms are computed in double and rounded once to T. Only triangles are read; skins, morph targets
 ///   and animations are not applied. Buffers must be in the file itself or in its folder. The whole file is
@@ -32,6 +33,9 @@ namespace hedgerow {
 /// equal positions (−0 equals 0), so closed surfaces are closed meshes. Normals, colours, textures and other
 /// properties are not read; load_model reads them.
 ///
+/// Text may begin with a byte order mark, and its lines end in any of \n, \r\n and \r. A \ at the end of a
+/// line of OBJ joins the next one to a list of numbers, and to nothing else (a comment, a name).
+///
 /// `progress` counts the bytes of the file, about every 256 KiB. T is float or double. O(size of the file)
 /// time, but a concave polygon of n corners takes O(n log n) if it is an ordinary outline, O(n²) at worst.
 ///
@@ -47,9 +51,10 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 /// file.
 ///
 /// `progress` counts the vertices and triangles written. Throws InputError if the extension is none of these,
-/// if a triangle names a vertex that does not exist, or if there are more triangles than `.stl` can count
-/// (2^32 − 1). Throws OutputError if the path cannot be written (the disk is full, say), and Cancelled if
-/// `progress` is cancelled. T is float or double. O(vertices + triangles).
+/// if a triangle names a vertex that does not exist, if there are more triangles than `.stl` can count
+/// (2^32 − 1), or if a coordinate is too large for its floats. Throws OutputError if the path cannot be
+/// written (the disk is full, say), and Cancelled if `progress` is cancelled. T is float or double.
+/// O(vertices + triangles).
 template <class T>
 void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress = {});
 

@@ -8,9 +8,10 @@
 
 namespace hedgerow {
 
-/// Reads particles from a snapshot in HDF5 as GADGET lays it out (`.hdf5`, `.h5`; in one file; particles of
-/// all types, one after the other), or from a file of rows (`.npy`, `.csv`, `.json`, as `open_rows` in
-/// io/rows.h; or a point cloud, as `load_points`). Its columns are one of
+/// Reads particles from a snapshot in HDF5 as GADGET and SWIFT lay it out (`.hdf5`, `.h5`; particles of all
+/// types, one after the other; of a snapshot in several files NAME.0.hdf5, NAME.1.hdf5, ... any names all),
+/// or from a file of rows (`.npy`, `.csv`, `.json`, as `open_rows` in io/rows.h; or a point cloud, as
+/// `load_points`). Its columns are one of
 ///
 /// - `x y z`: particles at rest, of equal masses, 1 together;
 /// - `x y z mass`: particles at rest;
@@ -19,8 +20,8 @@ namespace hedgerow {
 ///   beside these, those of the first list that it has all of are read, from the last on.
 ///
 /// The state's accelerations and potentials are empty where the file has none. Throws InputError for a file
-/// that has none of these columns, for one of other faults, and for particles of a file of different times;
-/// Cancelled if `progress` is cancelled. O(size of the file).
+/// that has none of these columns, for particles of a snapshot without masses, for one of other faults, and
+/// for particles of a file of different times; Cancelled if `progress` is cancelled. O(size of the file).
 MotionState load_state(const std::filesystem::path& path, const Progress& progress = {});
 
 /// Writes a state: a row a particle, with the columns above, in double; or, to `.hdf5` and `.h5`, a snapshot

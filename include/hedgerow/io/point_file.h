@@ -14,10 +14,14 @@ namespace hedgerow {
 /// - `.ply`: the element `vertex`, of any PLY. In 2D `z` may be missing, and must otherwise be 0.
 /// - `.npy`: an array of N × D numbers.
 /// - `.csv`: one point per line, with numbers separated by semicolons, else by commas, else by white space.
-///   Lines that are empty or begin with `#` are skipped. If the first other line does not begin with a
-///   number, it names the columns, and the columns named x, y (and z) are read; otherwise there must be D
-///   columns.
-/// - `.xyz`: read like `.csv`, but numbers after the D coordinates are skipped (normals, colours).
+///   Lines that are empty or begin with `#` or `//` are skipped. Between semicolons a number may have a
+///   comma in place of its point. If the first line does not begin with a number, it must name the columns x,
+///   y (and z), which are read; otherwise there must be D columns.
+/// - `.xyz`: read like `.csv`, but numbers after the D coordinates are skipped (normals, colours). The first
+///   line may be the number of points. Then a line of words may follow, and a word may stand before the
+///   numbers of each line, as chemists have it.
+/// - `.obj`, `.off`: the vertices, whatever connects them. `.gltf`, `.glb`: the primitives that are points,
+///   in the scene's coordinates.
 ///
 /// Numbers are rounded once, from the file's value to T. T is float or double, D is 2 or 3. `progress` counts
 /// the bytes of the file, about every 256 KiB. O(size of the file) time.

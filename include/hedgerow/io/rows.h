@@ -41,9 +41,9 @@ public:
 /// - npy: an array of N × C numbers in C order (versions 1 to 3, either byte order), or one of N records, in
 ///   which fields that have the columns' names are read.
 /// - csv: a row per line, with numbers separated by semicolons, else by commas, else by white space. Lines
-///   that are empty or begin with `#` are skipped. If the first other line does not begin with a number, it
-///   names the columns; where it has the columns' names, these are read. Otherwise rows have the columns in
-///   their order, and no more.
+///   that are empty or begin with `#` or `//` are skipped. Between semicolons a number may have a comma in
+///   place of its point. If the first line does not begin with a number, it must name the columns, which are
+///   read. Otherwise rows have the columns in their order, and no more.
 /// - json: an array of rows, or rows one after the other (JSON Lines). A row is an array of numbers, or an
 ///   object whose members have the columns' names. `null` is no number: NaN, or the column's default.
 ///
