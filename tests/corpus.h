@@ -11,6 +11,10 @@
 #include "gltf_text.h"
 #include "io_support.h"
 
+#ifndef HEDGEROW_HAS_DRACO
+#define HEDGEROW_HAS_DRACO 0
+#endif
+
 namespace hedgerow::testing_corpus {
 
 using Corners = std::array<Vec3d, 3>;
@@ -306,6 +310,17 @@ inline void add_gltf(std::vector<CorpusFile>& all) {
     Gltf moved = of_mode(0);
     moved.nodes = R"({"mesh":0,"translation":[1,0,0]})";
     add(moved, {}, {Vec3d(1, 0, 0), Vec3d(2, 0, 0), Vec3d(1, 1, 0), Vec3d(2, 1, 0.5)});
+#if HEDGEROW_HAS_DRACO
+    // Two triangles as Google's encoder writes them, in their order.
+    std::string draco =
+        "DRACO" + packed<std::uint8_t>({2, 2, 1, 0, 0, 0, 2, 4, 1, 0, 1, 2, 2, 1, 3, 1, 1, 0, 9, 3, 0, 0, 0});
+    draco += four;
+    Gltf compressed = Gltf().view(draco).accessor("VEC3", f4, "4").accessor("SCALAR", u2, "6");
+    compressed.primitive +=
+        R"(,"indices":1,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}})";
+    compressed.more = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])";
+    add(compressed, two);
+#endif
     // Accessors without a buffer view are zeros.
     Gltf with_zeros = triangle();
     with_zeros.primitive = R"("attributes":{"POSITION":0,"TEXCOORD_0":1})";

@@ -121,10 +121,14 @@ TEST(Rows, TextWithNamesInAnyOrder) {
     const std::vector<double> expected = {1, 2, 3, -0.5, 1e10, 4};
     for (const std::string text :
          {"1,2,3\n-.5,+1e10,4", "1;2;3\r\n-0.5 ; 1e10;4\r\n", "# rows\n\n1 2\t3\n  -0.5   1e10 4\n",
-          "\xEF\xBB\xBF\"Z\";id;X;y\n3;7;1;2\n4;8;-0.5;1e10\n", "east,north,up\n1,2,3\n-0.5,1e10,4\n"})
+          "\xEF\xBB\xBF\"Z\";id;X;y\n3;7;1;2\n4;8;-0.5;1e10\n", "1,0;2;3\n-,5;1e10;4,0\n"})
         EXPECT_EQ(rows_of<double>(folder.file("a.csv", text), points), expected) << text;
+    // A first line that is no row must name the columns.
+    expect_input_error([&] { rows_of<double>(folder.file("b.csv", "east,north,up\n1,2,3\n"), points); },
+                       {"b.csv: line 1", "'east'", "x, y, z"});
     for (const std::string text :
-         {"[[1,2,3],[-0.5,1e10,4]]", " [ [ 1 , 2 , 3 ] ,\n[-5e-1,1E+10,4.0] ]\n", "[1,2,3]\n[-0.5,1e10,4]\n",
+         {"\xEF\xBB\xBF[[1,2,3],[-0.5,1e10,4]]", "[[1,2,3],[-0.5,1e10,4]]",
+          " [ [ 1 , 2 , 3 ] ,\n[-5e-1,1E+10,4.0] ]\n", "[1,2,3]\n[-0.5,1e10,4]\n",
           "{\"x\":1,\"y\":2,\"z\":3}\n{\"z\":4,\"name\":\"}]\\\"\",\"x\":-0.5,\"y\":1e10}",
           "[{\"x\":1,\"y\":2,\"z\":3},{\"z\":4,\"flag\":true,\"none\":null,\"id\":7,\"x\":-0.5,\"y\":1e10}]"})
         EXPECT_EQ(rows_of<double>(folder.file("a.json", text), points), expected) << text;

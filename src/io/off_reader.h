@@ -100,9 +100,11 @@ private:
         check_declared(file_, faces, face_bytes, sizeof(TriangleIndices), "faces");
     }
     [[noreturn]] void fail_cut() const {
-        file_.fail(std::string("the file ends in ") + entry_.what + " " + std::to_string(entry_.number) +
-                   " of " + std::to_string(entry_.all) +
-                   ". It was cut off, or a count is wrong: fetch it again");
+        const std::string what = std::string("the file ends in ") + entry_.what + " " +
+                                 std::to_string(entry_.number) + " of " + std::to_string(entry_.all) +
+                                 ". It was cut off, or a count is wrong: fetch it again";
+        if (is_binary_) file_.fail_here(what);
+        lines_->fail(what);
     }
     bool has_more() {
         if (is_binary_) return !file_.at_end();
