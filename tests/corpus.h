@@ -261,6 +261,9 @@ inline void add_off(std::vector<CorpusFile>& all) {
         add(header + "0 0 0 1 0 0 0 1 0 1 1 0.5\n" + faces);
     }
     add("OFF\n4 2 0\n" + places + "3 0\n1 2\n3\n2\n1\n3\n");
+    // Found by the hunter: as many lines as vertices and faces, and none of them one of these.
+    add("OFF\n4 2 0\n0 0 0 1 0 0\n0 1 0 1 1 0.5\n3 0\n1 2\n3 2\n1 3\n");
+    all.push_back({"a.off", "OFF 3 1 0\n0 0 0 1 0 0\n0 1 0\n3 1 2\n0\n", {{b, c, a}}});
     add("OFF\n4 2 0\n0\n0\n0\n1 0\n0\n0 1 0\n1 1\n0.5\n" + faces);
     add("OFF\n4 2 0\n" + places + "3 0 1 2 255 0 0\n3 2 1 3 0.5 0.5 0.5 1\n");
     add("OFF\n4 2 0\n" + places + "3  0 1 2 # \\\n\n# \\\n3 2 1 3\n");

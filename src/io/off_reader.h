@@ -32,10 +32,11 @@ class OffReader {
 public:
     OffReader(ByteSource& file, Looks& looks) : file_(file), looks_(looks) {}
 
-    /// Reads a vertex a line, as programs write them. A few write several vertices on a line, so where that
-    /// fails, or leaves something behind the last face, reads them word by word.
+    /// Reads word by word, as the format wants. Some programs write further numbers behind a vertex that the
+    /// keyword does not announce, so where that fails, or leaves something behind the last face, reads a
+    /// vertex a line.
     TriangleMesh<T> read() {
-        for (const bool by_lines : {true, false}) {
+        for (const bool by_lines : {false, true}) {
             try {
                 TriangleMesh<T> mesh = read_as(by_lines);
                 if (!has_more()) return mesh;
