@@ -22,7 +22,7 @@ struct ModelOptions {
 ///   object at equal positions are joined. An instance whose map cannot be inverted becomes an object of its
 ///   own, in the scene's coordinates and without normals. Materials, textures, cameras and
 ///   lights are kept, with the extensions KHR_materials_transmission, ior, volume, emissive_strength, unlit
-///   and specular, KHR_texture_transform and KHR_lights_punctual.
+///   specular and pbrSpecularGlossiness, KHR_texture_transform and KHR_lights_punctual.
 /// - `.obj`: one object, with the materials of its `.mtl` files.
 /// - `.ply`: one object, with normals, colours and texture coordinates.
 /// - `.off`: one object, with normals, colours and texture coordinates.
