@@ -59,6 +59,18 @@ TEST_F(GltfModels, MaterialsHaveTheirNumbers) {
     EXPECT_EQ(material(R"("extensions":{"KHR_materials_ior":{"ior":0}})").ior, 1e6f) << "0 reflects all";
 }
 
+TEST_F(GltfModels, SpecularAndGlossinessBecomeADielectric) {
+    const Material m = material(
+        R"("pbrMetallicRoughness":{"metallicFactor":1,"baseColorFactor":[1,0,0,1]},"extensions":{)"
+        R"("KHR_materials_pbrSpecularGlossiness":{"diffuseFactor":[0.25,0.5,0.75,0.5],"specularFactor":[0.04,0.08,1],)"
+        R"("glossinessFactor":0.75}})");
+    EXPECT_EQ(m.base_colour, Vec3f(0.25f, 0.5f, 0.75f));
+    EXPECT_EQ(m.alpha, 0.5f);
+    EXPECT_EQ(m.metallic, 0);
+    EXPECT_EQ(m.roughness, 0.25f);
+    EXPECT_EQ(m.specular_colour, Vec3f(0.04f, 0.08f, 1) * 25.f);
+}
+
 TEST_F(GltfModels, BadMaterialsAreErrors) {
     refuse_material(R"("pbrMetallicRoughness":{"baseColorFactor":[1,1,1]})",
                     {"baseColorFactor", "4 numbers"});
