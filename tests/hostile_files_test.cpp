@@ -145,8 +145,8 @@ TEST_F(HostileFiles, GltfThatLies) {
     refuse("huge.gltf", gltf(node, "", "3000000000").text(), "needs 36000000000 bytes");
     refuse("minus.gltf", gltf(node, "", "-1").text(), "no whole number");
     refuse("mesh.gltf", gltf(R"({"mesh":7})").text(), "number 7 of its meshes");
-    refuse("draco.gltf", gltf(node, R"(,"extensionsRequired":["KHR_draco_mesh_compression"])").text(),
-           "KHR_draco_mesh_compression");
+    refuse("meshopt.gltf", gltf(node, R"(,"extensionsRequired":["EXT_meshopt_compression"])").text(),
+           "EXT_meshopt_compression");
     refuse("old.gltf", R"({"asset":{"version":"1.0"}})", "only 2.0");
     refuse("self.gltf", gltf(R"({"mesh":0,"children":[0]})").text(), "reached twice");
     refuse("many.gltf", gltf(R"({"children":[0)" + repeated(",0", 9) + "]}").text(), "more nodes");
