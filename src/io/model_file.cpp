@@ -38,6 +38,7 @@ Model<T> read_any_model(const std::filesystem::path& path, const ModelOptions& o
     Model<T> model = read({file, path, not_shown, warnings, textures});
     model.textures = textures.take();
     model.not_shown = not_shown.take();
+    for (const std::string& told : file.take_warnings()) warnings.add(told);
     model.warnings = warnings.take();
     return model;
 }
