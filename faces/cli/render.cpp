@@ -178,9 +178,22 @@ template <class Names>
 CLI::IsMember one_of(const Names& names) {
     return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
 }
-constexpr auto options_of_paths = {"--bounces", "--sampler",  "--filter",    "--tone",
-                                   "--time",    "--noise",    "--adaptive",  "--preview",
-                                   "--resume",  "--exposure", "--save-rays", "--denoise"};
+constexpr auto options_of_paths = {"--bounces",
+                                   "--sampler",
+                                   "--filter",
+                                   "--tone",
+                                   "--time",
+                                   "--noise",
+                                   "--adaptive",
+                                   "--preview",
+                                   "--resume",
+                                   "--exposure",
+                                   "--save-rays",
+                                   "--denoise",
+                                   "--show-samples",
+                                   "--environment",
+                                   "--environment-rotation",
+                                   "--environment-strength"};
 /// Throws UsageError for options that are not of paths.
 void check_paths(const RenderArguments& a) {
     const auto refuse = [](bool given, const char* option) {
@@ -191,6 +204,9 @@ void check_paths(const RenderArguments& a) {
     refuse(a.refines, "--refine"), refuse(a.uses_cones(), a.cones ? "--cones" : "--light-size");
     refuse(a.transparent || a.opacity < 1, "--transparency and --opacity");
     refuse(a.visibility != "cast", "--visibility");
+    if (a.shows_samples && (a.layers || a.denoises))
+        throw UsageError(std::string("--show-samples: leave out ") +
+                         (a.layers ? ".exr, which has the samples as a layer" : "--denoise"));
     if (a.denoises && a.spp < 4) throw UsageError("--denoise: a picture needs four samples, as --spp 4");
 }
 
@@ -260,8 +276,12 @@ Run add_render(CLI::App& verb) {
                     "light (0.01 is 1%), at most to --spp, which then is 16384 if not given; --adaptive is "
                     "implied")
         ->check(CLI::Range(1e-6, 1.0));
-    verb.add_flag("--adaptive", a->adaptive,
-                  "of --shading path: more samples for pixels whose samples differ, with --spp on the mean");
+    verb.add_flag(
+        "--adaptive", a->adaptive,
+        "of --shading path: more samples for pixels whose samples differ, with --spp on the mean; for "
+        "pictures of which some parts need many more than others");
+    verb.add_flag("--show-samples", a->shows_samples,
+                  "of --shading path: a .png of how many samples each pixel has, in place of its light");
     verb.add_flag("--denoise", a->denoises,
                   "of --shading path: take the noise out of a .png, and write layers without noise into an "
                   ".exr beside the others");
@@ -274,6 +294,15 @@ Run add_render(CLI::App& verb) {
         "--save-rays", a->save_rays,
         "of --shading path: a prefix of files, PREFIX-0.npy and so on, in which rays are saved by "
         "bounce, for bench and query");
+    verb.add_option("--environment", a->environment,
+                    "of --shading path: a panorama in latitude and longitude (.hdr, .exr, .png or .jpg) that "
+                    "lights the scene from all around");
+    verb.add_option(
+            "--environment-rotation", a->environment_rotation,
+            "turns the panorama around the upward axis, in degrees, counterclockwise as seen from above")
+        ->check(CLI::Range(-3600.0, 3600.0));
+    verb.add_option("--environment-strength", a->environment_strength, "multiplies the light of the panorama")
+        ->check(CLI::Range(0.0, 1e6));
     verb.add_option("--exposure", a->exposure, "of --shading path: brightness of a .png in powers of two")
         ->check(CLI::Range(-30.0, 30.0));
     verb.add_flag("--counts", a->counts,
@@ -294,6 +323,9 @@ Run add_render(CLI::App& verb) {
         for (const char* const option : options_of_paths)
             if (!a->follows_paths() && given(option))
                 throw UsageError(std::string(option) + " is of paths: it needs --shading path");
+        for (const char* const option : {"--environment-rotation", "--environment-strength"})
+            if (a->environment.empty() && given(option))
+                throw UsageError(std::string(option) + " needs --environment, the panorama that it changes");
         if (!a->save_rays.empty()) check_rays_writable(a->save_rays);
         if (!a->resume.empty()) check_writable(a->resume);
         const bool saved = names_index_file(a->scene);

@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <hedgerow/any_index.h>
+#include <hedgerow/geometry/elementary.h>
 #include <hedgerow/io/model_file.h>
+#include <hedgerow/io/texture_file.h>
 #include <hedgerow/render/lettering.h>
+#include <hedgerow/render/lighting/default_sky.h>
 #include <hedgerow/render/model_cones.h>
 #include <hedgerow/render/model_scene.h>
 #include <hedgerow/render/visibility/rasterise.h>
@@ -51,6 +54,22 @@ Camera camera_of(const RenderArguments& a, const Model<T>& model, const Camera& 
         c.projection = Projection::orthographic,
         c.height = static_cast<float>(std::get<OrthographicView>(from.view).height);
     return c;
+}
+/// The light of the panorama that the user names, upright in the scene.
+Environment environment_of(const RenderArguments& a, const Vec3f& up) {
+    Environment environment = load_environment(a.environment);
+    if (const Pixels& p = *environment.panorama.pixels; p.width != 2 * p.height && !a.quiet)
+        fmt::print(
+            stderr,
+            "hedgerow: warning: {} has {}x{} pixels, where a panorama in latitude and longitude is twice "
+            "as wide as high\n",
+            a.environment, p.width, p.height);
+    const double angle = a.environment_rotation * (3.14159265358979323846 / 180);
+    const Vec3d turned_x(cosine(angle), 0, -sine(angle)), turned_z(sine(angle), 0, cosine(angle));
+    for (Vec3d& row : environment.to_world = upright_environment(up))
+        row = Vec3d(dot(row, turned_x), row[1], dot(row, turned_z));
+    environment.radiance = Vec3f::all(static_cast<float>(a.environment_strength));
+    return environment;
 }
 /// The shadings of a sheet, row by row.
 constexpr Shading on_sheet[] = {Shading::colour, Shading::diffuse, Shading::normals,
@@ -112,7 +131,9 @@ ShownModel<T>::ShownModel(const RenderArguments& a)
                                             : upright_by_format(a.scene, {});
     const auto& box = scene.bounds();
     options = options_of(a, Box3f{Vec3f(box.low), Vec3f(box.high)}, outcome.upright);
+    up = upward(a.view, a, outcome.upright);
     options.camera = camera_of(a, model, options.camera);
+    if (!a.environment.empty()) model.environment = environment_of(a, up);
 }
 template struct ShownModel<float>;
 template struct ShownModel<double>;

@@ -15,8 +15,10 @@ struct ShownModel {
     ModelScene<T> scene;
     Outcome outcome;
     RenderOptions options;
+    Vec3f up;  // the scene's upward direction, however the camera is held
 
-    /// Loads or generates the scene, builds its indexes and places the camera.
+    /// Loads or generates the scene and the environment that the user names, builds indexes and places the
+    /// camera. Throws InputError for files that cannot be read.
     explicit ShownModel(const RenderArguments& a);
 };
 

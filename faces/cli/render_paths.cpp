@@ -52,12 +52,26 @@ Image image_of(const RenderArguments& a, const PathPicture& picture, const std::
     for (std::size_t i = 0; i < light.size(); ++i) image.pixels[i] = srgb(toned(tone, light[i] * brightness));
     return image;
 }
+/// A heat map of the number of samples of each pixel, on a logarithmic scale up to the most.
+Image samples_image(const PathPicture& picture) {
+    Image image(picture.width, picture.height);
+    std::uint64_t most = 1;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        most = std::max<std::uint64_t>(most, picture.light.samples(i));
+    const ColourScale scale{most, true};
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = heat(scale.at(static_cast<float>(picture.light.samples(i))));
+    draw_colour_bar(image, scale);
+    return image;
+}
 /// Saves a picture; what is seen first is for an .exr alone. `denoised` is its light without noise, or empty.
 void save_picture(const RenderArguments& a, const PathPicture& picture,
                   const std::vector<FirstSurface>& first_surfaces, const std::vector<Vec3f>& denoised = {}) {
     const Notes notes = picture_notes(a.seed);
     if (a.layers)
         save_exr(a.output, PathLayers(picture, first_surfaces, denoised).layers, {}, notes);
+    else if (a.shows_samples)
+        save_png(a.output, samples_image(picture), {}, notes);
     else
         save_png(a.output, image_of(a, picture, denoised.empty() ? picture.means() : denoised), {}, notes);
 }
@@ -172,7 +186,7 @@ int render_paths(const RenderArguments& a) {
     const ThreadLimit limit(a.threads);
     const ShownModel<T> shown(a);
     SceneLightsOptions of_lights;
-    of_lights.up = shown.options.camera.up;
+    of_lights.up = shown.up;
     const SceneLights<T> lights(shown.scene, of_lights, interruptible_executor());
     if (lights.has_default_sky() && !a.quiet)
         fmt::print(stderr, "hedgerow: {}: has no lights, so it gets a sky\n", a.scene);

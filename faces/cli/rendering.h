@@ -21,18 +21,21 @@ struct RenderArguments : Common {
     std::uint32_t bounces = 64;                                      // of paths
     std::string sampler = "sobol", filter = "box", tone = "linear";  // of paths
     float exposure = 0;                                              // of paths, in powers of two
-    double seconds = 0;                   // that paths are followed; 0: until all samples are there
-    std::string resume;                   // the file of a state of paths
-    double noise = 0;                     // at which paths end; 0: they end by number
-    bool adaptive = false;                // samples of paths
-    bool preview = false;                 // of paths, in the terminal
-    bool denoises = false;                // pictures of paths
-    std::string save_rays;                // the prefix of files for rays of paths
-    bool footprints = false;              // of textures
-    bool refines = false;                 // where samples differ
-    bool cones = false;                   // in place of samples
-    float light_degrees = 0;              // the diameter of the light
-    bool counts = false, layers = false;  // layers: whether the output is .exr
+    double seconds = 0;          // that paths are followed; 0: until all samples are there
+    std::string resume;          // the file of a state of paths
+    double noise = 0;            // at which paths end; 0: they end by number
+    bool adaptive = false;       // samples of paths
+    bool shows_samples = false;  // in place of light
+    bool preview = false;        // of paths, in the terminal
+    bool denoises = false;       // pictures of paths
+    std::string environment;     // the file of a panorama that lights paths
+    double environment_rotation = 0, environment_strength = 1;  // in degrees; a factor
+    std::string save_rays;                                      // the prefix of files for rays of paths
+    bool footprints = false;                                    // of textures
+    bool refines = false;                                       // where samples differ
+    bool cones = false;                                         // in place of samples
+    float light_degrees = 0;                                    // the diameter of the light
+    bool counts = false, layers = false;                        // layers: whether the output is .exr
 
     bool rasterises() const { return visibility == "raster"; }
     bool follows_paths() const { return shading == "path"; }

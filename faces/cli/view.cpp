@@ -115,6 +115,12 @@ std::string up_text(const ViewArguments& view, const Common& common, const Uprig
     return fmt::format("{} is up, {}; --up turns the view\n", upright.letter(), upright.reason);
 }
 
+Vec3f upward(const ViewArguments& view, const Common& common, const Upright& upright) {
+    if (const auto own = camera_for(generated_name(common)); own && view.named == "auto" && view.up == "auto")
+        return own->up;
+    return scene_axes(upright.axis).up;
+}
+
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,
                  const Upright& upright) {
     const auto [width, height] = parse_size(view.size);

@@ -44,6 +44,10 @@ Upright upright_of(const ViewArguments& view, const Common& common, const P& pri
 /// generated scenes.
 std::string up_text(const ViewArguments& view, const Common& common, const Upright& upright);
 
+/// The upward direction of what a picture shows: that of the scene's own camera if the view is its own, else
+/// the upward axis. Unlike a camera's it does not tilt when the camera looks up or down.
+Vec3f upward(const ViewArguments& view, const Common& common, const Upright& upright);
+
 /// The scene's own camera, or one from the bounds, changed as the user's options say. Throws UsageError for a
 /// camera that sees nothing, such as one that looks along its up direction, and for --light 0,0,0.
 Camera camera_of(const ViewArguments& view, const Common& common, const Box3f& bounds,

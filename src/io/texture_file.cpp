@@ -35,4 +35,12 @@ Pixels load_pixels(const std::filesystem::path& path, const PixelLimits& limits)
     return decode_pixels({reinterpret_cast<const char*>(file.data), file.size}, path.string(), limits);
 }
 
+Environment load_environment(const std::filesystem::path& path, const PixelLimits& limits) {
+    Environment environment;
+    environment.panorama.name = path.string();
+    environment.panorama.pixels = std::make_shared<const Pixels>(load_pixels(path, limits));
+    environment.panorama.space = ColourSpace::srgb;
+    return environment;
+}
+
 }  // namespace hedgerow

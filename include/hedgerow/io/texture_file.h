@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include <hedgerow/looks/light.h>
 #include <hedgerow/looks/texture.h>
 
 namespace hedgerow {
@@ -35,5 +36,9 @@ Pixels decode_pixels(std::string_view bytes, const std::string& name, const Pixe
 
 /// Decodes an image file. Throws InputError if the file cannot be read, and as decode_pixels does.
 Pixels load_pixels(const std::filesystem::path& path, const PixelLimits& limits = {});
+
+/// Light from all around by the panorama in an image file. Whole numbers are colours in sRGB, floats are
+/// radiances. Throws as load_pixels does.
+Environment load_environment(const std::filesystem::path& path, const PixelLimits& limits = {});
 
 }  // namespace hedgerow

@@ -31,10 +31,24 @@ inline Vec3f sky_radiance(const Vec3f& direction) {
 
 }  // namespace detail
 
+/// The rotation that puts an environment upright in the world: its zenith +y goes to `up`, of any length. For
+/// up = +y all axes stay, and for up = +z the middle of the panorama, −z, goes to +y. A vector that is 0 or
+/// not finite counts as +y.
+inline Rows<3> upright_environment(const Vec3f& up) {
+    const Vec3d y = finite(up) && length2(Vec3d(up)) > 0 ? normalized(Vec3d(up)) : Vec3d(0, 1, 0);
+    const Vec3d z = std::abs(y[2]) < 0.9 ? normalized(Vec3d(0, 0, 1) - y * y[2])
+                                         : normalized(Vec3d(0, -1, 0) + y * y[1]) * (y[2] < 0 ? -1.0 : 1.0);
+    const Vec3d x = cross(y, z);
+    // The columns are the images of the axes.
+    Rows<3> to_world;
+    for (int k = 0; k < 3; ++k) to_world[static_cast<std::size_t>(k)] = Vec3d(x[k], y[k], z[k]);
+    return to_world;
+}
+
 /// A simple sky for scenes without lights: blue at the zenith, brighter at the horizon, with a soft sun 37
 /// degrees above it, about 24 degrees wide, and a dim ground below. A horizontal matte white surface shows a
-/// radiance of about 1 under it. The sky's zenith lies at `up`, of any length; a vector that is 0 or not
-/// finite counts as +y. The panorama has 64×32 texels and the same bits everywhere.
+/// radiance of about 1 under it. It stands upright in the world as
+/// upright_environment says. The panorama has 64×32 texels and the same bits everywhere.
 inline Environment default_sky(const Vec3f& up = {0, 1, 0}) {
     constexpr int width = 64, height = 32;
     Pixels pixels{width, height, 3, {}};
@@ -55,12 +69,7 @@ inline Environment default_sky(const Vec3f& up = {0, 1, 0}) {
     Environment sky;
     sky.panorama.name = "default sky";
     sky.panorama.pixels = std::make_shared<const Pixels>(std::move(pixels));
-    // The rotation's columns are the images of the axes: +y goes to `up`.
-    const Vec3d y = finite(up) && length2(Vec3d(up)) > 0 ? normalized(Vec3d(up)) : Vec3d(0, 1, 0);
-    const Vec3d z = std::abs(y[2]) < 0.9 ? normalized(Vec3d(0, 0, 1) - y * y[2])
-                                         : normalized(Vec3d(0, -1, 0) + y * y[1]) * (y[2] < 0 ? -1.0 : 1.0);
-    const Vec3d x = cross(y, z);
-    for (int k = 0; k < 3; ++k) sky.to_world[static_cast<std::size_t>(k)] = Vec3d(x[k], y[k], z[k]);
+    sky.to_world = upright_environment(up);
     return sky;
 }
 
