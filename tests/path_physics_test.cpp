@@ -10,6 +10,7 @@
 #include <hedgerow/scenes/meshes.h>
 
 #include "lights_of_tests.h"
+#include "long_runs.h"
 #include "path_scenes.h"
 #include "scattering_support.h"
 
@@ -152,6 +153,30 @@ TEST(PathPhysics, RoughThingsHaveTheirAlbedo) {
                     }
                 }
             }
+}
+
+/// A ball of rough glass that loses nothing, in white light from all around, is white: one of flat triangles,
+/// and one of few triangles whose corners have the normals of a sphere.
+TEST(PathPhysics, BallsOfRoughGlassLoseNoLight) {
+    for (const bool smooth : {false, true})
+        for (const float roughness : {0.2f, 0.4f, 0.6f, 1.0f}) {
+            Material glass = matte(Vec3f::all(1));
+            glass.specular = glass.transmission = 1, glass.thin = false, glass.roughness = roughness;
+            auto model = model_of<float>({{ball(smooth ? 100 : 500), glass}});
+            if (smooth) model.objects[0].attributes.normals.values = model.objects[0].mesh.vertices;
+            model.environment = Environment();
+            PathPictureOptions options = few_pixels(camera_at({3, 2, 1.5f}, {0, 0, 0}), 0);
+            options.camera.field_of_view = 20;
+            options.paths.bounces = 2000, options.paths.light_sampling = false;
+            options.paths.roulette_from = PathOptions::never;
+            // Light that leaves after many reflections is rare, so rough balls take more samples.
+            options.samples = roughness < 0.5f   ? 4096
+                              : roughness < 0.9f ? 8192
+                                                 : static_cast<std::uint32_t>(in_long_runs(65536, 8192));
+            const Estimate found = estimate(trace(model, options));
+            EXPECT_NEAR(found.mean, 1, std::max(0.005, 3 * found.error)) << smooth << ' ' << roughness;
+            EXPECT_LT(found.error, roughness < 0.9f ? 0.0015 : 0.005) << smooth << ' ' << roughness;
+        }
 }
 
 /// A matte floor of albedo ½ at z = 0 beneath a lamp, seen at a point all but one, by one bounce.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <hedgerow/render/scattering/fresnel.h>
@@ -26,9 +27,13 @@ struct BetweenPlaces {
     float mix(float a, float b) const { return a + product(b - a, share); }
 };
 
-/// An albedo by the cosine of the direction and by roughness, linear between places. Places are even in the
-/// square roots of both, because albedos bend most at grazing directions of smooth surfaces.
-template <std::size_t roughnesses, std::size_t cosines>
+/// Where an AlbedoTable has its places of roughness: even in its square root, or in itself.
+enum class RoughnessPlaces : std::uint8_t { even_in_root, even };
+
+/// An albedo by the cosine of the direction and by roughness, linear between places. Places of the cosine are
+/// even in its square root, because albedos bend most at grazing directions.
+template <std::size_t roughnesses, std::size_t cosines,
+          RoughnessPlaces places = RoughnessPlaces::even_in_root>
 class AlbedoTable {
 public:
     static constexpr std::size_t rows = roughnesses, columns = cosines;
@@ -41,22 +46,28 @@ public:
             average_[r] = average(at_[r]);
         }
     }
-    static float roughness(std::size_t r) { return product(place(r, rows), place(r, rows)); }
+    static float roughness(std::size_t r) {
+        const float at = place(r, rows);
+        return places == RoughnessPlaces::even ? at : product(at, at);
+    }
     static float cosine(std::size_t c) { return product(place(c, columns), place(c, columns)); }
 
     float at(float roughness, float cosine) const {
-        const BetweenPlaces r(root(roughness), roughnesses), c(root(cosine), cosines);
+        const BetweenPlaces r = row(roughness), c(root(cosine), cosines);
         const auto of_row = [&](const Row& row) { return c.mix(row[c.low], row[c.low + 1]); };
         return r.mix(of_row(at_[r.low]), of_row(at_[r.low + 1]));
     }
     /// The mean over all directions, weighted by the cosine, of what `at` returns.
     float average(float roughness) const {
-        const BetweenPlaces r(root(roughness), roughnesses);
+        const BetweenPlaces r = row(roughness);
         return r.mix(average_[r.low], average_[r.low + 1]);
     }
 
 private:
     using Row = std::array<float, cosines>;
+    static BetweenPlaces row(float roughness) {
+        return {places == RoughnessPlaces::even ? roughness : root(roughness), roughnesses};
+    }
     static float root(float x) { return std::sqrt(std::max(x, 0.0f)); }
     static float place(std::size_t k, std::size_t count) {
         return static_cast<float>(k) / static_cast<float>(count - 1);
@@ -83,8 +94,8 @@ private:
 /// seen, but for a weight. The surface is symmetric, so that half a turn suffices.
 class VisibleMirrors {
 public:
-    /// A roughness of 0 leaves one mirror.
-    VisibleMirrors(float roughness, float cosine)
+    /// A roughness of 0 leaves one mirror. Others have places in so many turns and heights.
+    VisibleMirrors(float roughness, float cosine, int turns = 16, int heights = 24)
         : o_(std::sqrt(std::max(1 - product(cosine, cosine), 0.0f)), 0, cosine),
           ggx_(product(roughness, roughness)) {
         if (!(roughness > 0)) {
@@ -94,13 +105,13 @@ public:
         // Losses come from the steepest mirrors, which are few: 1 − v = t² puts more places among them. The
         // places of a row lie at different heights of their cells, and those of a column too, so that neither
         // share their errors.
-        constexpr int turns = 16, heights = 24;
         for (int j = 0; j < heights; ++j)
             for (int k = 0; k < turns; ++k) {
-                const float t = (static_cast<float>(j) + within_cell(k, turns)) / heights;
-                const float u = (static_cast<float>(k) + within_cell(j, heights)) / (2 * turns);
+                const float t = (static_cast<float>(j) + within_cell(k, turns)) / static_cast<float>(heights);
+                const float u =
+                    (static_cast<float>(k) + within_cell(j, heights)) / static_cast<float>(2 * turns);
                 const Vec3f h = ggx_.visible_normal(o_, u, 1 - product(t, t));
-                mirrors_.push_back(of_normal(h, 2 * t / (turns * heights)));
+                mirrors_.push_back(of_normal(h, 2 * t / static_cast<float>(turns * heights)));
             }
     }
 

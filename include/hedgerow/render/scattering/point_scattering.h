@@ -71,7 +71,9 @@ inline Departure<float> lane(const Departure<FloatLanes>& d, int k) {
 
 /// The scattering of a point. Directions between the smooth surface and the triangle before it are mirrored
 /// in the triangle, as if it were the surface next to the point: rays that begin below a triangle could get
-/// through a wall at its edge, and without their light a closed room would be too dark.
+/// through a wall at its edge, and without their light a closed room would be too dark. Surfaces that light
+/// goes through keep their triangles. What they reflect below the triangle is mirrored to above it, and what
+/// they let through to above it is mirrored to below it, so that glass loses no light.
 template <class F>
 class PointScattering {
     using Mask = MaskOf<F>;
@@ -88,7 +90,7 @@ public:
     Mask only_specular() const { return local_.only_specular(); }
     /// What the surface does with light that a ray of this direction meets, apart from single directions.
     ScatteredLightOf<F> at(const Direction& direction) const {
-        const Mask above = !at_.is_below_horizon(direction);
+        const Mask above = !is_mirrored(direction);
         const ScatteredLightOf<F> s = with_image(direction, by_lobes(direction), above);
         return {only(above, s.value), only(above, s.density)};
     }
@@ -97,12 +99,12 @@ public:
         const ScatteredDirectionOf<F> local = local_.sample(choose_lobe, u, v);
         Departure<F> next;
         next.direction = normalized(frame_.to_world(local.direction));
-        next.exists = local.exists && are_on_one_side(next.direction, local.direction);
+        next.exists = local.exists && may_scatter(next.direction, local.direction);
         next.weight = local.weight, next.transmitted = local.transmitted;
         next.shown = select(local.specular, 1, shown_share(next.direction));
         next.density = only(!local.specular, local.density);
         next.density = with_image(next.direction, {{}, next.density}, next.density > 0).density;
-        const Mask below = at_.is_below_horizon(next.direction);
+        const Mask below = is_mirrored(next.direction);
         if (any(below)) next.direction = select(below, at_.mirrored(next.direction), next.direction);
         return next;
     }
@@ -113,7 +115,7 @@ private:
     ScatteredLightOf<F> with_image(const Direction& direction, const ScatteredLightOf<F>& s,
                                    Mask counts) const {
         const Direction image = at_.mirrored(direction);
-        const Mask twice = counts && (at_.is_below_horizon(direction) || at_.is_below_horizon(image));
+        const Mask twice = counts && (is_mirrored(direction) || is_mirrored(image));
         if (!any(twice)) return s;
         const ScatteredLightOf<F> more = by_lobes(image);
         return {select(twice, s.value + more.value, s.value),
@@ -122,15 +124,26 @@ private:
     /// What the lobes do with light of a direction; nothing where they must not.
     ScatteredLightOf<F> by_lobes(const Direction& direction) const {
         const Direction i = frame_.to_local(direction);
-        const Mask on_side = are_on_one_side(direction, i);
+        const Mask on_side = may_scatter(direction, i);
         const ScatteredLightOf<F> s = local_.at(i);
         return {only(on_side, s.value * shown_share(direction)), only(on_side, s.density)};
     }
+    Mask lets_light_through() const { return at_.material.transmission > 0; }
+    /// Whether a ray of the mirror image goes in place of one that is scattered in this direction.
+    Mask is_mirrored(const Direction& direction) const {
+        const Mask below = at_.is_below_horizon(direction), through = lets_light_through();
+        if (!any(through)) return below;
+        return select(through, !is_on_one_side(direction, frame_.to_local(direction)), below);
+    }
     /// Whether a direction lies on the same side of the surface as of the plane across the shading normal.
-    /// Others would let light through walls, or are reflections into the surface.
-    Mask are_on_one_side(const Direction& direction, const Direction& local) const {
+    Mask is_on_one_side(const Direction& direction, const Direction& local) const {
         const Mask up = local[2] > 0;
-        return select(dot(direction, at_.geometric) > 0, up, !up) && !equal(local[2], 0);
+        return select(dot(direction, at_.geometric) > 0, up, !up);
+    }
+    /// Whether lobes scatter in a direction. Where the surface is opaque those of two sides would let light
+    /// through walls, or are reflections into the surface.
+    Mask may_scatter(const Direction& direction, const Direction& local) const {
+        return !equal(local[2], 0) && (lets_light_through() || is_on_one_side(direction, local));
     }
     /// The share of light from a direction that an opaque surface shows.
     F shown_share(const Direction& direction) const {
