@@ -1,6 +1,9 @@
 /// Pictures that `draw` writes are well formed and have every cell, and its tables agree with the library's
 /// traces.
 #include <algorithm>
+#include <regex>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <hedgerow/any_index.h>
@@ -348,6 +351,13 @@ TEST_F(Draw, HeatMapsCompareByAFixedScale) {
         right(one));
     EXPECT_NE(bar(map("--heat tests --log")), bar(one)) << "other labels";
     EXPECT_NE(map("--heat tests --log"), one);
+    // A logarithmic scale ends at the most that a ray has.
+    const auto logarithmic =
+        run("draw gen:teapot:500 --size 64x48 --heat tests --structure brute-force --log --json -o " +
+            file("h.png"));
+    EXPECT_NE(logarithmic.output.find("\"scale\": 496,"), std::string::npos) << logarithmic.output;
+    EXPECT_NE(logarithmic.output.find("\"share_beyond_scale\": 0.0"), std::string::npos)
+        << logarithmic.output;
     EXPECT_EQ(map("--heat steps --scale 100").width, 320);
     EXPECT_EQ(map("--heat time").width, 320);
     EXPECT_NE(run("draw gen:teapot:500 --size 64x48 --heat tests --scale 1 --json -o " + file("h.png"))
@@ -356,6 +366,47 @@ TEST_F(Draw, HeatMapsCompareByAFixedScale) {
     const auto named = run("draw gen:teapot:500 --size 64x48 --heat tests --json -o " + file("h\xff.png"));
     EXPECT_EQ(named.code, 0) << "whatever bytes a name has";
     EXPECT_NE(named.output.find("\"mean\""), std::string::npos) << named.output;
+}
+
+/// The empty cells of a quadtree reach far beyond the segments, and do not make other structures small.
+TEST_F(Draw, StructuresSideBySideFillTheirFrames) {
+    const auto frame_width = [&](const std::string& structures) {
+        const auto r =
+            run("draw gen:segments2d:24 --quiet --structure grid" + structures + " -o " + file("f.svg"));
+        EXPECT_EQ(r.code, 0) << r.output;
+        const std::string svg = bytes_of(file("f.svg"));
+        // The coordinates of the frame's lower left and upper right corner.
+        const std::regex corner("class=\"quiet\"[^>]*>([-0-9.]+), [-0-9.]+<");
+        std::vector<double> x;
+        for (std::sregex_iterator i(svg.begin(), svg.end(), corner), end; i != end; ++i)
+            x.push_back(std::stod((*i)[1]));
+        return x.size() < 2 ? 0 : x[1] - x[0];
+    };
+    const double alone = frame_width("");
+    EXPECT_GT(alone, 0.5);
+    EXPECT_GE(frame_width(" --beside quadtree:leaf_size=2"), alone);
+    EXPECT_LT(frame_width(" --beside quadtree:leaf_size=2"), 1.2 * alone);
+}
+
+TEST_F(Draw, SixVolumesAroundEverythingFitInOnePicture) {
+    const std::string volumes =
+        "draw gen:teapot:200 --quiet --depth 1 --structure bvh --beside bvh:volume=sphere --beside "
+        "bvh:volume=obb "
+        "--beside bvh:volume=cylinder --beside bvh:volume=kdop14 --beside bvh:volume=hull";
+    ASSERT_EQ(run(volumes + " --size 608x404 -o " + file("six.png")).code, 0);
+    const Image six = load_png(file("six.png"));
+    EXPECT_EQ(six.width, 608);
+    EXPECT_EQ(six.height, 404);
+    // The parts below the captions: each shows another volume.
+    std::set<std::vector<Image::Pixel>> parts;
+    for (int i = 0; i < 6; ++i) {
+        std::vector<Image::Pixel> part;
+        for (int y = 80; y < 200; ++y)
+            for (int x = 0; x < 200; ++x) part.push_back(six.at(i % 3 * 204 + x, i / 3 * 204 + y));
+        parts.insert(part);
+    }
+    EXPECT_EQ(parts.size(), 6u);
+    expect_usage(volumes + " --beside octree -o " + file("x.png"), "six");
 }
 
 TEST_F(Draw, WrongUsageIsTwoAndBadInputIsThree) {

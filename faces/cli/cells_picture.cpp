@@ -10,8 +10,11 @@ namespace hedgerow::cli {
 
 namespace {
 
+bool is_void(const FlatCell& c) {
+    return c.leaf && c.items == 0;
+}
 std::string class_of(const FlatCell& c) {
-    return fmt::format("class=\"cell{} l{}\"", c.leaf ? (c.items > 0 ? " leaf" : " leaf void") : "", c.level);
+    return fmt::format("class=\"cell{} l{}\"", c.leaf ? (is_void(c) ? " leaf void" : " leaf") : "", c.level);
 }
 
 /// Draws the deepest cells first, so that the lines of the first levels lie on top.
@@ -29,6 +32,22 @@ void draw_cells(Svg& svg, const Panel& panel, const FlatStructure& flat) {
     for (const auto& s : flat.shared) svg.polygon(panel(s), "class=\"shared\"");
 }
 
+/// The frame of all panels. One structure is shown as a whole. Of several the frame has what they hold, so
+/// that a structure whose empty cells reach farther, as an octree's do, does not make the others small.
+Box2d shown_of(const FlatScene& scene, const std::vector<NamedStructure>& structures) {
+    std::vector<FlatStructure> parts;
+    for (const auto& s : structures) {
+        parts.push_back(s.flat);
+        auto& cells = parts.back().cells;
+        const bool prunes = std::ranges::any_of(cells, is_void);
+        if (structures.size() > 1 && prunes)
+            std::erase_if(cells, [](const FlatCell& c) { return !c.leaf || is_void(c); });
+    }
+    std::vector<const FlatStructure*> all;
+    for (const auto& p : parts) all.push_back(&p);
+    return frame_of(scene, all);
+}
+
 /// Draws the frame and the coordinates of its corners, so that sizes can be read off.
 void draw_corners(Svg& svg, const Panel& panel, const Box2d& shown) {
     const Box2d f = panel.frame();
@@ -36,6 +55,14 @@ void draw_corners(Svg& svg, const Panel& panel, const Box2d& shown) {
     const auto at = [](const Vec2d& p) { return fmt::format("{:.4g}, {:.4g}", p[0], p[1]); };
     svg.text({f.low[0], f.high[1] + 13}, at(shown.low), "class=\"quiet\"");
     svg.text({f.high[0], f.low[1] - 5}, at(shown.high), "class=\"quiet\" text-anchor=\"end\"");
+}
+
+/// Opens a group of which only what lies in the panel's frame is seen.
+void open_clip(Svg& svg, const Panel& panel, std::size_t number) {
+    svg.raw(fmt::format("<clipPath id=\"frame{}\">", number));
+    svg.rect(panel.frame(), "");
+    svg.raw("</clipPath>\n");
+    svg.open_group(fmt::format("clip-path=\"url(#frame{})\"", number));
 }
 
 /// Draws a swatch for each level, with the number of its cells in each structure if there are at most two,
@@ -49,7 +76,7 @@ void draw_legend(Svg& svg, const Layout& layout, const std::vector<NamedStructur
     for (std::size_t s = 0; s < structures.size(); ++s) {
         for (const auto& c : structures[s].flat.cells) {
             ++counts[static_cast<std::size_t>(c.level - 1)][s];
-            empty += c.leaf && c.items == 0;
+            empty += is_void(c);
         }
         shared = shared || !structures[s].flat.shared.empty();
     }
@@ -88,15 +115,14 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
     // Find what all panels share: the frame, the number of levels, the width of lines.
     int levels = 1;
     std::size_t cells = 0;
-    std::vector<const FlatStructure*> flats;
-    bool trees = false;
+    bool trees = false, cut = false;
+    const Box2d shown = shown_of(scene, structures);
     for (const auto& s : structures) {
-        flats.push_back(&s.flat);
+        cut = cut || !shown.contains(frame_of(scene, {&s.flat}));
         cells = std::max(cells, s.flat.cells.size());
         for (const auto& c : s.flat.cells) levels = std::max(levels, c.level);
         trees = trees || !s.tree.nodes.empty();
     }
-    const Box2d shown = frame_of(scene, flats);
     const Layout layout(scene.width, scene.height, structures, trees ? 1 : 0);
     const auto cells_area = [&](std::size_t s) {
         return trees ? cells_part(layout.area(s)) : layout.area(s);
@@ -112,7 +138,9 @@ std::string cells_picture(const FlatScene& scene, const std::vector<NamedStructu
         // Draw the cells with the primitives over them.
         const Panel panel(shown, cells_area(s));
         draw_corners(svg, panel, shown);
+        if (cut) open_clip(svg, panel, s);
         draw_cells(svg, panel, structures[s].flat);
+        if (cut) svg.close_group();
         draw_primitives(svg, panel, scene.primitives, size, "");
         layout.draw_caption(svg, s);
         if (structures[s].tree.nodes.empty()) continue;

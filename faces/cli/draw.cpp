@@ -36,14 +36,17 @@ int draw(const DrawArguments& a, const Scene<T>& scene) {
 /// too large a picture, and OutputError for an output that cannot be written.
 template <class T>
 void check(const DrawArguments& a) {
-    if (a.beside.size() > 3) throw UsageError("--beside: one picture has room for four structures");
+    const bool wires = ending_of(a.output) == ".png";
+    if (a.beside.size() > (wires ? 5 : 3))
+        throw UsageError(std::string("--beside: one picture has room for ") +
+                         (wires ? "six structures" : "four structures, or for six as .png"));
     if (a.ray.empty())
         check_cells(a);
     else
         check_ray<T>(a);
     if (!a.field.empty()) check_field(a);
     const std::string ending = ending_of(a.output);
-    if (ending == ".png" && (a.tree || a.height))
+    if (wires && (a.tree || a.height))
         throw UsageError(fmt::format("{} is about flat pictures, as .svg: add --slice, or draw a flat scene",
                                      a.tree ? "--tree" : "--height"));
     if (!a.field.empty())
@@ -100,7 +103,8 @@ Run add_draw(CLI::App& verb) {
     auto* const beside =
         verb.add_option(
                 "--beside", a->beside,
-                "another structure, drawn beside the first; up to three times. Shows what siblings share")
+                "another structure, drawn beside the first; up to three times, in space five times. Shows "
+                "what siblings share")
             ->expected(1)
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     auto* const tree = verb.add_flag("--tree", a->tree, "flat pictures: the tree too, beside its cells");
@@ -133,7 +137,9 @@ Run add_draw(CLI::App& verb) {
         verb.add_option("--heat", a->heat,
                         "steps, tests or time (in nanoseconds) of a view's rays, as .png or .exr")
             ->check(CLI::IsMember({"steps", "tests", "time"}));
-    verb.add_option("--scale", a->scale, "where the heat's scale ends; 0: steps 200, tests 60, time 4000")
+    verb.add_option(
+            "--scale", a->scale,
+            "where the heat's scale ends; 0: steps 200, tests 60, time 4000, with --log the most of all rays")
         ->needs(heat);
     verb.add_flag("--log", a->log, "the heat's scale is logarithmic")->needs(heat);
     ray->excludes(slice)->excludes(heat);

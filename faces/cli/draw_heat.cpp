@@ -1,4 +1,6 @@
 /// Heat maps: the costs of the rays of a view, as PNG or as layers of numbers.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <tuple>
 
@@ -30,7 +32,8 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     options.seed = a.seed;
     options.shading = parse_shading(a.heat);
     options.scale.logarithmic = a.log;
-    options.scale.top = a.scale > 0 ? a.scale : usual_scale(options.shading);
+    // A logarithmic scale without an end of its own follows the counts, which is what 0 asks for.
+    options.scale.top = a.scale > 0 || a.log ? a.scale : usual_scale(options.shading);
     // Build, and place the camera by the bounds of the index.
     const auto index = build_shown(a, a.structure, set);
     const Upright upright = upright_of(a.view, a, set);
@@ -44,6 +47,8 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
         picture = render(*index, set, options, default_executor(), line.progress());
         finished = finish_picture(a.output, picture.pixels > 0, picture.whole);
     }
+    if (options.scale.top == 0)
+        options.scale.top = static_cast<std::uint64_t>(std::ceil(std::max(picture.most, 1.0)));
     // Write the figures on the picture, left of the colour bar, and save it.
     const double share_beyond = double(picture.beyond) / double(picture.pixels);
     const std::string unit =

@@ -10,6 +10,7 @@
 #include <hedgerow/render/lettering.h>
 #include <hedgerow/render/render.h>
 #include <hedgerow/render/wireframe.h>
+#include <hedgerow/structures/bvh/volumes/region.h>
 
 #include "draw.h"
 #include "picture_notes.h"
@@ -51,6 +52,39 @@ std::vector<OutlineCell<3>> boxes_of(const AnyIndex<T, 3>& index, int wanted, in
         ++levels;
     }
     return few(std::move(cells));
+}
+
+/// The corners of all triangles, or of the boxes of other primitives.
+template <class P>
+std::vector<Vec3d> corners_of(const P& set) {
+    std::vector<Vec3d> points;
+    const auto view = set.view();
+    for (PrimitiveId id = 0; id < view.size(); ++id)
+        if constexpr (requires { view.corners(id); }) {
+            for (const auto& corner : view.corners(id)) points.push_back(Vec3d(corner));
+        } else {
+            const auto box = view.bounds(id);
+            for (int i = 0; i < 8; ++i)
+                points.push_back(Vec3d((i & 1 ? box.high : box.low)[0], (i & 2 ? box.high : box.low)[1],
+                                       (i & 4 ? box.high : box.low)[2]));
+        }
+    return points;
+}
+/// Sets the shape of the first cell of a BVH whose volumes are no boxes. The tree has only a box there, since
+/// its nodes store the volumes of their children.
+template <class P>
+void set_first_volume(const std::string& spec, const P& set, std::vector<OutlineCell<3>>& cells) {
+    const auto at = spec.find("volume=");
+    if (at == spec.npos || cells.empty()) return;
+    const auto name = spec.substr(at + 7, spec.find(',', at) - at - 7);
+    const auto kind = static_cast<Volume>(std::ranges::find(volume_names, name) - std::begin(volume_names));
+    if (kind == Volume::box) return;
+    auto volumes = list_of<double, 3>(kind);
+    const std::vector<Vec3d> points = corners_of(set);
+    std::visit([&](auto& list) { list.resize(1), list.fit(0, points, 0); }, volumes);
+    const Box3d& box = cells[0].box;
+    cells[0].shape =
+        region_in(AnyVolume<double, 3>{volumes, 0}, {box.low - box.extent(), box.high + box.extent()});
 }
 
 void draw_edges(const OutlineCell<3>& cell, const Image::Pixel& colour, float width, Wireframe& wires) {
@@ -118,10 +152,14 @@ Image wireframe(std::vector<OutlineCell<3>> cells, const std::vector<std::string
 }
 constexpr int between_pictures = 4;  // pixels between pictures
 
-/// Joins pictures of one size into one, two in a row.
+/// How many of so many pictures are in a row, and how many rows there are.
+std::pair<int, int> columns_and_rows(std::size_t pictures) {
+    const int columns = pictures > 4 ? 3 : pictures > 1 ? 2 : 1;
+    return {columns, (static_cast<int>(pictures) + columns - 1) / columns};
+}
+/// Joins pictures of one size into one, row by row.
 Image joined(const std::vector<Image>& parts) {
-    const int columns = parts.size() > 1 ? 2 : 1,
-              rows = (static_cast<int>(parts.size()) + columns - 1) / columns;
+    const auto [columns, rows] = columns_and_rows(parts.size());
     const int wide = parts[0].width + between_pictures, high = parts[0].height + between_pictures;
     Image all(columns * wide - between_pictures, rows * high - between_pictures, {255, 255, 255});
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -142,8 +180,11 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
     options.samples = 4, options.seed = a.seed;
     // Divide the picture among the structures.
     const auto specs = structures_of(a);
-    if (specs.size() > 1) options.width = std::max(1, (options.width - between_pictures) / 2);
-    if (specs.size() > 2) options.height = std::max(1, (options.height - between_pictures) / 2);
+    const auto [columns, rows] = columns_and_rows(specs.size());
+    const auto part_of = [](int size, int parts) {
+        return std::max(1, (size - (parts - 1) * between_pictures) / parts);
+    };
+    options.width = part_of(options.width, columns), options.height = part_of(options.height, rows);
     // Render the background, which all structures share.
     const auto seen_index = build_shown(a, "bvh", seen);
     const Upright upright = upright_of(a.view, a, set);
@@ -158,6 +199,7 @@ int draw_wireframe_of(const DrawArguments& a, const P& set, const Seen& seen) {
         const auto index = build_shown(a, spec, set);
         int levels = 0;
         auto cells = boxes_of(*index, a.levels, levels);
+        set_first_volume(spec, set, cells);
         const std::size_t drawn = cells.size();
         std::string facts =
             fmt::format("{} cells of the first {} levels of {}", drawn, levels, index->depth());
