@@ -9,6 +9,7 @@
 
 #include "arrangements.h"
 #include "force_oracle.h"
+#include "force_questions.h"
 #include "long_runs.h"
 #include "using.h"
 
@@ -55,6 +56,20 @@ TEST(ForceArrangements, InPeriodicCubesKeepTheirAccuracy) {
         expect_accuracies(one, 217, 217, {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9});
         for (const std::size_t n : sizes({unless_sanitized(2000, 700)}))
             expect_accuracies(one, n, 60, {1e-2, 1e-3, 1e-5, 1e-6, 1e-7, 1e-9});
+    }
+}
+/// What `hunter --particles` draws, by the number of the arrangement.
+TEST(ForceArrangements, QuestionsOfTheHunter) {
+    const ForceQuestion questions[] = {
+        {24, 3000, 1, 1e-5, 0x1p20, 3, 0, false},  {24, 3000, 2, 1e-3, 1, 0, 0, true},
+        {11, 3000, 3, 1e-5, 1, -700, 0, false},    {46, 300, 4, 1e-6, 0x1p-30, 0, 0, false},
+        {28, 2000, 5, 1e-4, 0x1p-20, 0, 0, false}, {0, 2000, 6, 1e-3, 1, 0, 1e-3, true},
+        {37, 1500, 7, 1e-2, 1, 0, 0, true},
+    };
+    for (const ForceQuestion& question : questions) {
+        std::uint64_t asked = 0;
+        EXPECT_LE(excess(question, asked), 1) << kinds_of_arrangements()[question.kind].name;
+        EXPECT_GT(asked, 0u);
     }
 }
 /// By every instruction set.

@@ -6,7 +6,10 @@
 /// means the same: other ends of lines, comments, joined lines, orders, words. What gives another geometry,
 /// or is refused, is printed as an entry of the corpus of files (tests/corpus.h).
 ///
-///   hunter [--files] [--seconds 60 | --rounds N | --round N] [--seed 1] [--most 10]
+/// With --particles it draws arrangements of charges and holds forces against sums in long double and after
+/// Ewald.
+///
+///   hunter [--files | --particles] [--seconds 60 | --rounds N | --round N] [--seed 1] [--most 10]
 ///
 /// It hunts for some time, for some rounds, or repeats one round that has found something. It uses one
 /// thread; processes with other seeds search other scenes. The exit code is 1 if something was found.
@@ -58,14 +61,19 @@ struct Options {
     double seconds = 60;
     std::uint64_t seed = 1, most = 10;
     std::optional<std::uint64_t> rounds, round;
-    bool files = false;
+    /// What a round hunts among.
+    Report (*hunt)(std::uint64_t seed, std::uint64_t round) = run;
 };
 
 std::optional<Options> parsed(int argc, char** argv) {
     Options options;
     for (int i = 1; i < argc; i += 2) {
         if (std::strcmp(argv[i], "--files") == 0) {
-            options.files = true, --i;
+            options.hunt = hunt_files, --i;
+            continue;
+        }
+        if (std::strcmp(argv[i], "--particles") == 0) {
+            options.hunt = hunt_particles, --i;
             continue;
         }
         if (i + 1 == argc) return std::nullopt;
@@ -91,9 +99,9 @@ std::optional<Options> parsed(int argc, char** argv) {
 int main(int argc, char** argv) {
     const auto options = parsed(argc, argv);
     if (!options) {
-        std::fprintf(
-            stderr,
-            "usage: hunter [--files] [--seconds 60 | --rounds N | --round N] [--seed 1] [--most 10]\n");
+        std::fprintf(stderr,
+                     "usage: hunter [--files | --particles] [--seconds 60 | --rounds N | --round N] [--seed "
+                     "1] [--most 10]\n");
         return 2;
     }
     using Clock = std::chrono::steady_clock;
@@ -103,7 +111,7 @@ int main(int argc, char** argv) {
     double told = 0;
     // Run rounds, and print what each has found.
     for (std::uint64_t round = options->round.value_or(0); found < options->most; ++round) {
-        const Report report = options->files ? hunt_files(options->seed, round) : run(options->seed, round);
+        const Report report = options->hunt(options->seed, round);
         ++rounds, questions += report.questions, exact += report.checked_exactly,
             found += report.found.size();
         for (const auto& test : report.found) std::printf("%s\n", test.c_str()), std::fflush(stdout);

@@ -20,4 +20,7 @@ Report hunt_pairs(std::uint64_t seed, std::uint64_t round);
 /// Runs a round over texts of every format (files.cpp).
 Report hunt_files(std::uint64_t seed, std::uint64_t round);
 
+/// Runs a round over forces between particles (particles.cpp).
+Report hunt_particles(std::uint64_t seed, std::uint64_t round);
+
 }  // namespace hedgerow::hunter
