@@ -17,12 +17,12 @@
 
 namespace hedgerow::testing_corpus {
 
-using Corners = std::array<Vec3d, 3>;
+using ThreeCorners = std::array<Vec3d, 3>;
 
 /// A file, and its triangles by their corners, or its points. The base colour is that of the first material.
 struct CorpusFile {
     std::string name, bytes;
-    std::vector<Corners> triangles;
+    std::vector<ThreeCorners> triangles;
     std::vector<Vec3d> points = {};
     std::optional<Vec3f> colour = {};
     /// Files beside it, by name and contents.
@@ -30,7 +30,8 @@ struct CorpusFile {
 };
 
 inline const Vec3d a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), d(1, 1, 0.5);
-inline const std::vector<Corners> one{{a, b, c}}, two{{a, b, c}, {c, b, d}}, square{{a, b, d}, {a, d, c}};
+inline const std::vector<ThreeCorners> one{{a, b, c}}, two{{a, b, c}, {c, b, d}},
+    square{{a, b, d}, {a, d, c}};
 
 /// What editors and systems make of the same text: the ends of lines, and a byte order mark.
 inline std::vector<std::pair<std::string, std::string>> as_systems_write(const std::string& text) {
@@ -61,7 +62,7 @@ inline void add_text(std::vector<CorpusFile>& all, const CorpusFile& file) {
 
 inline void add_obj(std::vector<CorpusFile>& all) {
     const std::string places = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0.5\n";
-    const auto add = [&](const std::string& text, const std::vector<Corners>& triangles) {
+    const auto add = [&](const std::string& text, const std::vector<ThreeCorners>& triangles) {
         all.push_back({"a.obj", text, triangles});
     };
     add_text(all, {"a.obj", "# two\no pair\n" + places + "\nf 1 2 3\nf 3 2 4\n", two});
@@ -126,7 +127,7 @@ inline std::string ply_header(
 inline void add_ply(std::vector<CorpusFile>& all) {
     const std::string places = "0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n", faces = "3 0 1 2\n3 2 1 3\n";
     add_text(all, {"a.ply", ply_header("ascii") + places + faces, two});
-    const auto add = [&](const std::string& text, const std::vector<Corners>& triangles) {
+    const auto add = [&](const std::string& text, const std::vector<ThreeCorners>& triangles) {
         all.push_back({"a.ply", text, triangles});
     };
     // Binary, by headers of every kind of line.
@@ -239,7 +240,7 @@ inline void add_stl(std::vector<CorpusFile>& all) {
             std::string bytes = start;
             bytes.resize(80, '\0');
             append(bytes, std::uint32_t(2));
-            for (const Corners& t : two) {
+            for (const ThreeCorners& t : two) {
                 for (int k = 0; k < 3; ++k) append(bytes, 0.f);
                 for (const Vec3d& p : t)
                     for (int k = 0; k < 3; ++k) append(bytes, static_cast<float>(p[k]));
@@ -294,7 +295,7 @@ inline void add_off(std::vector<CorpusFile>& all) {
 inline void add_gltf(std::vector<CorpusFile>& all) {
     using namespace testing_gltf;
     add_text(all, {"a.gltf", triangle().text() + "\n", one});
-    const auto add = [&](const Gltf& file, const std::vector<Corners>& triangles,
+    const auto add = [&](const Gltf& file, const std::vector<ThreeCorners>& triangles,
                          const std::vector<Vec3d>& points = {}) {
         all.push_back({"a.gltf", file.text(), triangles, points});
         all.push_back({"a.glb", file.container(), triangles, points});

@@ -14,8 +14,8 @@ using namespace testing_io;
 using namespace testing_corpus;
 
 template <class T>
-std::vector<Corners> corners_of(const TriangleMesh<T>& mesh) {
-    std::vector<Corners> all;
+std::vector<ThreeCorners> triangles_of(const TriangleMesh<T>& mesh) {
+    std::vector<ThreeCorners> all;
     for (const auto& [i, j, k] : mesh.triangles)
         all.push_back({Vec3d(mesh.vertices[i]), Vec3d(mesh.vertices[j]), Vec3d(mesh.vertices[k])});
     return all;
@@ -31,7 +31,7 @@ template <class T>
 void expect_geometry(const CorpusFile& file, const std::filesystem::path& path) {
     const Scene<T> scene = load_scene<T>(path);
     if (const auto* const mesh = std::get_if<TriangleMesh<T>>(&scene)) {
-        EXPECT_EQ(corners_of(*mesh), file.triangles);
+        EXPECT_EQ(triangles_of(*mesh), file.triangles);
         return;
     }
     const auto* const cloud = std::get_if<PointCloud<T, 3>>(&scene);
@@ -57,7 +57,7 @@ TEST(Corpus, EveryFileGivesItsGeometry) {
             expect_geometry<float>(file, folder / (file.name + ".gz"));
             if (!file.points.empty()) continue;
             const Model<float> model = load_model<float>(path);
-            EXPECT_EQ(corners_of(model.objects[0].mesh), file.triangles);
+            EXPECT_EQ(triangles_of(model.objects[0].mesh), file.triangles);
             if (file.colour) {
                 EXPECT_EQ(model.materials[model.objects[0].material].base_colour, *file.colour);
             }

@@ -47,7 +47,8 @@ T reach_of(const Charges<T>& charges, std::size_t i) {
 }
 template <class T>
 T reach_of(const Targets<T>& targets, const Softening& softening, std::size_t i) {
-    if (targets.lengths.empty()) return 0;
+    if (targets.lengths.empty())  // that of the charges, if they are some
+        return targets.charges.empty() ? T(0) : static_cast<T>(softening.reach(softening.length));
     return static_cast<T>(softening.reach(static_cast<double>(targets.lengths[i])));
 }
 

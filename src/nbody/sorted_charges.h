@@ -122,8 +122,8 @@ struct Sorted {
 
     /// Whether R has the distances of the deepest cells, which those of a cluster are beside a body far out.
     bool precise_enough() const {
-        constexpr int most_depth = std::same_as<R, float> ? 40 : PointOrthtree<T, 3>::max_depth;
-        return tree.depth() <= most_depth;
+        constexpr int most_depth_in_float = 40;
+        return std::same_as<R, double> || tree.depth() <= most_depth_in_float;
     }
 
 private:

@@ -28,7 +28,9 @@ struct Charges {
 template <std::floating_point T>
 struct Targets {
     Strided<Vec<T, 3>> places;
-    Strided<T> lengths;  ///< of softening, if the targets are charges themselves; empty: none of their own
+    /// Of softening, if the targets are charges themselves. Empty: none of their own, or that of `softening`
+    /// if there are `charges`.
+    Strided<T> lengths;
     /// Of targets that are some of the charges what each of them is: it does not act on itself, though it is
     /// softened. Empty: all charges act.
     Strided<T> charges;
