@@ -98,8 +98,8 @@ TEST(DocPictures, HaveACommandOrAReasonWhyNot) {
     for (const Shown& s : pictures()) {
         names.push_back(s.name);
         EXPECT_TRUE(fs::exists(s.path())) << s << " is missing";
-        EXPECT_NE(s.command.empty(), not_compared.count(s.name) == 0)
-            << s << " has no command, and no reason in not_compared, or both";
+        EXPECT_TRUE(!s.command.empty() || not_compared.count(s.name) > 0)
+            << s << " has no command, and no reason in not_compared";
     }
     for (const auto& entry : fs::recursive_directory_iterator(folder_of_pictures)) {
         const std::string name = entry.path().lexically_relative(folder_of_pictures).generic_string();
