@@ -3,6 +3,7 @@
 #include <hedgerow/nbody/forces.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
@@ -268,9 +269,12 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
         const auto by = [&](const auto& kernel) {
             return multipole_forces(charges, cube, targets, found, plan, options, kernel, extremes, ieee);
         };
-        if (plain)
+        if (plain) {
             plain_forces(charges, found, ieee);
-        else if (plan.precision != Precision::single || !by(of_order(*kernels->fmm_float, plan.order)))
+            // Powers of the distances of a body far out are beyond double.
+            const auto finite = [](const PotentialAt<T>& at) { return std::isfinite(length2(at.gradient)); };
+            if (!std::all_of(found.begin(), found.end(), finite)) direct_sum(charges, found, ieee);
+        } else if (plan.precision != Precision::single || !by(of_order(*kernels->fmm_float, plan.order)))
             by(of_order(*kernels->fmm_double, plan.order));
     });
 }
