@@ -72,14 +72,14 @@ double strength_at(const FmmCells<R>& sources, const Spot& spot) {
         }
         const double charge = static_cast<double>(sources.multipoles[other * sources.multipole_stride]),
                      weight = static_cast<double>(sources.weight[other]);
-        if (const double reach = static_cast<double>(extents[other]); periodic && reach > 0) {
-            const double near = std::max(distance, reach), share = reach / near;
-            doubt += weight / (near * near) * (share * share);
-        }
-        if (!(distance > 0)) continue;
+        // No place within a cell is nearer to its charge than the cell is wide.
+        const double reach = static_cast<double>(extents[other]), near = std::max(distance, reach);
+        if (!(near > 0)) continue;
+        const double share = reach / near;
+        if (periodic) doubt += weight / (near * near) * (share * share);
         // What is softened acts about as Plummer's charges do.
         const double soft = std::max(static_cast<double>(sources.softest[other]), spot.softest) / 3,
-                     softened = std::sqrt(distance * distance + soft * soft), far = softened + spot.radius,
+                     softened = std::sqrt(near * near + soft * soft), far = softened + spot.radius,
                      per_d2 = 1 / (far * far),
                      along = (periodic ? 1 / (softened * softened) : per_d2) / softened;
         const auto between = [&](double x) {
