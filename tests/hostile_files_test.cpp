@@ -213,7 +213,7 @@ TEST_F(HostileFiles, AbsurdCounts) {
 
 TEST_F(HostileFiles, Bombs) {
     const std::string zeros(1 << 20, '\0');
-    const std::string vertices = repeated("v 0 0 0\n", 1 << 17), lines(1 << 20, '\n');
+    const std::string lines(1 << 20, '\n');
     gzip("zeros.stl.gz", std::string(80, 'x') + little(1000000), zeros, 64);
     expect_refused("zeros.stl.gz", "all zeros");
     gzip("zeros.ply.gz",
@@ -223,8 +223,6 @@ TEST_F(HostileFiles, Bombs) {
     expect_refused("zeros.ply.gz", "unpacks to more than 500 times its size");
     gzip("lines.off.gz", "OFF\n", lines, 300);
     expect_refused("lines.off.gz", "unpacks to more than 500 times its size");
-    gzip("vertices.obj.gz", "", vertices, 64);
-    expect_refused("vertices.obj.gz", "only points");
     gzip("json.gltf.gz", "[", std::string(1 << 20, ' '), 64);
     expect_refused("json.gltf.gz", "JSON");
     std::string values = "[";

@@ -172,7 +172,10 @@ TEST(Models, BadValuesAtCorners) {
         expect_input_error([&] { load_model(folder.file("a.obj", corners + lines)); }, parts);
     };
     refuse("vt 0 0\nf 1/1 2/1 3/2\n", {"face 0 names texture coordinate 1", "only 1"});
-    refuse("f 1/1 2/1 3/1\n", {"face 0 names texture coordinate 0", "only 0"});
+    // Coordinates of which there are none are left out.
+    const auto without = load_model(folder.file("a.obj", corners + "f 1/1 2/1 3/1\n"));
+    ASSERT_EQ(without.warnings.size(), 1u);
+    EXPECT_NE(without.warnings[0].find("there are none"), std::string::npos);
     refuse("vn 0 0 1\nf 1//1 2//1 3//-2\n", {"line 5", "names normal -2", "only 1 so far"});
     refuse("vn 0 0 1\nf 1//1 2//1 3//0\n", {"line 5", "names normal '0'", "begin at 1"});
     refuse("vn 0 0 1\nf 1//1 2//1 3//x\n", {"line 5", "names normal 'x'"});

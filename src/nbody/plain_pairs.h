@@ -16,7 +16,7 @@ namespace hedgerow::detail {
 /// it is bare.
 inline PotentialAt<double> act_of_pair(const Vec3d& apart, double reach, SofteningKernel kernel) {
     double unit = 1, distance2 = length2(apart);
-    if (!(distance2 >= 0x1p-900)) {  // the square may have vanished
+    if (!(distance2 >= 0x1p-600)) {  // the inverse of its cube may be beyond double
         const double size = std::max({std::abs(apart[0]), std::abs(apart[1]), std::abs(apart[2]), reach});
         if (size == 0) return {};
         unit = std::ldexp(1.0, -std::ilogb(size));
