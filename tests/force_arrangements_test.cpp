@@ -61,10 +61,17 @@ TEST(ForceArrangements, InPeriodicCubesKeepTheirAccuracy) {
 /// What `hunter --particles` draws, by the number of the arrangement.
 TEST(ForceArrangements, QuestionsOfTheHunter) {
     const ForceQuestion questions[] = {
-        {24, 3000, 1, 1e-5, 0x1p20, 3, 0, false},  {24, 3000, 2, 1e-3, 1, 0, 0, true},
-        {11, 3000, 3, 1e-5, 1, -700, 0, false},    {46, 300, 4, 1e-6, 0x1p-30, 0, 0, false},
-        {28, 2000, 5, 1e-4, 0x1p-20, 0, 0, false}, {0, 2000, 6, 1e-3, 1, 0, 1e-3, true},
+        {24, 3000, 1, 1e-5, 0x1p20, 3, 0, false},
+        {24, 3000, 2, 1e-3, 1, 0, 0, true},
+        {11, 3000, 3, 1e-5, 1, -700, 0, false},
+        {46, 300, 4, 1e-6, 0x1p-30, 0, 0, false},
+        {28, 2000, 5, 1e-4, 0x1p-20, 0, 0, false},
+        {0, 2000, 6, 1e-3, 1, 0, 1e-3, true},
         {37, 1500, 7, 1e-2, 1, 0, 0, true},
+        {40, 2, 472196, 2.9060502195581402e-07, 1, 0, 0,
+         true},  // by the hunter: a charge 1e-112 of the extent away
+        {49, 3, 104664, 4.4859360146554471e-05, 1, 0, 0, true},
+        {47, 290, 973958, 2.23950114233688e-09, 1, 0, 0, true},
     };
     for (const ForceQuestion& question : questions) {
         std::uint64_t asked = 0;

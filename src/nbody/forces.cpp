@@ -46,8 +46,8 @@ constexpr Plan plans[] = {
 };
 /// Targets that are fewer are summed directly, since the charges' cells take longer.
 constexpr std::size_t least_targets = 256;
-/// So few charges of a periodic cube are summed directly where expansions are in double.
-constexpr std::size_t least_charges_in_cube = 256;
+/// So few charges of a periodic cube are summed directly, and so few where expansions are in double.
+constexpr std::size_t least_charges_in_cube = 32, least_charges_in_cube_of_double = 256;
 constexpr double most_accuracy = 0.1;
 /// In a periodic cube gradients are small sums of large parts, whose errors count so many times, and so do
 /// roundings of sums in float; and cubes of even charge have a moment of degree 4, which the lowest order
@@ -248,8 +248,8 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
         std::same_as<T, double> || plan.precision == Precision::single || kernels == nullptr;
     // Near images and tides make it slower.
     const std::size_t least_charges = !(charges.period > 0)                 ? plan.least_charges
-                                      : plan.precision == Precision::single ? 0
-                                                                            : least_charges_in_cube;
+                                      : plan.precision == Precision::single ? least_charges_in_cube
+                                                                            : least_charges_in_cube_of_double;
     const bool few =
         charges.places.empty() ||
         (direct_is_exact && !with_tides &&
