@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include <hedgerow/base/fixed_point.h>
+#include <hedgerow/geometry/fixed_point.h>
 
 using namespace hedgerow;
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <hedgerow/base/fixed_point.h>
+#include <hedgerow/geometry/fixed_point.h>
 #include <hedgerow/io/image.h>
 #include <hedgerow/nbody/particles.h>
 

@@ -11,7 +11,7 @@
 
 #include <hedgerow/ask/points.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/base/fixed_point.h>
+#include <hedgerow/geometry/fixed_point.h>
 #include <hedgerow/index.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/structures/kdtree/point_kdtree.h>

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <hedgerow/geometry/rounding.h>
+
 namespace hedgerow {
 
 /// Terms as integers, multiples of a unit that follows from the largest of them. Integers are added without
