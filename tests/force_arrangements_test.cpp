@@ -72,6 +72,7 @@ TEST(ForceArrangements, QuestionsOfTheHunter) {
          true},  // by the hunter: a charge 1e-112 of the extent away
         {49, 3, 104664, 4.4859360146554471e-05, 1, 0, 0, true},
         {47, 290, 973958, 2.23950114233688e-09, 1, 0, 0, true},
+        {48, 556, 842833, 0.00096230929798330703, 1, 0, 0.0048541129512421153, true},
     };
     for (const ForceQuestion& question : questions) {
         std::uint64_t asked = 0;

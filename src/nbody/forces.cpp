@@ -110,14 +110,14 @@ void set_tolerances(const detail::Sorted<R, T>& sources, detail::Sorted<R, T>& a
     detail::set_tolerances(at.cells, options.accuracy / counts, order, executor, [&](std::uint32_t leaf) {
         if (options.sizes.empty()) {
             const detail::Spot spot = detail::spot_of(at.cells, leaf);
-            if (detail::is_uneven(at.cells, leaf))
+            const detail::Strength strength = detail::strength_at(sources.cells, spot);
+            if (strength.varies || detail::is_uneven(at.cells, leaf))
                 return detail::set_leaf(sources.cells, at.cells, leaf, order, [&](std::size_t i) {
                     const Vec3d place(at.cells.x[i], at.cells.y[i], at.cells.z[i]);
-                    return detail::strength_at(sources.cells, {place, 0, spot.softest});
+                    return detail::strength_at(sources.cells, {place, 0, spot.softest}).least;
                 });
-            const double estimate = detail::strength_at(sources.cells, spot);
             return detail::set_leaf(sources.cells, at.cells, leaf, order,
-                                    [&](std::size_t) { return estimate; });
+                                    [&](std::size_t) { return strength.least; });
         }
         detail::set_leaf(sources.cells, at.cells, leaf, order,
                          [&](std::size_t i) { return options.sizes[at.tree.items()[i]] / units.gradient(); });

@@ -45,20 +45,25 @@ bool is_uneven(const FmmCells<R>& targets, std::uint32_t leaf) {
     }
     return sum < 0.1 * static_cast<double>(count) * radius * radius;
 }
-/// About the least gradient around a place: that of all cells as single charges (Barnes and Hut), each
-/// farther away by the radius, or a hundredth of the sum of their sizes. In a periodic cube what cells do
-/// nearly cancels: so that it does here, cells are small, not moved away, and nearest images do less along an
-/// axis the nearer they are to its turning point, where the next image does as much. What single charges in
-/// place of cells may have wrong is taken off, since it may be more than all that is left.
+/// About the least gradient around a place, and whether it may be many times as large elsewhere around it.
+struct Strength {
+    double least;
+    bool varies;
+};
+/// The gradient of all cells as single charges (Barnes and Hut), each farther away by the radius, or a
+/// hundredth of the sum of their sizes. In a periodic cube what cells do nearly cancels: so that it does here,
+/// cells are small, not moved away, and nearest images do less along an axis the nearer they are to its
+/// turning point, where the next image does as much. What single charges in place of cells may have wrong is
+/// taken off, since it may be more than all that is left.
 template <class R>
-double strength_at(const FmmCells<R>& sources, const Spot& spot) {
+Strength strength_at(const FmmCells<R>& sources, const Spot& spot) {
     thread_local std::vector<std::uint32_t> stack;
     const bool periodic = sources.side > 0;
     const double opening_angle = periodic ? 1.0 : 0.7;
     const std::vector<R>& extents = periodic ? sources.radius : sources.reach;
     const double per_side = periodic ? 1 / sources.side : 0;
     Vec3d sum;
-    double size = 0, doubt = 0;
+    double size = 0, size_here = 0, doubt = 0;
     stack.assign(1, 0);
     while (!stack.empty()) {
         const std::uint32_t other = stack.back();
@@ -87,9 +92,10 @@ double strength_at(const FmmCells<R>& sources, const Spot& spot) {
             return x * (1 - t * t * t);
         };
         sum += Vec3d(between(apart[0]), between(apart[1]), between(apart[2])) * (charge * along);
-        size += weight * per_d2;
+        size += weight * per_d2 * std::min(1.0, (near + spot.radius) / softened);
+        size_here += weight / (softened * softened);
     }
-    return std::max(length(sum) - doubt, 0.01 * size);
+    return {std::max(length(sum) - doubt, 0.01 * size), periodic && size_here > 8 * size};
 }
 /// What counts of the errors in a cell: the mean of some power of them as shares of the gradients, so that a
 /// few targets that are far out or where gradients are small count as they should.
