@@ -51,8 +51,8 @@ struct Strength {
     bool varies;
 };
 /// The gradient of all cells as single charges (Barnes and Hut), each farther away by the radius, or a
-/// hundredth of the sum of their sizes. In a periodic cube what cells do nearly cancels: so that it does here,
-/// cells are small, not moved away, and nearest images do less along an axis the nearer they are to its
+/// hundredth of the sum of their sizes. In a periodic cube what cells do nearly cancels: so that it does
+/// here, cells are small, not moved away, and nearest images do less along an axis the nearer they are to its
 /// turning point, where the next image does as much. What single charges in place of cells may have wrong is
 /// taken off, since it may be more than all that is left.
 template <class R>
