@@ -45,7 +45,8 @@ bool is_uneven(const FmmCells<R>& targets, std::uint32_t leaf) {
     }
     return sum < 0.1 * static_cast<double>(count) * radius * radius;
 }
-/// About the least gradient around a place, and whether it may be many times as large elsewhere around it.
+/// About the least gradient around a place, and whether that is not known well: it may be many times as large
+/// elsewhere around the place, or vanish there.
 struct Strength {
     double least;
     bool varies;
@@ -54,7 +55,7 @@ struct Strength {
 /// hundredth of the sum of their sizes. In a periodic cube what cells do nearly cancels: so that it does
 /// here, cells are small, not moved away, and nearest images do less along an axis the nearer they are to its
 /// turning point, where the next image does as much. What single charges in place of cells may have wrong is
-/// taken off, since it may be more than all that is left.
+/// taken off, since it may be more than all that is left. A gradient changes by at most 2·Σ |q|/r³ a length.
 template <class R>
 Strength strength_at(const FmmCells<R>& sources, const Spot& spot) {
     thread_local std::vector<std::uint32_t> stack;
@@ -63,7 +64,7 @@ Strength strength_at(const FmmCells<R>& sources, const Spot& spot) {
     const std::vector<R>& extents = periodic ? sources.radius : sources.reach;
     const double per_side = periodic ? 1 / sources.side : 0;
     Vec3d sum;
-    double size = 0, size_here = 0, doubt = 0;
+    double size = 0, size_here = 0, doubt = 0, bend = 0;
     stack.assign(1, 0);
     while (!stack.empty()) {
         const std::uint32_t other = stack.back();
@@ -94,8 +95,11 @@ Strength strength_at(const FmmCells<R>& sources, const Spot& spot) {
         sum += Vec3d(between(apart[0]), between(apart[1]), between(apart[2])) * (charge * along);
         size += weight * per_d2 * std::min(1.0, (near + spot.radius) / softened);
         size_here += weight / (softened * softened);
+        bend += weight / (softened * softened * softened);
     }
-    return {std::max(length(sum) - doubt, 0.01 * size), periodic && size_here > 8 * size};
+    const double left = length(sum) - doubt;
+    return {std::max(left, 0.01 * size),
+            periodic && (size_here > 8 * size || (left > 0.01 * size && left < 2 * bend * spot.radius))};
 }
 /// What counts of the errors in a cell: the mean of some power of them as shares of the gradients, so that a
 /// few targets that are far out or where gradients are small count as they should.
