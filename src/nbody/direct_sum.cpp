@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include <hedgerow/geometry/elementary_parts.h>
@@ -15,6 +16,7 @@
 #include "lattice_sums.h"
 #include "plain_pairs.h"
 #include "rows.h"
+#include "runs.h"
 
 namespace hedgerow {
 namespace {
@@ -69,6 +71,7 @@ public:
           middle_(cube.middle * length_),
           place_(3, sources_, R(-beyond_rows)),
           target_(3, targets_, R(beyond_rows)),
+          image_(3, side_ > 0 ? sources_ : 0, R(-beyond_rows)),
           low_source_(3, sources_),
           low_target_(3, targets_),
           of_source_(2, sources_),
@@ -84,7 +87,6 @@ public:
             for (int k = 0; k < 3; ++k) target_[row(k)][i] = in_units(targets.places[i][k]);
             if (softened_) of_target_[0][i] = in_units(detail::reach_of(targets, sources.softening, i));
         }
-        source_ = place_;
         images_ = side_ > 0 ? detail::near_image_places(side_) : std::vector<Vec3d>(1);
     }
 
@@ -93,7 +95,7 @@ public:
         executor.expect(targets_ * images_.size());
         for_each_image([&](bool among_sources) {
             executor.for_each_piece(targets_, 64, [&](std::size_t begin, std::size_t end) {
-                kernel(sources(), targets(begin, end, among_sources), kernel_);
+                kernel(sources(), targets(begin, end - begin, among_sources), kernel_);
                 executor.advance(end - begin);
             });
         });
@@ -104,10 +106,10 @@ public:
             for (std::size_t k = 0; k < 5; ++k) sums_[k][i] = 0;
         for_each_image([&](bool among_sources) {
             executor.for_each_piece(at.size(), 64, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t k = begin, next = k; k < end; k = next) {
-                    while (next < end && at[next] - at[k] == next - k) ++next;  // targets in a row
-                    kernel(sources(), targets(at[k], at[next - 1] + 1, among_sources), kernel_);
-                }
+                detail::for_each_run(std::span(at).subspan(begin, end - begin),
+                                     [&](std::size_t first, std::size_t count) {
+                                         kernel(sources(), targets(first, count, among_sources), kernel_);
+                                     });
             });
         });
     }
@@ -144,22 +146,23 @@ private:
                 for (int k = 0; k < 3; ++k)
                     for (std::size_t i = 0; i < sources_; ++i) {
                         const auto moved = detail::two_sum(place_[row(k)][i], static_cast<R>(shift[k]));
-                        source_[row(k)][i] = moved.high, low_source_[row(k)][i] = moved.low;
+                        image_[row(k)][i] = moved.high, low_source_[row(k)][i] = moved.low;
                     }
             f(at_charges_ && shift == Vec3d());
         }
     }
     ChargeRows<R> sources() const {
-        return {source_[0],     source_[1],     source_[2],
+        const Rows<R>& at = side_ > 0 ? image_ : place_;
+        return {at[0],          at[1],          at[2],
                 of_source_[0],  sources_,       softened_ ? of_source_[1] : nullptr,
                 low_source_[0], low_source_[1], low_source_[2]};
     }
-    TargetRows<R> targets(std::size_t begin, std::size_t end, bool among_sources) {
-        const auto from = [&](auto& rows, std::size_t k) { return rows[k] + begin; };
+    TargetRows<R> targets(std::size_t first, std::size_t count, bool among_sources) {
+        const auto from = [&](auto& rows, std::size_t k) { return rows[k] + first; };
         return {from(target_, 0),
                 from(target_, 1),
                 from(target_, 2),
-                end - begin,
+                count,
                 from(sums_, 0),
                 from(sums_, 1),
                 from(sums_, 2),
@@ -169,7 +172,7 @@ private:
                 from(low_target_, 1),
                 from(low_target_, 2),
                 from(sums_, 4),
-                among_sources ? begin : no_self};
+                among_sources ? first : no_self};
     }
 
     std::size_t sources_, targets_;
@@ -177,9 +180,8 @@ private:
     SofteningKernel kernel_;
     double length_, charge_, side_;
     Vec3d middle_;
-    Rows<R> place_, target_, low_source_, low_target_, of_source_, of_target_;
+    Rows<R> place_, target_, image_, low_source_, low_target_, of_source_, of_target_;
     Rows<double> sums_;
-    Rows<R> source_ = place_;  // where an image's are
     std::vector<Vec3d> images_;
 };
 
@@ -279,7 +281,13 @@ void direct_tides(const Charges<T>& sources, const Targets<T>& targets, std::spa
             Tides sum;
             for (const Vec3d& image : images)
                 for (std::size_t s = 0; s < n; ++s) {
-                    const Vec3d d = Vec3d(places.places()[s]) - Vec3d(at.places()[t]) + image;
+                    // Charges at opposite faces may be close.
+                    const Vec3d from(places.places()[s]), to(at.places()[t]);
+                    Vec3d d;
+                    for (int k = 0; k < 3; ++k) {
+                        const auto moved = detail::two_sum(from[k], image[k]);
+                        d[k] = (moved.high - to[k]) + moved.low;
+                    }
                     const double d2 = length2(d), charge = static_cast<double>(sources.charges[s]),
                                  reach = std::max(own, static_cast<double>(detail::reach_of(sources, s)));
                     if (!(d2 > 0 || reach > 0)) continue;

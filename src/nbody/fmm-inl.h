@@ -16,14 +16,10 @@
 #include <cmath>
 #include <limits>
 
-#include <hedgerow/geometry/elementary_parts.h>
-
 #include "any_order-inl.h"
-#include "direct-inl.h"
 #include "moments-inl.h"
-#include "plain_pairs.h"
+#include "near_pairs-inl.h"
 #include "points-inl.h"
-#include "tides-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
@@ -80,7 +76,8 @@ public:
         : sources_(sources),
           targets_(targets),
           alone_(&sources == &targets),
-          levels_(targets.levels.size() + 1) {}
+          levels_(targets.levels.size() + 1),
+          pairs_(sources, targets) {}
 
     // Walks from the root to all cells of at most `most` targets or without children, and makes each a task.
     void walk_above(std::uint32_t most, std::vector<FmmTask<T>>& tasks) {
@@ -107,7 +104,7 @@ public:
             clear(level);
             for (std::size_t k = 0; k < mine.undecided.size(); ++k) decide(c, mine.undecided[k], mine, level);
             list(mine.far, ActsBy::conversion), list(large_leaves_, ActsBy::points);
-            list(small_, ActsBy::multipole), list(near_, ActsBy::pairs);
+            list(small_, ActsBy::multipole), list(pairs_.near, ActsBy::pairs);
             if (targets_.is_leaf(c)) return;
             std::uint32_t i = 0;
             while (place >= targets_.first[targets_.child[c] + i] + targets_.count[targets_.child[c] + i])
@@ -119,7 +116,7 @@ public:
     // The method of Barnes and Hut for the targets of a leaf together: a cell acts by its multipole, or as
     // one charge, if its radius is less than so many times the least distance of its center from them.
     void walk_group(std::uint32_t leaf, double angle, bool by_multipoles) {
-        near_.clear(), small_.clear(), single_.clear();
+        pairs_.near.clear(), pairs_.single.clear(), small_.clear();
         stack_.assign(1, 0);
         while (!stack_.empty()) {
             const std::uint32_t source = stack_.back();
@@ -131,12 +128,12 @@ public:
                          radius = double(sources_.radius[source]),
                          soft = double(HWY_MAX(sources_.softest[source], targets_.softest[leaf]));
             if (radius < angle * distance && radius + soft < distance)
-                by_multipoles ? small_.push_back(sources_.itself(source)) : single_.push_back(source);
+                by_multipoles ? small_.push_back(sources_.itself(source)) : pairs_.single.push_back(source);
             else if (!sources_.is_leaf(source))
                 for (std::uint32_t i = 0; i < sources_.children[source]; ++i)
                     stack_.push_back(sources_.child[source] + i);
             else if (!alone_ || source != leaf || targets_.radius[leaf] > 0)
-                near_.push_back(sources_.itself(source));
+                pairs_.near.push_back(sources_.itself(source));
         }
         const T nothing[of_local] = {};
         finish(leaf, nothing);
@@ -163,7 +160,7 @@ private:
     }
     void clear(Level& level) {
         for (Lists& lists : level.lists) lists.far.clear(), lists.undecided.clear();
-        near_.clear(), small_.clear(), large_leaves_.clear();
+        pairs_.near.clear(), small_.clear(), large_leaves_.clear();
     }
     void walk(std::uint32_t c, T* local, Lists& mine, std::size_t depth, std::uint32_t most,
               std::vector<FmmTask<T>>* tasks) {
@@ -221,7 +218,7 @@ private:
             (source_larger ? large_leaves_ : small_).push_back(acting);
         } else if (targets_.is_leaf(c) && sources_.is_leaf(source)) {
             // Charges in one place are no pairs, however many they are (`add_pile`).
-            if (!is_itself(c, acting) || targets_.radius[c] > 0) near_.push_back(acting);
+            if (!is_itself(c, acting) || targets_.radius[c] > 0) pairs_.near.push_back(acting);
         } else if (source_larger) {
             for (std::uint32_t i = 0; i < targets_.children[c]; ++i)
                 level.lists[i].undecided.push_back(acting);
@@ -405,17 +402,9 @@ private:
 
     // What near leaves and the local expansion do to the charges of a leaf.
     void finish(std::uint32_t c, const T* local) {
-        const T per_unit = 1 / targets_.scale[c];
-        place_targets(c, per_unit, targets_in_);
+        pairs_.take(c);
         add_expansions(c, local);
-        sums_.assign(5 * row_of(c), 0.0);
-        if (!sources_.pairs_in_float) {
-            sum_pairs(c, gather(c, near_, per_unit, sources_in_), sources_in_, targets_in_);
-        } else if constexpr (!std::is_same_v<T, float>) {
-            place_targets(c, per_unit, float_targets_);
-            sum_pairs(c, gather(c, near_, per_unit, float_sources_), float_sources_, float_targets_);
-        }
-        add_pairs(c, static_cast<double>(per_unit));
+        pairs_.add();
         if (alone_ && !(targets_.radius[c] > 0) && !sources_.soft.empty()) {
             const std::size_t first = targets_.first[c];
             detail::add_pile(sources_.charge.data() + first, sources_.soft.data() + first, sources_.count[c],
@@ -423,248 +412,21 @@ private:
         }
         if (targets_.tides.empty()) return;
         // Small cells act pair by pair here.
-        near_.insert(near_.end(), small_.begin(), small_.end());
-        add_tides(c, local, static_cast<double>(per_unit));
-    }
-    std::size_t row_of(std::uint32_t c) const { return targets_.count[c] + row_padding; }
-
-    // Adds what was summed over pairs. Where roundings may have made errors beyond what is allowed, as they
-    // do in close pairs, pairs are summed again, of the places as they are given.
-    void add_pairs(std::uint32_t c, double per_unit) {
-        using P = std::conditional_t<std::is_same_v<T, float>, float, double>;
-        const double rounding = sources_.pairs_in_float ? rounding_of_pairs<float> : rounding_of_pairs<P>;
-        const double least = targets_.share_of_tolerance * static_cast<double>(targets_.tolerance[c]);
-        const std::size_t row = row_of(c), count = targets_.count[c];
-        doubtful_.clear();
-        for (std::size_t i = 0; i < count; ++i) {
-            const Vec3d whole = gradient_with_pairs(c, i, per_unit);
-            const double error = rounding * per_unit * per_unit * std::sqrt(sums_[4 * row + i]),
-                         allowed = HWY_MAX(targets_.share_of_gradient * length(whole), least);
-            error <= allowed ? add_pairs_of(c, i, per_unit) : doubtful_.push_back(i);
-        }
-        if (doubtful_.empty()) return;
-        sum_exactly(c, per_unit, direct<double, Pairs::exact>);
-        const auto good = [&](std::size_t i) {
-            const bool finite = sums_[4 * row + i] < std::numeric_limits<double>::infinity();
-            if (finite) add_pairs_of(c, i, per_unit);
-            return finite;
-        };
-        doubtful_.erase(std::remove_if(doubtful_.begin(), doubtful_.end(), good), doubtful_.end());
-        if (doubtful_.empty()) return;
-        sum_exactly(c, per_unit, detail::direct_plain<double>);
-        for (const std::size_t i : doubtful_) add_pairs_of(c, i, per_unit);
-    }
-    Vec3d gradient_with_pairs(std::uint32_t c, std::size_t i, double per_unit) const {
-        const std::size_t row = row_of(c), t = targets_.first[c] + i;
-        return Vec3d(targets_.gx[t], targets_.gy[t], targets_.gz[t]) +
-               Vec3d(sums_[row + i], sums_[2 * row + i], sums_[3 * row + i]) * (per_unit * per_unit);
-    }
-    void add_pairs_of(std::uint32_t c, std::size_t i, double per_unit) {
-        const Vec3d gradient = gradient_with_pairs(c, i, per_unit);
-        const std::size_t t = targets_.first[c] + i;
-        targets_.potential[t] += sums_[i] * per_unit;
-        targets_.gx[t] = gradient[0], targets_.gy[t] = gradient[1], targets_.gz[t] = gradient[2];
-    }
-    // Sums over pairs at doubtful targets, which follow each other in runs.
-    void sum_exactly(std::uint32_t c, double per_unit, DirectKernel<double> kernel) {
-        const std::size_t row = row_of(c);
-        const std::size_t sources = place_exactly(c, near_, per_unit);
-        for (const std::size_t i : doubtful_)
-            for (std::size_t k = 0; k < 5; ++k) sums_[k * row + i] = 0;
-        for (std::size_t k = 0, next = k; k < doubtful_.size(); k = next) {
-            const std::size_t from = doubtful_[k];
-            while (next < doubtful_.size() && doubtful_[next] - from == next - k) ++next;
-            TargetRows<double> rows = rows_at(c, exact_targets_, sums_.data());
-            for (const double** const at : {&rows.x, &rows.y, &rows.z, &rows.low_x, &rows.low_y, &rows.low_z})
-                *at += from;
-            for (double** const sum : {&rows.potential, &rows.gx, &rows.gy, &rows.gz, &rows.squares})
-                *sum += from;
-            if (rows.reach != nullptr) rows.reach += from;
-            if (rows.self != no_self) rows.self += from;
-            rows.count = next - k;
-            kernel(rows_of(exact_sources_, sources), rows, sources_.softening);
-        }
-    }
-    // Charges or targets in rows of P, in the unit of a leaf's expansion: as offsets from its center, or
-    // where they are. Offsets are in two parts where P is less precise than T, and places always.
-    template <class P, Pairs by>
-    struct Rows {
-        static constexpr Pairs pairs = by;
-        static constexpr bool split = by != Pairs::plain;
-        BareVector<P> place[3], low[3], charge, soft;
-
-        void make_room(std::size_t count) {
-            const auto grow = [&](BareVector<P>& row) {
-                if (row.size() < count + row_padding) row.resize(2 * count + row_padding);
-            };
-            for (int k = 0; k < 3; ++k) {
-                grow(place[k]);
-                if (split) grow(low[k]);
-            }
-            grow(charge), grow(soft);
-        }
-        // Writes an axis' offsets from number `at` on; offset(i) tells them.
-        template <class G>
-        void put(int axis, std::size_t at, std::size_t count, G offset) {
-            P* const high = place[axis].data() + at;
-            if constexpr (by == Pairs::split) {
-                // Differences of first parts are exact: these are multiples of 2⁻¹¹.
-                constexpr T grid = 2048;
-                P* const rest = low[axis].data() + at;
-                for (std::size_t i = 0; i < count; ++i) {
-                    const T x = offset(i), part = std::nearbyint(x * grid) / grid;
-                    high[i] = static_cast<P>(part), rest[i] = static_cast<P>(x - part);
-                }
-            } else {
-                for (std::size_t i = 0; i < count; ++i) high[i] = static_cast<P>(offset(i));
-            }
-        }
-        // Pads the rows from number `at` on.
-        void close(std::size_t at, double beyond) {
-            for (int k = 0; k < 3; ++k) {
-                std::fill_n(place[k].data() + at, row_padding, P(beyond));
-                if (split) std::fill_n(low[k].data() + at, row_padding, P(0));
-            }
-            std::fill_n(charge.data() + at, row_padding, P(0));
-            std::fill_n(soft.data() + at, row_padding, P(0));
-        }
-    };
-    template <class P>
-    using Offsets = Rows<P, std::is_same_v<P, T> ? Pairs::plain : Pairs::split>;
-
-    template <class OffsetRows>
-    void place_targets(std::uint32_t c, T per_unit, OffsetRows& rows) const {
-        const std::size_t first = targets_.first[c], count = targets_.count[c];
-        rows.make_room(count);
-        const T* const offsets[] = {targets_.dx.data() + first, targets_.dy.data() + first,
-                                    targets_.dz.data() + first};
-        for (int k = 0; k < 3; ++k)
-            rows.put(k, 0, count, [&](std::size_t i) { return offsets[k][i] * per_unit; });
-        place_reaches(c, per_unit, rows);
-        rows.close(count, beyond_rows);
-    }
-    template <class AnyRows>
-    void place_reaches(std::uint32_t c, T per_unit, AnyRows& rows) const {
-        using P = std::remove_cvref_t<decltype(rows.soft[0])>;
-        if (!sources_.soft.empty())
-            for (std::size_t i = 0; i < targets_.count[c]; ++i)
-                rows.soft[i] = static_cast<P>(targets_.soft[targets_.first[c] + i] * per_unit);
-    }
-    // Where the charges of cells and the targets are, without the roundings of an offset.
-    std::size_t place_exactly(std::uint32_t c, const std::vector<FmmSource>& cells, double per_unit) {
-        const auto put = [&](Rows<double, Pairs::exact>& rows, int axis, std::size_t at, double place,
-                             double shift) {
-            const auto moved = detail::two_sum(place, shift);
-            rows.place[axis][at] = moved.high * per_unit, rows.low[axis][at] = moved.low * per_unit;
-        };
-        const std::size_t first = targets_.first[c], count = targets_.count[c];
-        exact_targets_.make_room(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            put(exact_targets_, 0, i, targets_.x[first + i], 0);
-            put(exact_targets_, 1, i, targets_.y[first + i], 0);
-            put(exact_targets_, 2, i, targets_.z[first + i], 0);
-        }
-        place_reaches(c, static_cast<T>(per_unit), exact_targets_);
-        exact_targets_.close(count, beyond_rows);
-        return gather(c, cells, static_cast<T>(per_unit), exact_sources_,
-                      [&](int axis, std::size_t at, std::size_t many, const double* places, double shift) {
-                          for (std::size_t i = 0; i < many; ++i)
-                              put(exact_sources_, axis, at + i, places[i], shift);
-                      });
-    }
-    // Gathers the charges of cells, and single ones, as offsets from the center of a leaf. Returns how many
-    // they are.
-    template <class P>
-    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit, Offsets<P>& rows) {
-        const double center[] = {targets_.cx[c], targets_.cy[c], targets_.cz[c]};
-        // Offsets are computed as those of targets are.
-        return gather(c, cells, per_unit, rows,
-                      [&](int axis, std::size_t at, std::size_t count, const double* places, double shift) {
-                          rows.put(axis, at, count, [&](std::size_t i) {
-                              return static_cast<T>(places[i] - center[axis] + shift) * per_unit;
-                          });
-                      });
-    }
-    // put(axis, at, count, places, shift) writes an axis' numbers of some charges from number `at` on.
-    template <class AnyRows, class Put>
-    std::size_t gather(std::uint32_t c, const std::vector<FmmSource>& cells, T per_unit, AnyRows& rows,
-                       Put put) {
-        using P = std::remove_cvref_t<decltype(rows.soft[0])>;
-        std::size_t sources = single_.size();
-        for (const FmmSource near : cells) sources += sources_.count[near.cell()];
-        const bool softened = !sources_.soft.empty();
-        rows.make_room(sources);
-        std::size_t at = 0;
-        self_ = no_self;
-        for (const FmmSource near : cells) {
-            if (is_itself(c, near)) self_ = at;
-            const std::size_t first = sources_.first[near.cell()], count = sources_.count[near.cell()];
-            const Vec3d& shift = sources_.images[near.image()];
-            const double* const places[] = {sources_.x.data() + first, sources_.y.data() + first,
-                                            sources_.z.data() + first};
-            for (int k = 0; k < 3; ++k) put(k, at, count, places[k], shift[k]);
-            for (std::size_t i = 0; i < count; ++i)
-                rows.charge[at + i] = static_cast<P>(sources_.charge[first + i]);
-            if (softened)
-                for (std::size_t i = 0; i < count; ++i)
-                    rows.soft[at + i] = static_cast<P>(sources_.soft[first + i] * per_unit);
-            at += count;
-        }
-        for (const std::uint32_t single : single_) {
-            const double* const places[] = {&sources_.cx[single], &sources_.cy[single], &sources_.cz[single]};
-            for (int k = 0; k < 3; ++k) put(k, at, 1, places[k], 0);
-            rows.charge[at] = static_cast<P>(sources_.multipoles[single * E::stride]);
-            rows.soft[at] = 0, ++at;
-        }
-        rows.close(at, -beyond_rows);
-        return sources;
-    }
-    template <class P, Pairs by>
-    ChargeRows<P> rows_of(const Rows<P, by>& from, std::size_t count) const {
-        return {from.place[0].data(),
-                from.place[1].data(),
-                from.place[2].data(),
-                from.charge.data(),
-                count,
-                sources_.soft.empty() ? nullptr : from.soft.data(),
-                from.low[0].data(),
-                from.low[1].data(),
-                from.low[2].data()};
-    }
-    template <class P, Pairs by>
-    TargetRows<P> rows_at(std::uint32_t c, const Rows<P, by>& at, double* sums) const {
-        const std::size_t row = row_of(c);
-        return {at.place[0].data(),
-                at.place[1].data(),
-                at.place[2].data(),
-                targets_.count[c],
-                sums,
-                sums + row,
-                sums + 2 * row,
-                sums + 3 * row,
-                sources_.soft.empty() ? nullptr : at.soft.data(),
-                at.low[0].data(),
-                at.low[1].data(),
-                at.low[2].data(),
-                sums + 4 * row,
-                self_};
-    }
-    // Sums over pairs of the charges that are gathered and the targets.
-    template <class P, Pairs by>
-    void sum_pairs(std::uint32_t c, std::size_t sources, const Rows<P, by>& from, const Rows<P, by>& at) {
-        direct<P, by>(rows_of(from, sources), rows_at(c, at, sums_.data()), sources_.softening);
+        pairs_.near.insert(pairs_.near.end(), small_.begin(), small_.end());
+        add_tides(c, local);
     }
     // Sets what the local expansion, whose potential is not in the unit, and small cells do.
     void add_expansions(std::uint32_t c, const T* local) {
         const std::size_t first = targets_.first[c], count = targets_.count[c];
         const F f;
+        const auto& places = pairs_.targets();
         const double of_gradient = static_cast<double>(1 / targets_.scale[c]);
         constexpr std::size_t most_lanes = 64 / sizeof(T);
         for (std::size_t i = 0; i < count; i += hn::Lanes(f)) {
             V far[4];
-            evaluate_local<q>(f, local, hn::LoadU(f, targets_in_.place[0].data() + i),
-                              hn::LoadU(f, targets_in_.place[1].data() + i),
-                              hn::LoadU(f, targets_in_.place[2].data() + i), far[0], far[1], far[2], far[3]);
+            evaluate_local<q>(f, local, hn::LoadU(f, places.place[0].data() + i),
+                              hn::LoadU(f, places.place[1].data() + i),
+                              hn::LoadU(f, places.place[2].data() + i), far[0], far[1], far[2], far[3]);
             for (const FmmSource small : small_) add_small(c, small, i, far);
             alignas(64) T out[4][most_lanes];
             for (int k = 0; k < 4; ++k) hn::Store(far[k], f, out[k]);
@@ -679,27 +441,24 @@ private:
     }
 
     // Adds tidal tensors: of near charges, and of the local expansion.
-    void add_tides(std::uint32_t c, const T* local, double per_unit) {
+    void add_tides(std::uint32_t c, const T* local) {
         const std::size_t first = targets_.first[c], count = targets_.count[c];
-        const std::size_t sources = place_exactly(c, near_, per_unit);
-        sums_.assign(HWY_MAX(6 * count, 5 * row_of(c)), 0.0);
-        const detail::TideRows pairs(sums_.data(), count), found = targets_.tide_rows().from(first);
-        direct_tides(rows_of(exact_sources_, sources), rows_at(c, exact_targets_, sums_.data()),
-                     sources_.softening, pairs);
-        const double unit2 = per_unit * per_unit;
+        const detail::TideRows pairs = pairs_.tides(), found = targets_.tide_rows().from(first);
+        const double per_unit = static_cast<double>(1 / targets_.scale[c]), unit2 = per_unit * per_unit;
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t k = 0; k < 6; ++k) found.row[k][i] = 0;
             found.add(i, pairs[i] * (unit2 * per_unit));
         }
         constexpr std::size_t at_once = 256;
         alignas(64) double place[3][at_once + row_padding];
+        const auto& places = pairs_.targets();
         for (std::size_t i = 0; i < count; i += at_once) {
             const std::size_t here = HWY_MIN(at_once, count - i);
             for (std::size_t j = 0; j < here + row_padding; ++j) {
                 const std::size_t t = HWY_MIN(i + j, count - 1);
-                place[0][j] = static_cast<double>(targets_in_.place[0][t]);
-                place[1][j] = static_cast<double>(targets_in_.place[1][t]);
-                place[2][j] = static_cast<double>(targets_in_.place[2][t]);
+                place[0][j] = static_cast<double>(places.place[0][t]);
+                place[1][j] = static_cast<double>(places.place[1][t]);
+                place[2][j] = static_cast<double>(places.place[2][t]);
             }
             detail::add_local_tides(local, q, place[0], place[1], place[2], here, unit2, add_local,
                                     found.from(i));
@@ -709,17 +468,18 @@ private:
     // Adds what a small cell does to targets of a leaf, from number i on.
     HWY_INLINE void add_small(std::uint32_t c, FmmSource acting, std::size_t i, V* far) const {
         const F f;
+        const auto& places = pairs_.targets();
         const std::uint32_t small = acting.cell();
         const Vec3d apart = offset(c, acting);
         const T per_unit = 1 / sources_.scale[small], ratio = targets_.scale[c] * per_unit;
-        const auto from = [&](double center, const BareVector<T>& places) HWY_ATTR {
-            return hn::MulAdd(hn::LoadU(f, places.data() + i), hn::Set(f, ratio),
+        const auto from = [&](double center, const BareVector<T>& row) HWY_ATTR {
+            return hn::MulAdd(hn::LoadU(f, row.data() + i), hn::Set(f, ratio),
                               hn::Set(f, static_cast<T>(center) * per_unit));
         };
         V found[4];
         evaluate_multipole<p>(f, sources_.multipoles.data() + small * E::stride,
-                              from(apart[0], targets_in_.place[0]), from(apart[1], targets_in_.place[1]),
-                              from(apart[2], targets_in_.place[2]), found[0], found[1], found[2], found[3]);
+                              from(apart[0], places.place[0]), from(apart[1], places.place[1]),
+                              from(apart[2], places.place[2]), found[0], found[1], found[2], found[3]);
         for (int k = 0; k < 4; ++k) {
             const V potential = hn::Mul(found[k], hn::Set(f, per_unit));
             far[k] = k == 0 ? hn::Add(far[0], potential) : hn::MulAdd(potential, hn::Set(f, ratio), far[k]);
@@ -730,17 +490,11 @@ private:
     FmmCells<T>& targets_;
     const bool alone_;  // the targets are the sources
     std::vector<Level> levels_;
-    // Of the target in hand: leaves that act on it by pairs, cells that act on its charges by their
-    // multipoles, and leaves whose charges act on its local expansion.
-    std::vector<FmmSource> near_, small_, large_leaves_;
-    // Cells that act as single charges, and those that a walk has yet to look at.
-    std::vector<std::uint32_t> single_, stack_;
-    Offsets<T> sources_in_, targets_in_;
-    Offsets<float> float_sources_, float_targets_;
-    Rows<double, Pairs::exact> exact_sources_, exact_targets_;
-    std::size_t self_ = no_self;  // the first of the targets' own rows among sources
-    std::vector<double> sums_;    // potentials, gradients and `squares` of pairs
-    std::vector<std::size_t> doubtful_;
+    NearPairs<T> pairs_;
+    // Of the target in hand: cells that act on its charges by their multipoles, and leaves whose charges act
+    // on its local expansion.
+    std::vector<FmmSource> small_, large_leaves_;
+    std::vector<std::uint32_t> stack_;  // the cells that a walk has yet to look at
 };
 
 }  // namespace hedgerow::HWY_NAMESPACE
