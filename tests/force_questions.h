@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -39,8 +40,12 @@ inline Arrangement made(const ForceQuestion& q) {
         all.period > 0 ? std::min(all.softening.length, all.period / 4) : all.softening.length;
     return all;
 }
-/// The errors as shares of the accuracy: the greater of the rms and a tenth of the largest but a thousandth.
-/// Adds the number of forces to `questions`.
+/// The errors as shares of an accuracy: the greater of the rms and a tenth of the largest but a thousandth.
+inline double excess(const FoundErrors& errors, double accuracy) {
+    return std::max(errors.rms, errors.most / 10) / accuracy;
+}
+/// Those of the forces that are asked for: at all targets, or at some of the charges, and at all of them if
+/// these have larger errors than promised. Adds the number of forces to `questions`.
 inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
     Arrangement all = made(q);
     const std::size_t charges = all.size();
@@ -72,10 +77,14 @@ inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
     } else {
         forces<double>(all.view(), found, {.accuracy = q.accuracy}, serial_executor());
         oracle.emplace(all, all.period > 0 ? 40 : 100);
+        if (excess(oracle->errors_of(found), q.accuracy) > 1) {
+            std::vector<std::size_t> numbers(charges);
+            std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+            oracle.emplace(all, numbers);
+        }
     }
     questions += found.size();
-    const FoundErrors errors = oracle->errors_of(found);
-    return std::max(errors.rms, errors.most / 10) / q.accuracy;
+    return excess(oracle->errors_of(found), q.accuracy);
 }
 
 }  // namespace hedgerow

@@ -101,6 +101,17 @@ TEST(Tides, OfFastMultipolesAreThoseOfPairs) {
         }
     }
 }
+TEST(Tides, AcrossAFaceOfAPeriodicCubeAreThoseOfTheDistance) {
+    const std::vector<Vec3d> places{{0x1p-60, 0.5, 0.5}, {1 - 0x1p-50, 0.5, 0.5}};
+    const std::vector<double> charges{1, 1};
+    std::vector<Tides> found(1);
+    direct_tides<double>({places, charges, {}, {}, 1}, std::vector<Vec3d>{places[0]}, found);
+    const double apart = 0x1p-50 + 0x1p-60, whole = 1 / (apart * apart * apart);
+    EXPECT_NEAR(found[0].xx / whole, 2, 1e-14);
+    EXPECT_NEAR(found[0].yy / whole, -1, 1e-14);
+    EXPECT_NEAR(found[0].zz / whole, -1, 1e-14);
+}
+
 TEST(Tides, NeedRoomForEachTarget) {
     const Particles all = plummer(100);
     std::vector<PotentialAt<double>> found(100);
