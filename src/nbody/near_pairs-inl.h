@@ -103,17 +103,21 @@ public:
         const double unit2 = static_cast<double>(per_unit_) * static_cast<double>(per_unit_),
                      rounding = sources_.pairs_in_float ? rounding_of_pairs<float> : rounding_of_pairs<T>,
                      least = targets_.share_of_tolerance * static_cast<double>(targets_.tolerance[leaf_]);
+        constexpr double infinity = std::numeric_limits<double>::infinity();
         doubtful_.clear();
         for (std::size_t i = 0; i < count_; ++i) {
             const double error = rounding * unit2 * std::sqrt(squares()[i]),
                          allowed =
                              HWY_MAX(targets_.share_of_gradient * length(gradient_with_pairs(i)), least);
-            error <= allowed ? add_sums(i) : doubtful_.push_back(i);
+            if (error < infinity && error <= allowed)
+                add_sums(i);
+            else
+                doubtful_.push_back(i);
         }
         if (doubtful_.empty()) return;
         sum_exactly(direct<double, Pairs::exact>);
         const auto good = [&](std::size_t i) {
-            const bool finite = squares()[i] < std::numeric_limits<double>::infinity();
+            const bool finite = squares()[i] < infinity;
             if (finite) add_sums(i);
             return finite;
         };
