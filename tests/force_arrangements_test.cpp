@@ -29,7 +29,7 @@ void expect_accuracies(const NamedArrangement& one, std::size_t n, std::size_t t
     const Arrangement all = one.make(n, 1);
     const ForceOracle oracle(all, targets);
     for (const double accuracy : accuracies) {
-        const FoundErrors errors = oracle.errors_of(forces_of(all, accuracy));
+        const FoundErrors errors = errors_at_some_or_many(oracle, all, forces_of(all, accuracy), accuracy);
         EXPECT_LE(errors.rms, accuracy) << one.name << " of " << n << ", worst at " << errors.worst;
         EXPECT_LE(errors.most, 10 * accuracy) << one.name << " of " << n << ", " << accuracy;
     }

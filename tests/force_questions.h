@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <optional>
 #include <string>
 
 #include <hedgerow/nbody/forces.h>
@@ -40,18 +38,13 @@ inline Arrangement made(const ForceQuestion& q) {
         all.period > 0 ? std::min(all.softening.length, all.period / 4) : all.softening.length;
     return all;
 }
-/// The errors as shares of an accuracy: the greater of the rms and a tenth of the largest but a thousandth.
-inline double excess(const FoundErrors& errors, double accuracy) {
-    return std::max(errors.rms, errors.most / 10) / accuracy;
-}
-/// Those of the forces that are asked for: at all targets, or at some of the charges, and at all of them if
-/// these have larger errors than promised. Adds the number of forces to `questions`.
+/// The errors of the forces that are asked for, as shares of the accuracy. Adds the number of forces to
+/// `questions`.
 inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
     Arrangement all = made(q);
     const std::size_t charges = all.size();
     if (charges == 0) return 0;
     std::vector<PotentialAt<double>> found(charges);
-    std::optional<ForceOracle> oracle;
     if (q.at_targets) {
         std::vector<Vec3d> places;
         std::vector<std::size_t> numbers;
@@ -72,19 +65,13 @@ inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
             with_lengths.lengths.assign(charges, all.softening.length);
             with_lengths.lengths.resize(all.size());
         }
-        all = with_lengths;
-        oracle.emplace(all, numbers);
-    } else {
-        forces<double>(all.view(), found, {.accuracy = q.accuracy}, serial_executor());
-        oracle.emplace(all, all.period > 0 ? 40 : 100);
-        if (excess(oracle->errors_of(found), q.accuracy) > 1) {
-            std::vector<std::size_t> numbers(charges);
-            std::iota(numbers.begin(), numbers.end(), std::size_t{0});
-            oracle.emplace(all, numbers);
-        }
+        questions += places.size();
+        return ForceOracle(with_lengths, numbers).errors_of(found).excess(q.accuracy);
     }
-    questions += found.size();
-    return excess(oracle->errors_of(found), q.accuracy);
+    forces<double>(all.view(), found, {.accuracy = q.accuracy}, serial_executor());
+    questions += charges;
+    const ForceOracle some(all, all.period > 0 ? 40 : 100);
+    return errors_at_some_or_many(some, all, found, q.accuracy).excess(q.accuracy);
 }
 
 }  // namespace hedgerow
