@@ -1,7 +1,6 @@
 /// Hard spheres in a box: they fly, bounce off the walls and off each other, and keep their energy.
 ///
-///   bouncing_spheres [FILE]     a .png of the box at its beginning, after half a unit of time, and at its
-///   end
+///   bouncing_spheres [FILE]     a .png of the box at the beginning, after half a unit of time and at the end
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

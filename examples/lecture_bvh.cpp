@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/render/camera/presets.h>

@@ -1,8 +1,12 @@
 // The lecture's two loops: for each triangle the samples that it covers, and for each sample the triangles
 // that cover it. Prints the depth buffer of the first as it fills, and checks that both find the same.
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/render/camera/presets.h>

@@ -1,9 +1,9 @@
 /// Checks that the pictures of documents are those of the commands beside them, pixel by pixel.
 ///
-/// The command of a picture is the one in a document that shows it whose output has the picture's name, or
-/// the name's beginning (`nbody -o clumps` writes clumps-0.5.png). Pictures that no command makes, or none
-/// makes twice alike, are listed with the reason. Those that take a minute or more are compared in long runs
-/// alone.
+/// The command of a picture is the one in a document that shows it whose output has the picture's name, or is
+/// the folder that the picture is in (`nbody -o clumps` writes clumps/picture-0000016.png). Pictures that no
+/// command makes, or none makes twice alike, are listed with the reason. Those that take a minute or more are
+/// compared in long runs alone.
 ///
 /// HEDGEROW_REWRITE=1 replaces the pictures that differ (scripts/pictures). Look at them.
 #include <algorithm>
@@ -34,7 +34,14 @@ const std::map<std::string, std::string> not_compared = {
     {"visibility/areas.png", "is written by the block of C++ above it"},
 };
 /// How the names of pictures begin that take long: light of many samples, particles that move.
-const std::vector<std::string> slow = {"paths/", "particles/clumps", "particles/merger"};
+const std::vector<std::string> slow = {"paths/", "particles/clumps/", "particles/merger/"};
+
+/// The share of a picture's pixels that may differ. Forces differ in their last bits from one instruction set
+/// to another, and motions magnify that. With AVX2 12 of the 160,000 pixels differ from those with AVX-512; a
+/// change of all last bits moved 545.
+double share_that_may_differ(const std::string& name) {
+    return name.starts_with("particles/clumps/") || name.starts_with("particles/merger/") ? 0.01 : 0;
+}
 
 /// What the first group of an expression matches in a text, from its beginning to its end.
 std::vector<std::string> matches(const std::string& text, const char* expression) {
@@ -49,6 +56,10 @@ struct Shown {
     std::string name, document, command, output;
 
     fs::path path() const { return folder_of_pictures / name; }
+    /// Where the command writes it.
+    fs::path written() const {
+        return output == path().filename() ? fs::path(output) : fs::path(output) / path().filename();
+    }
     bool is_slow() const {
         return std::any_of(slow.begin(), slow.end(),
                            [&](const auto& begin) { return name.starts_with(begin); });
@@ -71,9 +82,9 @@ void add_pictures(const fs::path& document, std::map<std::string, Shown>& all) {
         for (const std::string& command : commands) {
             const std::size_t output_at = command.rfind(' ') + 1;
             const std::string output = fs::path(command.substr(output_at)).filename().string();
-            const bool of_series =
-                command.starts_with("hedgerow nbody ") && path.filename().string().starts_with(output + "-");
-            if (path.filename() == output || of_series)
+            const bool in_folder =
+                command.starts_with("hedgerow nbody gen:") && path.parent_path().filename() == output;
+            if (path.filename() == output || in_folder)
                 s.document = document.filename().string(), s.output = output,
                 s.command = command.substr(9, output_at - 9);  // without "hedgerow "
         }
@@ -110,9 +121,14 @@ TEST(DocPictures, HaveACommandOrAReasonWhyNot) {
 
 class DocPicture : public ToolTest, public testing::WithParamInterface<Shown> {
 protected:
-    /// What must be alike: the pixels, without the notes on how they were made, or the text.
-    static std::string content_of(const fs::path& path) {
-        return path.extension() == ".png" ? pixels_of(path) : bytes_of(path);
+    /// Compares the pixels, without the notes on how they were made, or the text.
+    static bool are_alike(const fs::path& a, const fs::path& b, double may_differ) {
+        if (a.extension() != ".png") return bytes_of(a) == bytes_of(b);
+        const Image one = load_png(a), other = load_png(b);
+        if (one.width != other.width || one.height != other.height) return false;
+        std::size_t differing = 0;
+        for (std::size_t i = 0; i < one.pixels.size(); ++i) differing += one.pixels[i] != other.pixels[i];
+        return static_cast<double>(differing) <= may_differ * static_cast<double>(one.pixels.size());
     }
 };
 
@@ -124,9 +140,9 @@ TEST_P(DocPicture, IsThatOfItsCommand) {
     const auto made =
         run_shell("cd " + folder.string() + " && " HEDGEROW_TOOL_PATH " " + s.command + s.output + " 2>&1");
     ASSERT_EQ(made.code, 0) << s.command << "\n" << made.output;
-    const fs::path picture = file(s.path().filename().string());
-    ASSERT_TRUE(fs::exists(picture)) << s.command << " does not write " << picture.filename();
-    if (content_of(picture) == content_of(s.path())) return;
+    const fs::path picture = file(s.written().string());
+    ASSERT_TRUE(fs::exists(picture)) << s.command << s.output << " does not write " << s.written();
+    if (are_alike(picture, s.path(), share_that_may_differ(s.name))) return;
     if (std::getenv("HEDGEROW_REWRITE") != nullptr)
         fs::copy_file(picture, s.path(), fs::copy_options::overwrite_existing);
     else

@@ -22,7 +22,10 @@ namespace {
 template <class T>
 int draw(const DrawArguments& a, const Scene<T>& scene) {
     const ThreadLimit limit(a.threads);
+    if (a.cone > 0) return draw_cone(a, scene);
+    if (a.fan > 0) return draw_fan(a, scene);
     if (!a.ray.empty()) return draw_ray(a, scene);
+    if (!a.hausdorff.empty()) return draw_hausdorff(a, scene);
     if (!a.field.empty()) return draw_field(a, scene);
     const bool flat = std::visit([]<class P>(const P&) { return P::dimension == 2; }, scene);
     if (flat && !a.heat.empty())
@@ -142,6 +145,32 @@ Run add_draw(CLI::App& verb) {
             "where the heat's scale ends; 0: steps 200, tests 60, time 4000, with --log the most of all rays")
         ->needs(heat);
     verb.add_flag("--log", a->log, "the heat's scale is logarithmic")->needs(heat);
+    auto* const fan = verb.add_option("--fan", a->fan,
+                                      "with --ray: so many rays beside each other, and the cells in which "
+                                      "they end")
+                          ->check(CLI::Range(2, 4096))
+                          ->needs(ray);
+    for (const char* other : {"--frames", "--stop-at-first", "--tree"}) fan->excludes(verb.get_option(other));
+    verb.add_option("--angle", a->angle, "of the fan, in degrees")
+        ->capture_default_str()
+        ->check(CLI::Range(0.001, 160.0))
+        ->needs(fan);
+    verb.add_flag(
+            "--beam", a->beam,
+            "with --fan, over flat segments: the rays as one beam, halved until each part sees one thing")
+        ->needs(fan)
+        ->excludes(structure)
+        ->excludes(beside)
+        ->excludes(depth);
+    auto* const cone =
+        verb.add_option(
+                "--cone", a->cone,
+                "with --ray: a cone of so many degrees around it, and its footprint on the surface, as "
+                ".png")
+            ->check(CLI::Range(0.001, 90.0))
+            ->needs(ray);
+    for (auto* other : {structure, beside, tree, depth, fan}) cone->excludes(other);
+    for (const char* other : {"--frames", "--stop-at-first"}) cone->excludes(verb.get_option(other));
     ray->excludes(slice)->excludes(heat);
     heat->excludes(slice)->excludes(beside)->excludes(tree)->excludes(height);
     auto* const field =
@@ -170,7 +199,12 @@ Run add_draw(CLI::App& verb) {
             ->delimiter(',')
             ->expected(3);
     verb.add_option("--accuracy", a->accuracy, "of the forces")->needs(forces_at)->capture_default_str();
-    for (auto* other : {structure, beside, tree, slice, depth, ray, heat, field}) forces_at->excludes(other);
+    auto* const hausdorff =
+        verb.add_option("--hausdorff", a->hausdorff,
+                        "another scene: the two outlines where they are farthest from each other, as SVG");
+    for (auto* other : {structure, beside, tree, slice, depth, ray, heat, field})
+        forces_at->excludes(other), hausdorff->excludes(other);
+    hausdorff->excludes(forces_at)->excludes(height);
     return [a] {
         if (!a->forces_at.empty()) {
             check_writable(a->output);

@@ -19,13 +19,13 @@
 namespace hedgerow::cli {
 
 struct DrawArguments : Common {
-    std::string structure = "wide", slice, heat, field;
+    std::string structure = "wide", slice, heat, field, hausdorff;
     std::vector<std::string> beside;
     ViewArguments view;
     std::vector<double> ray, forces_at;
-    double accuracy = 1e-3;
-    bool frames = false, tree = false, log = false, stop_at_first = false;
-    int levels = 0, width = 1024;
+    double accuracy = 1e-3, angle = 60, cone = 0;
+    bool frames = false, tree = false, log = false, stop_at_first = false, beam = false;
+    int levels = 0, width = 1024, fan = 0;
     std::optional<int> height;
     unsigned threads = 0;
     std::uint64_t scale = 0;
@@ -46,6 +46,18 @@ int draw_cells(const DrawArguments& a, const Scene<T>& scene);
 /// Draws the cells that one ray visits in the structures. Returns the exit code.
 template <class T>
 int draw_ray(const DrawArguments& a, const Scene<T>& scene);
+/// Draws where the rays of a fan end in the structures, or how they divide as a beam. Returns the exit code.
+/// Throws InputError for a beam in a scene without segments.
+template <class T>
+int draw_fan(const DrawArguments& a, const Scene<T>& scene);
+/// Draws a cone around the ray, and its footprint where the ray hits, over a view of a scene in space.
+/// Returns the exit code. Throws InputError for a flat scene, and where the ray hits nothing.
+template <class T>
+int draw_cone(const DrawArguments& a, const Scene<T>& scene);
+/// Draws the outlines of two scenes in a plane through the points where they are farthest from each other.
+/// Returns the exit code. Throws InputError for scenes without a Hausdorff distance.
+template <class T>
+int draw_hausdorff(const DrawArguments& a, const Scene<T>& scene);
 /// Draws the boxes of the structures as lines over a view of a scene in space. Returns the exit code; 1 for a
 /// flat scene.
 template <class T>

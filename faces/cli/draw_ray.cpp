@@ -11,6 +11,7 @@
 #include <hedgerow/io/text_file.h>
 
 #include "draw.h"
+#include "ray_option.h"
 #include "section.h"
 
 namespace hedgerow::cli {
@@ -18,46 +19,6 @@ namespace hedgerow::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// Cells that the ray does not visit are drawn too, in the background, if a structure has at most this many
-/// cells.
-constexpr std::size_t most_behind = 20'000;
-
-template <class T>
-Section<2> section_along(const Ray<T, 2>&, const Upright&) {
-    return {};
-}
-/// The plane through the ray and the scene's upward direction. If these are less than 26° apart (a cosine
-/// above 0.9), another axis replaces the upward direction.
-template <class T>
-Section<3> section_along(const Ray<T, 3>& ray, const Upright& upright) {
-    Section<3> section;
-    section.origin = Vec3d(ray.origin);
-    section.right = normalized(Vec3d(ray.direction));
-    Vec3d up;
-    up[upright.axis] = 1;
-    if (std::abs(dot(up, section.right)) > 0.9) up = {up[2], up[0], up[1]};
-    section.up = normalized(up - section.right * dot(up, section.right));
-    return section;
-}
-
-/// The ray of --ray. Throws InputError unless it has 2·D numbers, and UsageError for a direction of length 0
-/// or numbers that are not finite.
-template <class T, int D>
-Ray<T, D> ray_of(const DrawArguments& a) {
-    if (a.ray.size() != 2 * D)
-        throw InputError(
-            fmt::format("--ray has {} numbers: {} are needed, the origin's and the direction's, as {}",
-                        a.ray.size(), 2 * D, D == 2 ? "-1,0.5,1,0.1" : "-1,0.5,0.5,1,0.1,0"));
-    Ray<T, D> ray;
-    for (int k = 0; k < D; ++k) {
-        ray.origin[k] = static_cast<T>(a.ray[static_cast<std::size_t>(k)]);
-        ray.direction[k] = static_cast<T>(a.ray[std::size_t(k) + std::size_t(D)]);
-    }
-    if (!(length(Vec<double, D>(ray.direction)) > 0) || !finite(ray.origin) || !finite(ray.direction))
-        throw UsageError("--ray: the direction must be finite and not zero, the origin finite");
-    return ray;
-}
 
 template <int D>
 std::vector<double> list_of(const Vec<double, D>& v) {

@@ -12,6 +12,7 @@
 #include <hedgerow/render/wireframe.h>
 #include <hedgerow/structures/bvh/volumes/region.h>
 
+#include "background.h"
 #include "draw.h"
 #include "picture_notes.h"
 #include "report/svg.h"
@@ -25,13 +26,6 @@ using nlohmann::ordered_json;
 /// The most boxes that a reader can distinguish in a wireframe. It limits the levels that are drawn without
 /// --depth.
 constexpr std::size_t most_boxes = 250;
-
-Image::Pixel pixel_of(const std::string& colour) {
-    Image::Pixel p;
-    for (std::size_t k = 0; k < 3; ++k)
-        p[k] = static_cast<std::uint8_t>(std::stoi(colour.substr(1 + 2 * k, 2), nullptr, 16));
-    return p;
-}
 
 /// The boxes of the first `wanted` levels; 0: of as many levels as have at most `most_boxes` (the first level
 /// always). Empty leaves are left out. Sets `levels` to the number of levels. Throws InputError as `few`
@@ -116,25 +110,6 @@ void draw_level_legend(Image& image, const std::vector<std::string>& title, int 
             for (int x = 6 * unit; x < 28 * unit && x < image.width; ++x) image.at(x, y) = colour;
     }
 }
-
-/// The picture under the lines of every structure: a pale view of the scene, and the depth of its surface at
-/// each pixel.
-struct Background {
-    RayMaker maker;
-    Image image;
-    std::vector<float> surface;
-
-    template <class T, class Seen>
-    Background(const DrawArguments& a, const AnyIndex<T, 3>& index, const Seen& seen,
-               const RenderOptions& options)
-        : maker(options.camera, options.width, options.height) {
-        ProgressLine line("casting rays", a.quiet, "rows");
-        image = render(index, seen, options, interruptible_executor(), line.progress()).image;
-        for (auto& pixel : image.pixels)
-            for (auto& c : pixel) c = static_cast<std::uint8_t>(255 - (255 - c) * 9 / 20);
-        surface = depths(index, maker, options.width, options.height, interruptible_executor());
-    }
-};
 
 /// Draws the boxes of cells over the background, the deepest first, so that the first levels lie on top.
 Image wireframe(std::vector<OutlineCell<3>> cells, const std::vector<std::string>& title, int levels,

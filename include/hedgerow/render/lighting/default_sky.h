@@ -47,8 +47,8 @@ inline Rows<3> upright_environment(const Vec3f& up) {
 
 /// A simple sky for scenes without lights: blue at the zenith, brighter at the horizon, with a soft sun 37
 /// degrees above it, about 24 degrees wide, and a dim ground below. A horizontal matte white surface shows a
-/// radiance of about 1 under it. It stands upright in the world as
-/// upright_environment says. The panorama has 64×32 texels and the same bits everywhere.
+/// radiance of about 1 under it. Its zenith lies at `up` (upright_environment). The panorama has 64×32 texels
+/// and the same bits everywhere.
 inline Environment default_sky(const Vec3f& up = {0, 1, 0}) {
     constexpr int width = 64, height = 32;
     Pixels pixels{width, height, 3, {}};
