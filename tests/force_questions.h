@@ -39,8 +39,8 @@ inline Arrangement made(const ForceQuestion& q) {
         all.period > 0 ? std::min(all.softening.length, all.period / 4) : all.softening.length;
     return all;
 }
-/// The errors as shares of the accuracy: the greater of the rms and a tenth of the largest but a thousandth.
-/// Adds the number of forces to `questions`.
+/// The errors as shares of the accuracy: the greatest of the rms, a tenth of the largest but a thousandth
+/// and, in open space, a tenth of the largest of potentials. Adds the number of forces to `questions`.
 inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
     Arrangement all = made(q);
     const std::size_t charges = all.size();
@@ -75,7 +75,8 @@ inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
     }
     questions += found.size();
     const FoundErrors errors = oracle->errors_of(found);
-    return std::max(errors.rms, errors.most / 10) / q.accuracy;
+    const double potential = all.period > 0 ? 0 : errors.potential;  // those of neutral cubes cancel
+    return std::max({errors.rms, errors.most / 10, potential / 10}) / q.accuracy;
 }
 
 }  // namespace hedgerow
