@@ -76,6 +76,17 @@ TEST(PointFile, ReportsWhatFloatsLose) {
     LoadReport of_array;
     load_points<float, 3>(folder / "a.npy", {.report = &of_array});
     EXPECT_TRUE(of_array.loses_detail);
+    // Whole numbers too.
+    const std::string ply = "element vertex 2\nproperty int x\nproperty int y\nproperty int z\nend_header\n";
+    std::string binary = "ply\nformat binary_little_endian 1.0\n" + ply;
+    for (const std::int32_t x : {541234525, 0, 0, 541230525, 0, 0}) testing_io::append(binary, x);
+    for (const std::string& text :
+         {binary, "ply\nformat ascii 1.0\n" + ply + "541234525 0 0\n541230525 0 0\n"}) {
+        LoadReport of_integers;
+        load_points<float, 3>(folder.file("a.ply", text), {.report = &of_integers});
+        EXPECT_TRUE(of_integers.loses_detail);
+        EXPECT_EQ(of_integers.rounding, 29);
+    }
 }
 
 TEST(PointFile, NumbersAreRoundedOnce) {
