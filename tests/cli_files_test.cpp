@@ -60,6 +60,15 @@ TEST_F(Files, NumbersThatStlCannotHoldAreRefused) {
     expect_bad("convert " + file("a.obj") + " -o " + file("a.stl"), "1e+100");
 }
 
+TEST_F(Files, CoordinatesThatStlMovesAreTold) {
+    write("utm.obj", "v 431234 5412345.2 210\nv 431234 5412345.7 210\nv 431235 5412345.2 210\nf 1 2 3\n");
+    expect_told(run("convert " + file("utm.obj") + " -o " + file("utm.stl")),
+                file("utm.stl") + ": its floats move coordinates by up to 0.2, which matters. .ply");
+    EXPECT_EQ(run("convert --quiet " + file("utm.obj") + " -o " + file("utm.ply")).output, "");
+    write("a.obj", "v 0.1 0.2 0.3\nv 1.1 0.2 0.3\nv 0.1 1.2 0.3\nf 1 2 3\n");
+    EXPECT_EQ(run("convert --quiet " + file("a.obj") + " -o " + file("a.stl")).output, "");
+}
+
 TEST_F(Files, InfoAndCheckAgreeWhatIsClosed) {
     // A cube whose every side has corners of its own.
     std::string text;
