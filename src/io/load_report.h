@@ -13,14 +13,15 @@
 
 namespace hedgerow::detail {
 
-/// What it means for some vertices or points that their coordinates were moved by up to `rounding`.
+/// What it means for some vertices or points that their coordinates were moved by up to `rounding`. Where all
+/// are in one place, they may have been apart before.
 template <class T, int D>
 RoundingReport rounding_report(double rounding, const std::vector<Vec<T, D>>& points) {
     Box<double, D> box;
     for (const Vec<T, D>& p : points) box.expand(Vec<double, D>(p));
     const double side = points.empty() ? 0 : max_component(box.high - box.low);
     const double apart = side / std::sqrt(static_cast<double>(points.size() + 1));
-    return {rounding, side > 0 && rounding > apart / 100};
+    return {rounding, points.size() > 1 && rounding > apart / 100};
 }
 
 /// Reports on a file whose vertices or points have been read, if a report is wanted.

@@ -12,8 +12,8 @@ struct RoundingReport {
     /// The farthest that a coordinate was moved.
     double rounding = 0;
     /// Whether `rounding` is more than a hundredth of the usual distance between neighbours (the largest side
-    /// of the scene's box over the root of the number of points). Then load the file as doubles, or save a
-    /// mesh in a format that has them.
+    /// of the scene's box over the root of the number of points), which is 0 if rounding has put all points
+    /// in one place. Then load the file as doubles, or save a mesh in a format that has them.
     bool loses_detail = false;
 };
 
