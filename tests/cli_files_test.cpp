@@ -47,7 +47,12 @@ TEST_F(Files, CoordinatesThatFloatsLoseAreReadInDouble) {
     EXPECT_NE(answers("nearest -k 1", "utm.csv", row).find("\n0,0,0.0999"), std::string::npos);
     expect_told(run("info " + file("utm.csv")),
                 "is read in double, since floats would move its coordinates by up to 0.2");
-    expect_told(run("info --precision float " + file("utm.csv")), "--precision double keeps them");
+    expect_told(run("info --precision float " + file("utm.csv")), "floats move its coordinates by up to 0.2");
+    // Where doubles cannot be asked for, none are promised.
+    write("utm.obj", "v 431234 5412345.2 210\nv 431234 5412345.7 210\nv 431235 5412345.2 210\nf 1 2 3\n");
+    const auto bench = run("bench --quick --sets primary " + file("utm.obj"));
+    expect_told(bench, "floats move its coordinates by up to 0.2");
+    EXPECT_EQ(bench.output.find("--precision"), std::string::npos);
     // Nothing is said of ordinary files.
     write("a.csv", "x,y,z\n0.1,0.2,0.3\n1.1,0.2,0.3\n0.1,1.2,0.3\n");
     EXPECT_EQ(run("info " + file("a.csv") + " --quiet").output.find("double"), std::string::npos);
