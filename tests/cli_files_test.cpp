@@ -47,7 +47,12 @@ TEST_F(Files, CoordinatesThatFloatsLoseAreReadInDouble) {
     EXPECT_NE(answers("nearest -k 1", "utm.csv", row).find("\n0,0,0.0999"), std::string::npos);
     expect_told(run("info " + file("utm.csv")),
                 "is read in double, since floats would move its coordinates by up to 0.2");
-    expect_told(run("info --precision float " + file("utm.csv")), "--precision double keeps them");
+    expect_told(run("info --precision float " + file("utm.csv")), "floats move its coordinates by up to 0.2");
+    // Where doubles cannot be asked for, none are promised.
+    write("utm.obj", "v 431234 5412345.2 210\nv 431234 5412345.7 210\nv 431235 5412345.2 210\nf 1 2 3\n");
+    const auto bench = run("bench --quick --sets primary " + file("utm.obj"));
+    expect_told(bench, "floats move its coordinates by up to 0.2");
+    EXPECT_EQ(bench.output.find("--precision"), std::string::npos);
     // Nothing is said of ordinary files.
     write("a.csv", "x,y,z\n0.1,0.2,0.3\n1.1,0.2,0.3\n0.1,1.2,0.3\n");
     EXPECT_EQ(run("info " + file("a.csv") + " --quiet").output.find("double"), std::string::npos);
@@ -58,6 +63,15 @@ TEST_F(Files, CoordinatesThatFloatsLoseAreReadInDouble) {
 TEST_F(Files, NumbersThatStlCannotHoldAreRefused) {
     write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1e100 0\nf 1 2 3\n");
     expect_bad("convert " + file("a.obj") + " -o " + file("a.stl"), "1e+100");
+}
+
+TEST_F(Files, CoordinatesThatStlMovesAreTold) {
+    write("utm.obj", "v 431234 5412345.2 210\nv 431234 5412345.7 210\nv 431235 5412345.2 210\nf 1 2 3\n");
+    expect_told(run("convert " + file("utm.obj") + " -o " + file("utm.stl")),
+                file("utm.stl") + ": its floats move coordinates by up to 0.2, which matters. .ply");
+    EXPECT_EQ(run("convert --quiet " + file("utm.obj") + " -o " + file("utm.ply")).output, "");
+    write("a.obj", "v 0.1 0.2 0.3\nv 1.1 0.2 0.3\nv 0.1 1.2 0.3\nf 1 2 3\n");
+    EXPECT_EQ(run("convert --quiet " + file("a.obj") + " -o " + file("a.stl")).output, "");
 }
 
 TEST_F(Files, InfoAndCheckAgreeWhatIsClosed) {

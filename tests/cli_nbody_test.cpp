@@ -278,7 +278,14 @@ TEST_F(Nbody, RefusesBadInput) {
     expect_bad("nbody --resume --until 1 -o " + file("x"), "no run");
     EXPECT_FALSE(fs::exists(folder / "x"));
     std::ofstream(file("nan.csv")) << "x,y,z\n1,2,3\n1,nan,3\n";
-    expect_bad("nbody " + file("nan.csv") + " --forces -o " + file("a.npy"), "source 1 is nan");
+    expect_bad("nbody " + file("nan.csv") + " --forces -o " + file("a.npy"),
+               file("nan.csv") + ": a coordinate of particle 1 is nan");
+    // Particles are never left out.
+    expect_usage("nbody --drop-bad " + file("nan.csv") + " --forces -o " + file("a.npy"), "--drop-bad");
+    expect_usage("draw --drop-bad gen:disc:10 --forces-at 1,1,0 -o " + file("b.svg"), "--drop-bad");
+    std::ofstream(file("nan.xyz")) << "1 2 3\n1 nan 3\n";
+    expect_bad("nbody " + file("nan.xyz") + " --forces -o " + file("a.npy"),
+               file("nan.xyz") + ": 1 of the points are NaN");
     ASSERT_EQ(run("nbody gen:plummer:10 --until 0.1 --quiet -o " + file("run")).code, 0);
     expect_usage("nbody gen:plummer:10 --until 0.1 -o " + file("run"), "--resume");
     // A snapshot that is cut short, and options that are damaged.

@@ -38,12 +38,17 @@ inline Arrangement made(const ForceQuestion& q) {
         all.period > 0 ? std::min(all.softening.length, all.period / 4) : all.softening.length;
     return all;
 }
-/// The errors of the forces that are asked for, as shares of the accuracy. Adds the number of forces to
-/// `questions`.
+/// The errors of the forces that are asked for, as shares of the accuracy: the greatest of the rms, a tenth
+/// of the largest but a thousandth and, in open space, a tenth of the largest of potentials. Adds the number
+/// of forces to `questions`.
 inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
     Arrangement all = made(q);
     const std::size_t charges = all.size();
     if (charges == 0) return 0;
+    const auto share = [&](const FoundErrors& errors) {
+        const double potential = all.period > 0 ? 0 : errors.potential;  // those of neutral cubes cancel
+        return std::max(errors.excess(q.accuracy), potential / 10 / q.accuracy);
+    };
     std::vector<PotentialAt<double>> found(charges);
     if (q.at_targets) {
         std::vector<Vec3d> places;
@@ -66,12 +71,12 @@ inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
             with_lengths.lengths.resize(all.size());
         }
         questions += places.size();
-        return ForceOracle(with_lengths, numbers).errors_of(found).excess(q.accuracy);
+        return share(ForceOracle(with_lengths, numbers).errors_of(found));
     }
     forces<double>(all.view(), found, {.accuracy = q.accuracy}, serial_executor());
     questions += charges;
     const ForceOracle some(all, all.period > 0 ? 40 : 100);
-    return errors_at_some_or_many(some, all, found, q.accuracy).excess(q.accuracy);
+    return share(errors_at_some_or_many(some, all, found, q.accuracy));
 }
 
 }  // namespace hedgerow

@@ -63,6 +63,9 @@ TEST(ParticleFile, RefusesBadInput) {
     EXPECT_THROW(load_state(folder / "missing.npy"), InputError);
     EXPECT_THROW(load_state(folder.file("times.csv", "1 2 3 0 0 0 1 0 0 0 0 5\n1 2 3 0 0 0 1 0 0 0 0 6\n")),
                  InputError);
+    EXPECT_THROW(load_state(folder.file("speed.csv", "1 2 3 0 inf 0 1\n")), InputError);
+    EXPECT_THROW(load_state(folder.file("mass.csv", "x,y,z,mass\n1,2,3,nan\n")), InputError);
+    EXPECT_THROW(load_state(folder.file("far.xyz", "1 2 3\n1e200 0 0\n")), InputError);
     MotionState state;
     EXPECT_THROW(save_state(folder / "a.xyz", state), UsageError);
     EXPECT_THROW(save_state(folder / "no/a.npy", state), OutputError);

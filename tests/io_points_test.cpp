@@ -70,12 +70,25 @@ TEST(PointFile, ReportsWhatFloatsLose) {
     EXPECT_FALSE(exact.loses_detail);
     EXPECT_EQ(exact.rounding, 0);
     for (const std::string text : {"0.1,0.2,0.3\n0.4,0.5,0.6\n", "431234,5412345,210\n431235,5412345,210\n",
-                                   "1000.1,0,0\n1001.2,0,0\n1002.3,0,0\n", "0.1,0.1,0.1\n0.1,0.1,0.1\n"})
+                                   "1000.1,0,0\n1001.2,0,0\n1002.3,0,0\n", "0.1,0.1,0.1\n"})
         EXPECT_FALSE(report_of(text).loses_detail) << text;
+    // Apart, and in one place once they are floats.
+    EXPECT_TRUE(report_of("431234.01,5412345.1,210.001\n431234.011,5412345.2,210.001\n").loses_detail);
     save_npy<double>(folder / "a.npy", std::vector<double>{5412345.25, 0, 0, 5412345.5, 0, 0}, {2, 3});
     LoadReport of_array;
     load_points<float, 3>(folder / "a.npy", {.report = &of_array});
     EXPECT_TRUE(of_array.loses_detail);
+    // Whole numbers too.
+    const std::string ply = "element vertex 2\nproperty int x\nproperty int y\nproperty int z\nend_header\n";
+    std::string binary = "ply\nformat binary_little_endian 1.0\n" + ply;
+    for (const std::int32_t x : {541234525, 0, 0, 541230525, 0, 0}) testing_io::append(binary, x);
+    for (const std::string& text :
+         {binary, "ply\nformat ascii 1.0\n" + ply + "541234525 0 0\n541230525 0 0\n"}) {
+        LoadReport of_integers;
+        load_points<float, 3>(folder.file("a.ply", text), {.report = &of_integers});
+        EXPECT_TRUE(of_integers.loses_detail);
+        EXPECT_EQ(of_integers.rounding, 29);
+    }
 }
 
 TEST(PointFile, NumbersAreRoundedOnce) {

@@ -217,6 +217,7 @@ Run add_bench(CLI::App& verb) {
     verb.add_option("--rounds", a->rounds, "whose median is taken; 5, with --quick 3")
         ->check(CLI::Range(1, 1000));
     add_reporting(verb, *a);
+    add_drop_bad(verb, *a);
     return [a, sets] {
         if (!a->rays.empty() && a->scenes.size() != 1)
             throw UsageError("--rays are those of one scene: name it, and no other");

@@ -68,11 +68,8 @@ void refuse_floats(const Common& c, const LoadReport& report) {
 void tell(const Common& c, const LoadReport& report) {
     for (const std::string& warning : report.warnings) fmt::print(stderr, "hedgerow: {}\n", warning);
     if (report.loses_detail)
-        fmt::print(
-            stderr,
-            "hedgerow: {}: floats move its coordinates by up to {:.2g}, which matters. --precision double "
-            "keeps them\n",
-            c.scene, report.rounding);
+        fmt::print(stderr, "hedgerow: {}: floats move its coordinates by up to {:.2g}, which matters\n",
+                   c.scene, report.rounding);
     if (report.dropped_faces > 0)
         fmt::print(stderr, "hedgerow: {}: {} faces were left out, with {} vertices\n", c.scene,
                    report.dropped_faces, report.dropped_points);

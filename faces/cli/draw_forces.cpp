@@ -53,6 +53,8 @@ Box2d frame_of(const std::vector<Vec3d>& places) {
 
 int draw_forces(const DrawArguments& a) {
     expect_ending(a, ".svg", "a picture of what acts on a place");
+    if (a.drop_bad)
+        throw UsageError("--forces-at has no --drop-bad: without some particles all forces would be others");
     const auto [width, height] = parse_size(a.view.size);
     NbodyArguments particles;
     static_cast<Common&>(particles) = a;

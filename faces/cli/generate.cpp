@@ -19,7 +19,13 @@ namespace {
 
 template <class T>
 void save_scene(const Common& c, const TriangleMesh<T>& mesh, const Progress& progress) {
-    save_mesh(c.output, mesh, progress);
+    RoundingReport report;
+    save_mesh(c.output, mesh, progress, &report);
+    if (report.loses_detail)
+        fmt::print(stderr,
+                   "hedgerow: {}: its floats move coordinates by up to {:.2g}, which matters. .ply, .obj and "
+                   ".off keep them\n",
+                   c.output, report.rounding);
 }
 template <class T, int D>
 void save_scene(const Common& c, const PointCloud<T, D>& cloud, const Progress& progress) {

@@ -33,13 +33,16 @@ void add_common(CLI::App& verb, Common& c, bool output) {
         ->capture_default_str()
         ->check(CLI::IsMember({"auto", "float", "double"}));
     add_reporting(verb, c);
+    add_drop_bad(verb, c);
 }
 void add_reporting(CLI::App& verb, Common& c) {
     verb.add_flag("--json", c.json, "results as JSON");
     verb.add_flag("--quiet", c.quiet, "no progress and no summary");
+    verb.add_option("--seed", c.seed, "of random scenes and samples");
+}
+void add_drop_bad(CLI::App& verb, Common& c) {
     verb.add_flag("--drop-bad", c.drop_bad,
                   "leave out points that are NaN, infinite or too large, and faces with such vertices");
-    verb.add_option("--seed", c.seed, "of random scenes and samples");
 }
 
 namespace {

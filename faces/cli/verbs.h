@@ -25,9 +25,11 @@ Run add_convert(CLI::App& verb);
 Run add_structures(CLI::App& verb);
 
 /// Adds the options of a verb about one scene: the scene, --output if `output` is set, --precision, and those
-/// of add_reporting.
+/// of add_reporting and add_drop_bad.
 void add_common(CLI::App& verb, Common& c, bool output);
-/// Adds the options that do not depend on one scene: --json, --quiet, --drop-bad and --seed.
+/// Adds the options that do not depend on one scene: --json, --quiet and --seed.
 void add_reporting(CLI::App& verb, Common& c);
+/// Adds --drop-bad.
+void add_drop_bad(CLI::App& verb, Common& c);
 
 }  // namespace hedgerow::cli

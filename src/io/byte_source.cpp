@@ -22,9 +22,7 @@ constexpr std::size_t buffer_size = std::size_t(1) << 18;
 /// A file that unpacks to more than this, at more than this ratio, repeats itself without an end. Scenes
 /// reach about 50 to 1.
 constexpr std::uint64_t bomb_size = std::uint64_t(1) << 28, bomb_ratio = 500;
-}  // namespace
 
-namespace {
 /// Git LFS leaves a text of about 130 bytes where a file was not fetched.
 bool is_lfs_pointer(const std::filesystem::path& path) {
     constexpr std::string_view beginning = "version https://git-lfs.github.com/spec/";

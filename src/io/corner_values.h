@@ -21,8 +21,8 @@ inline bool is_finite(const Rgba& value) {
 }
 
 /// Throws InputError if a corner names a value that does not exist. Leaves out ordinals where there are no
-/// values at all, and values that are not finite,
-/// with a warning. `what` names one of them. O(triangles + values).
+/// values at all, and values that are not finite, with a warning. `what` names one of them.
+/// O(triangles + values).
 template <class T, class V>
 void check_values(const ByteSource& file, const TriangleMesh<T>& mesh, CornerValues<V>& values,
                   const std::string& what, NamedOnce& warnings) {

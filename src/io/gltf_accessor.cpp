@@ -2,6 +2,8 @@
 #include "gltf_accessor.h"
 
 #include <algorithm>
+#include <limits>
+#include <type_traits>
 
 #include "mesh_parts.h"
 
@@ -14,36 +16,22 @@ namespace {
 constexpr std::uint64_t most_zeros = std::uint64_t(1) << 22;
 constexpr std::uint64_t longest_stride = 1u << 16;
 
-GltfNumbers::Type type_of(const GltfFile& file, const GltfFile::Json& where) {
+}  // namespace
+
+GltfNumbers::Type number_type(const GltfFile& file, const GltfFile::Json& where) {
     const std::uint64_t type = file.needed_number(where, "componentType");
     if ((type < 5120 || type > 5123) && type != 5125 && type != 5126)
         file.fail("componentType " + std::to_string(type) + " is not known");
     return static_cast<GltfNumbers::Type>(type);
 }
 
-}  // namespace
-
 double GltfNumbers::value(std::uint64_t i, int component) const {
     const char* at = bytes.data() + i * stride + static_cast<std::uint64_t>(component) * size_of_number();
-    const auto whole = [&](auto x) {
-        constexpr double largest = std::numeric_limits<decltype(x)>::max();
-        return normalized ? std::max(static_cast<double>(x) / largest, -1.0) : static_cast<double>(x);
-    };
-    switch (type) {
-        case Type::i1:
-            return whole(little<std::int8_t>(at));
-        case Type::u1:
-            return whole(little<std::uint8_t>(at));
-        case Type::i2:
-            return whole(little<std::int16_t>(at));
-        case Type::u2:
-            return whole(little<std::uint16_t>(at));
-        case Type::u4:
-            return whole(little<std::uint32_t>(at));
-        case Type::f4:
-            break;
-    }
-    return static_cast<double>(little<float>(at));
+    return with_number(type, [&]<class N>(N) {
+        const double x = static_cast<double>(little<N>(at));
+        if (std::is_same_v<N, float> || !normalized) return x;
+        return std::max(x / static_cast<double>(std::numeric_limits<N>::max()), -1.0);
+    });
 }
 
 bool GltfNumbers::are_ordinals() const {
@@ -64,7 +52,7 @@ GltfAccessor::GltfAccessor(GltfFile& file, std::uint64_t number, int components)
     if (type == accessor.end() || *type != wanted) file.fail(place + " is not of type " + wanted);
     size_ = file.needed_number(accessor, "count");
     if (size_ >= most_ordinals) file.fail(place + " has more than 4294967295 elements");
-    base_ = numbers(file, accessor, type_of(file, accessor), size_, components);
+    base_ = numbers(file, accessor, number_type(file, accessor), size_, components);
     if (base_.bytes.empty()) base_.bytes = file.given(number);
     if (const auto found = accessor.find("normalized"); found != accessor.end())
         base_.normalized = found->is_boolean() && found->get<bool>();
@@ -99,7 +87,7 @@ void GltfAccessor::read_sparse(GltfFile& file, const GltfFile::Json& sparse, int
     if (places == sparse.end() || values == sparse.end() || !places->is_object() || !values->is_object() ||
         replaced_ > size_)
         file.fail("a sparse accessor lacks its indices or values, or has more than it has elements");
-    places_ = numbers(file, *places, type_of(file, *places), replaced_, 1);
+    places_ = numbers(file, *places, number_type(file, *places), replaced_, 1);
     values_ = numbers(file, *values, base_.type, replaced_, components);
     values_.normalized = base_.normalized;
     if (!places_.are_ordinals())

@@ -26,6 +26,30 @@ struct GltfNumbers {
     bool are_ordinals() const;
 };
 
+/// The type of the numbers of an accessor, or of the indices of a sparse one. Throws InputError for an
+/// unknown one.
+GltfNumbers::Type number_type(const GltfFile& file, const GltfFile::Json& where);
+
+/// Calls f(N()) with the C++ type of numbers of a type, and returns its result.
+template <class F>
+auto with_number(GltfNumbers::Type type, F f) {
+    switch (type) {
+        case GltfNumbers::Type::i1:
+            return f(std::int8_t());
+        case GltfNumbers::Type::u1:
+            return f(std::uint8_t());
+        case GltfNumbers::Type::i2:
+            return f(std::int16_t());
+        case GltfNumbers::Type::u2:
+            return f(std::uint16_t());
+        case GltfNumbers::Type::u4:
+            return f(std::uint32_t());
+        case GltfNumbers::Type::f4:
+            break;
+    }
+    return f(float());
+}
+
 /// The elements of an accessor. The constructor checks all bounds, so `value` reads without checks. It finds
 /// elements that a sparse accessor replaces by a binary search.
 class GltfAccessor {

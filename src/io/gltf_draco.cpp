@@ -8,11 +8,11 @@
 #if HEDGEROW_HAS_DRACO
 #include <draco/compression/decode.h>
 
-#include <bit>
-#include <cstring>
-#include <iterator>
 #include <string>
 #include <utility>
+
+#include "gltf_accessor.h"
+#include "little.h"
 #endif
 
 namespace hedgerow::detail {
@@ -28,34 +28,8 @@ using Json = GltfFile::Json;
 
 template <class N>
 void append_little(std::string& bytes, N x) {
-    if constexpr (std::endian::native == std::endian::big) {
-        char raw[sizeof x];
-        std::memcpy(raw, &x, sizeof x);
-        bytes.append(std::rbegin(raw), std::rend(raw));
-    } else {
-        bytes.append(reinterpret_cast<const char*>(&x), sizeof x);
-    }
-}
-
-/// Calls f(N()) with the type of an accessor's numbers.
-template <class F>
-void with_type_of(const GltfFile& file, const Json& accessor, F f) {
-    switch (file.needed_number(accessor, "componentType")) {
-        case 5120:
-            return f(std::int8_t());
-        case 5121:
-            return f(std::uint8_t());
-        case 5122:
-            return f(std::int16_t());
-        case 5123:
-            return f(std::uint16_t());
-        case 5125:
-            return f(std::uint32_t());
-        case 5126:
-            return f(float());
-        default:
-            fail_draco(file, "has an accessor of an unknown type");
-    }
+    const auto raw = little_bytes(x);
+    bytes.append(raw.begin(), raw.end());
 }
 
 void expect_count(const GltfFile& file, const Json& accessor, std::uint64_t count) {
@@ -68,7 +42,7 @@ void give_indices(GltfFile& file, const draco::Mesh& mesh, std::uint64_t number)
     const Json& accessor = file.object("accessors", number);
     expect_count(file, accessor, std::uint64_t(3) * mesh.num_faces());
     std::string bytes;
-    with_type_of(file, accessor, [&]<class N>(N) {
+    with_number(number_type(file, accessor), [&]<class N>(N) {
         for (std::uint32_t i = 0; i < mesh.num_faces(); ++i)
             for (const auto& corner : mesh.face(draco::FaceIndex(i)))
                 append_little(bytes, static_cast<N>(corner.value()));
@@ -87,7 +61,7 @@ void give_attribute(GltfFile& file, const draco::Mesh& mesh, const draco::PointA
     if (components != attribute.num_components() || components < 1 || components > 4)
         fail_draco(file, "has an attribute that is not of the type " + type + " of its accessor");
     std::string bytes;
-    with_type_of(file, accessor, [&]<class N>(N) {
+    with_number(number_type(file, accessor), [&]<class N>(N) {
         for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
             N numbers[4] = {};
             if (!attribute.ConvertValue<N>(attribute.mapped_index(draco::PointIndex(i)),

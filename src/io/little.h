@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -16,6 +17,14 @@ U little(const char* bytes) {
     U value;
     std::memcpy(&value, raw, sizeof(U));
     return value;
+}
+/// The bytes of a number, the lowest first.
+template <class U>
+std::array<char, sizeof(U)> little_bytes(U value) {
+    std::array<char, sizeof(U)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof(U));
+    if constexpr (std::endian::native != std::endian::little) std::reverse(bytes.begin(), bytes.end());
+    return bytes;
 }
 
 }  // namespace hedgerow::detail

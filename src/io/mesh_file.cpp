@@ -77,7 +77,8 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 }
 
 template <class T>
-void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress) {
+void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress,
+               RoundingReport* report) {
     const std::string extension = detail::lower_case(path.extension().string());
     void (*write)(detail::OutputFile&, const TriangleMesh<T>&) = nullptr;
     if (extension == ".ply") write = detail::write_ply;
@@ -90,11 +91,14 @@ void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, c
     file.expect(mesh.vertices.size() + mesh.size());
     write(file, mesh);
     file.commit();
+    if (report != nullptr) *report = detail::rounding_report(file.rounding(), mesh.vertices);
 }
 
 template TriangleMesh<float> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
 template TriangleMesh<double> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
-template void save_mesh(const std::filesystem::path&, const TriangleMesh<float>&, const Progress&);
-template void save_mesh(const std::filesystem::path&, const TriangleMesh<double>&, const Progress&);
+template void save_mesh(const std::filesystem::path&, const TriangleMesh<float>&, const Progress&,
+                        RoundingReport*);
+template void save_mesh(const std::filesystem::path&, const TriangleMesh<double>&, const Progress&,
+                        RoundingReport*);
 
 }  // namespace hedgerow

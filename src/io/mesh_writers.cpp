@@ -72,7 +72,8 @@ void write_stl(OutputFile& file, const TriangleMesh<T>& mesh) {
         write_point(file, Vec3f(normalized(cross(q - p, r - p))));
         for (const std::uint32_t v : {a, b, c}) {
             const Vec<T, 3>& corner = mesh.vertices[v];
-            for (int i = 0; i < 3; ++i) file.little(rounded<float>(static_cast<double>(corner[i])));
+            for (int i = 0; i < 3; ++i)
+                file.little(coordinate<float>(static_cast<double>(corner[i]), file.rounding()));
         }
         file.little(std::uint16_t(0));
     }

@@ -161,7 +161,7 @@ private:
         return take_word(rest_);
     }
     template <class I>
-    I number(const std::string& what) {
+    I number(const char* what) {
         const std::string_view w = word();
         const auto n = parse_integer<I>(w);
         if (!n) lines_->fail(shown(w) + " where " + what + " should stand. Repair the file");
@@ -188,8 +188,7 @@ private:
         const auto n = number<std::uint32_t>("a number of corners");
         corners_.clear();
         for (std::uint32_t k = 0; k < n; ++k)
-            append(file_, corners_,
-                   number<std::uint32_t>("a vertex of face " + std::to_string(entry_.number)));
+            append(file_, corners_, number<std::uint32_t>("a vertex of a face"));
         faces_->add(corners_, looks_.face(rest_, corners_.size()));
     }
 

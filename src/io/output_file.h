@@ -1,18 +1,17 @@
 /// A file that appears whole or not at all.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <hedgerow/parallel/progress.h>
+
+#include "little.h"
 
 namespace hedgerow::detail {
 
@@ -31,11 +30,8 @@ public:
     /// Writes the bytes of a number in little-endian order.
     template <class U>
     void little(U v) {
-        char bytes[sizeof(U)];
-        std::memcpy(bytes, &v, sizeof(U));
-        if constexpr (std::endian::native != std::endian::little)
-            for (std::size_t i = 0; i < sizeof(U) / 2; ++i) std::swap(bytes[i], bytes[sizeof(U) - 1 - i]);
-        write({bytes, sizeof(U)});
+        const auto bytes = little_bytes(v);
+        write({bytes.data(), bytes.size()});
     }
     /// `expect` announces how much there is to write, in the writer's unit, and `advance` adds what has been
     /// written. The progress is reported and checked for cancellation about once in 4096 units.
@@ -47,6 +43,9 @@ public:
         progress_.look();
         progress_(done_, total_);
     }
+    /// How far coordinates were moved when they were rounded to what the format has, at most: whoever rounds
+    /// one writes it.
+    double& rounding() { return rounding_; }
     std::FILE* stream() const { return file_; }
     /// The place of the next byte, for formats that go back to fill in values. Throws OutputError for a pipe,
     /// which has no places.
@@ -65,6 +64,7 @@ private:
     std::filesystem::path path_, written_;
     Progress progress_;
     std::uint64_t done_ = 0, reported_ = 0, total_ = 0;
+    double rounding_ = 0;
     std::FILE* file_ = nullptr;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include <hedgerow/base/error.h>
@@ -10,6 +11,7 @@
 #include <hedgerow/io/rows.h>
 
 #include "gadget.h"
+#include "text.h"
 
 namespace hedgerow {
 namespace {
@@ -68,9 +70,23 @@ std::size_t read_rows(const std::filesystem::path& path, const Progress& progres
     return 0;
 }
 
-}  // namespace
+/// Throws InputError for a number that is not finite, or beyond what coordinates may be. Particles are never
+/// left out, since the forces on all others would be wrong.
+void expect_numbers(const Particles& all, const std::filesystem::path& path) {
+    const auto expect = [&](double x, const char* what, std::size_t i) {
+        if (!(std::abs(x) <= largest_coordinate<double>))
+            throw InputError(path.string() + ": " + what + " of particle " + std::to_string(i) + " is " +
+                             detail::shortest_text(x) +
+                             ": numbers are finite, and at most 2^480. Repair the file");
+    };
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (int k = 0; k < 3; ++k)
+            expect(all.places[i][k], "a coordinate", i), expect(all.velocities[i][k], "a velocity", i);
+        expect(all.masses[i], "the mass", i);
+    }
+}
 
-MotionState load_state(const std::filesystem::path& path, const Progress& progress) {
+MotionState read_state(const std::filesystem::path& path, const Progress& progress) {
     if (detail::names_hdf5(path)) return detail::load_gadget(path);
     MotionState state;
     std::size_t columns = 3;
@@ -83,11 +99,24 @@ MotionState load_state(const std::filesystem::path& path, const Progress& progre
     if (in_rows) {
         columns = read_rows(path, progress, state);
     } else {
-        for (const Vec3d& p : load_points<double, 3>(path, {}, progress).points)
-            add_row(state, p.data, columns, path);
+        LoadReport report;
+        const auto cloud = load_points<double, 3>(path, {.drop_bad = true, .report = &report}, progress);
+        if (report.dropped_points > 0)
+            throw InputError(path.string() + ": " + std::to_string(report.dropped_points) +
+                             " of the points are NaN, infinite or too far away. Repair the file, or write "
+                             "one without them (hedgerow convert --drop-bad)");
+        for (const Vec3d& p : cloud.points) add_row(state, p.data, columns, path);
     }
     if (columns == 3)
         for (double& mass : state.particles.masses) mass /= static_cast<double>(state.particles.size());
+    return state;
+}
+
+}  // namespace
+
+MotionState load_state(const std::filesystem::path& path, const Progress& progress) {
+    MotionState state = read_state(path, progress);
+    expect_numbers(state.particles, path);
     return state;
 }
 

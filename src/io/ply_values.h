@@ -39,8 +39,9 @@ public:
         double& rounding = file_.rounding();
         if (encoding_ == PlyEncoding::ascii)
             return number_word([&](std::string_view w) { return parse_coordinate<T>(w, rounding); });
-        if (type == PlyType::f8) return detail::coordinate<T>(raw<double>(), rounding);
-        return real(type);
+        if (type == PlyType::f4) return static_cast<T>(raw<float>());
+        return decode<T>(type,
+                         [&](auto x) { return detail::coordinate<T>(static_cast<double>(x), rounding); });
     }
     /// Another number.
     T real(PlyType type) {

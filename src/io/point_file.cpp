@@ -45,14 +45,9 @@ PointCloud<T, D> read_npy_points(ByteSource& file) {
                   2 * array.size() * sizeof(double));
     PointCloud<T, D> cloud;
     cloud.points.resize(array.shape[0]);
-    const auto take = [&](const auto& values, auto convert) {
-        for (std::size_t i = 0; i < values.size(); ++i)
-            cloud.points[i / D][static_cast<int>(i % D)] = convert(values[i]);
-    };
-    if (array.dtype == "f8")
-        take(array.as<double>(), [&](double x) { return coordinate<T>(x, file.rounding()); });
-    else
-        take(array.as<T>(), [](T x) { return x; });
+    const std::vector<double> values = array.as<double>();
+    for (std::size_t i = 0; i < values.size(); ++i)
+        cloud.points[i / D][static_cast<int>(i % D)] = coordinate<T>(values[i], file.rounding());
     return cloud;
 }
 

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mesh_parts.h"
@@ -135,9 +137,7 @@ private:
     }
     /// The next word in lower case; "end solid" counts as one.
     std::string keyword() {
-        std::string w = std::move(pending_);
-        pending_.clear();
-        if (w.empty()) w = lower_case(words_->next());
+        std::string w = pending_.empty() ? lower_case(words_->next()) : std::exchange(pending_, {});
         if (w == "end") w += lower_case(words_->next_of_line());
         return w;
     }
@@ -149,9 +149,11 @@ private:
     void skip_words() {
         constexpr std::string_view keywords[] = {"outer",    "vertex", "end",   "endloop",
                                                  "endfacet", "facet",  "solid", "endsolid"};
-        do pending_ = lower_case(words_->next_of_line());
-        while (!pending_.empty() &&
-               std::find(std::begin(keywords), std::end(keywords), pending_) == std::end(keywords));
+        std::string_view word;
+        while (pending_.empty() && !(word = words_->next_of_line()).empty()) {
+            const std::string w = lower_case(word);
+            if (std::find(std::begin(keywords), std::end(keywords), w) != std::end(keywords)) pending_ = w;
+        }
     }
     void expect(std::string_view wanted) {
         const std::string w = keyword();

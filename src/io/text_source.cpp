@@ -8,6 +8,20 @@ constexpr std::size_t longest_line = std::size_t(1) << 26, longest_word = 4096;
 bool ends_line(int c) {
     return c == '\n' || c == '\r';
 }
+
+/// Appends what comes before a letter that `ends`, or before the end of the file. Stops somewhere beyond
+/// `most` letters.
+template <class Ends>
+void append_until(ByteSource& file, std::string& text, std::size_t most, Ends ends) {
+    while (text.size() <= most && !file.at_end()) {
+        const std::string_view ahead = file.ahead();
+        std::size_t length = 0;
+        while (length < ahead.size() && !ends(static_cast<unsigned char>(ahead[length]))) ++length;
+        text.append(ahead.substr(0, length));
+        file.skip(length);
+        if (length < ahead.size()) return;
+    }
+}
 }  // namespace
 
 void open_text(ByteSource& file) {
@@ -24,13 +38,10 @@ bool LineSource::next(std::string& text) {
     text.clear();
     if (file_.at_end()) return false;
     ++number_;
-    int c = file_.next();
-    for (; c != -1 && !ends_line(c); c = file_.next()) {
-        text.push_back(static_cast<char>(c));
-        if (text.size() > longest_line)
-            file_.fail_here(
-                "a line is longer than 64 MiB. Is this a text file of the kind its extension says?");
-    }
+    append_until(file_, text, longest_line, ends_line);
+    if (text.size() > longest_line)
+        file_.fail_here("a line is longer than 64 MiB. Is this a text file of the kind its extension says?");
+    const int c = file_.next();
     if (!ends_in_returns_) ends_in_returns_ = c == '\r' && file_.peek() != '\n';
     if (c == '\r' && !*ends_in_returns_ && file_.peek() == '\n') file_.next();
     return true;
@@ -43,12 +54,9 @@ std::string_view WordSource::next() {
 
 std::string_view WordSource::next_of_line() {
     word_.clear();
-    int c = file_.peek();
-    for (; is_space(c) && !ends_line(c); c = file_.peek()) file_.next();
-    for (; c != -1 && !is_space(c); c = file_.peek()) {
-        if (word_.size() == longest_word) fail("a word of more than 4096 letters. Is this a text file?");
-        word_.push_back(static_cast<char>(file_.next()));
-    }
+    for (int c = file_.peek(); is_space(c) && !ends_line(c); c = file_.peek()) file_.next();
+    append_until(file_, word_, longest_word, is_space);
+    if (word_.size() > longest_word) fail("a word of more than 4096 letters. Is this a text file?");
     return word_;
 }
 

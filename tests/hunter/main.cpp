@@ -4,7 +4,7 @@
 ///
 /// With --files it draws meshes and points instead, and writes each as text of every format in a style that
 /// means the same: other ends of lines, comments, joined lines, orders, words. What gives another geometry,
-/// or is refused, is printed as an entry of the corpus of files (tests/corpus.h).
+/// or is refused, is printed as an entry of the corpus of files (tests/corpus/).
 ///
 /// With --particles it draws arrangements of charges and holds forces against sums in long double and after
 /// Ewald.

@@ -1,4 +1,4 @@
-/// Options that all loaders share, and what loaders report.
+/// Options that all loaders share, and what loaders and writers report.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,23 @@
 
 namespace hedgerow {
 
-/// What a loader tells of a file beside its contents.
-struct LoadReport {
+/// How far coordinates were moved when they were rounded to numbers of fewer digits.
+struct RoundingReport {
+    /// The farthest that a coordinate was moved.
+    double rounding = 0;
+    /// Whether `rounding` is more than a hundredth of the usual distance between neighbours (the largest side
+    /// of the scene's box over the root of the number of points), which is 0 if rounding has put all points
+    /// in one place. Then load the file as doubles, or save a mesh in a format that has them.
+    bool loses_detail = false;
+};
+
+/// What a loader tells of a file beside its contents. Coordinates of the file are rounded to the scalar type
+/// of the scene.
+struct LoadReport : RoundingReport {
     /// Points or vertices, and faces, that `drop_bad` left out.
     std::uint64_t dropped_points = 0, dropped_faces = 0;
     /// Of a cloud from which points were left out: the ordinals in the file of those that stay. Else empty.
     std::vector<std::uint32_t> kept_points;
-    /// The farthest that a coordinate of the file was moved when it was rounded to the scalar type of the
-    /// scene.
-    double rounding = 0;
-    /// Whether `rounding` is more than a hundredth of the usual distance between neighbours (the largest side
-    /// of the scene's box over the root of the number of points). Then load the file as doubles.
-    bool loses_detail = false;
     /// A sentence for each peculiarity of the file that changes nothing but should be known. Each names the
     /// file.
     std::vector<std::string> warnings;

@@ -48,7 +48,7 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 /// Writes a mesh as `.ply` (binary, little endian), `.stl` (binary; **float, whatever T is**), `.obj` or
 /// `.off` (the shortest decimals that read back to the same T). Triangles keep their order; `faces` is not
 /// written. The file is written under another name beside `path` and then renamed, so there is never half a
-/// file.
+/// file. `report`, if not null, gets how far coordinates were moved, as floats of `.stl` move doubles.
 ///
 /// `progress` counts the vertices and triangles written. Throws InputError if the extension is none of these,
 /// if a triangle names a vertex that does not exist, if there are more triangles than `.stl` can count
@@ -56,6 +56,7 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 /// written (the disk is full, say), and Cancelled if `progress` is cancelled. T is float or double.
 /// O(vertices + triangles).
 template <class T>
-void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress = {});
+void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress = {},
+               RoundingReport* report = nullptr);
 
 }  // namespace hedgerow

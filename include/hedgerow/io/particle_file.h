@@ -20,8 +20,9 @@ namespace hedgerow {
 ///   beside these, those of the first list that it has all of are read, from the last on.
 ///
 /// The state's accelerations and potentials are empty where the file has none. Throws InputError for a file
-/// that has none of these columns, for particles of a snapshot without masses, for one of other faults, and
-/// for particles of a file of different times; Cancelled if `progress` is cancelled. O(size of the file).
+/// that has none of these columns, for particles of a snapshot without masses, for numbers that are not
+/// finite or beyond 2^480, for one of other faults, and for particles of a file of different times; Cancelled
+/// if `progress` is cancelled. O(size of the file).
 MotionState load_state(const std::filesystem::path& path, const Progress& progress = {});
 
 /// Writes a state: a row a particle, with the columns above, in double; or, to `.hdf5` and `.h5`, a snapshot
