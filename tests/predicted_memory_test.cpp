@@ -51,8 +51,6 @@ void expect_all_predicted(const std::string& name) {
         [&]<class P>(const P& set) {
             for (const StructureInfo& s : structure_list()) {
                 if (!s.holds(P::dimension, PointSet<ViewOf<P>>)) continue;
-                // A BSP tree takes long to build.
-                if (s.name == "bsp" && set.size() > 10000) continue;
                 expect_predicted(name, set, std::string(s.name));
             }
             expect_predicted(name, set, "wide:builder=fast");

@@ -20,8 +20,6 @@ void expect_equal(const std::string& file) {
     const auto targets = targets_of(mesh);
     Indexes<T, 3> indexes;
     for (std::size_t i = 0; i < fast_structures; ++i) {
-        const bool takes_minutes = mesh.size() > 100'000 && std::string_view(structures[i]) == "bsp";
-        if (takes_minutes && in_long_runs(0, 1) == 1) continue;
         indexes.push_back(build_any(structures[i], mesh));
         EXPECT_EQ(indexes.back()->validate(), "") << structures[i];
     }

@@ -24,11 +24,14 @@ public:
             const double x = low_ + product(apart, static_cast<double>(i) + 0.5);
             const auto [low, high] = cell.surfaces({along, x, 0}, whole);
             shares_[i] = {low / whole, high / whole};
+            volume_ += product(apart, std::max(0.0, low + high - whole) / 2);
         }
         scale_ = static_cast<double>(places_) / width();
     }
     double low() const { return low_; }
     double width() const { return high_ - low_; }
+    /// The volume of the cell, or in the plane its area, by the sections in the same places.
+    double volume() const { return volume_; }
 
     /// Offers a plane with `on_low` and `on_high` primitives on its sides. `best` keeps it if it costs less.
     void offer(T position, std::uint32_t on_low, std::uint32_t on_high, KdBest<T>& best) const {
@@ -51,7 +54,7 @@ private:
     KdCosts costs_;
     int axis_;
     std::size_t places_;
-    double low_ = 0, high_ = 0, scale_ = 0;
+    double low_ = 0, high_ = 0, scale_ = 0, volume_ = 0;
     /// The surfaces of the low and the high side over that of the cell, in the middles of equal intervals.
     std::array<std::array<double, 2>, most_places> shares_{};
 };

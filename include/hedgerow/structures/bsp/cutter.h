@@ -5,7 +5,8 @@
 #include <hedgerow/parallel/sort.h>
 #include <hedgerow/structures/bsp/axis_costs.h>
 #include <hedgerow/structures/bsp/build.h>
-#include <hedgerow/structures/bsp/parts.h>
+#include <hedgerow/structures/bsp/part_lanes.h>
+#include <hedgerow/structures/bsp/suggested_planes.h>
 #include <hedgerow/structures/cells.h>
 #include <hedgerow/structures/kdtree/builders/sweep.h>
 
@@ -16,10 +17,12 @@ namespace hedgerow {
 /// angles to it (Ize, Wald, Parker, RT 2008). The cost of a candidate is the SAH with the surfaces of the two
 /// convex parts of the cell.
 ///
-/// Few candidates are weighed so (docs/design/045-bsp-builds.md). Along each axis a sweep over all bounds
-/// finds the best plane, with surfaces that are interpolated. The other planes are ranked by a guess of the
-/// cost, and only the first few are weighed. In cells of more than `samples` primitives only some of them
-/// suggest planes (BspOptions), and in large ones some parts stand for all where planes are ranked.
+/// Few candidates are weighed so (docs/design/045-bsp-builds.md). A sweep over all bounds along each axis
+/// finds the best plane across one, with surfaces that are interpolated. The other planes are ranked by a
+/// guess of the cost, and only the first few are weighed. In cells of more than `samples` primitives only
+/// some of them suggest planes (BspOptions), and some parts stand for all where planes are ranked. Large
+/// cells are few, and their planes decide how often primitives repeat, so there more planes are suggested,
+/// counted and weighed.
 ///
 /// Heights within a fourth of a plane's margin count as on the plane. A primitive that is wholly on a plane
 /// is in the low cell only, since a probe treats a plane as thick as its margin. A probe adds no margin to a
@@ -30,8 +33,7 @@ public:
     using Plane = BspPlane<T, D>;
     struct Cell {
         Polytope<D> shape;
-        Box<double, D> box;
-        bool is_box = true;  // the shape is the box
+        bool is_box = true;  // the shape is a box
         BspParts<D> inside;
 
         std::uint32_t size() const { return inside.size(); }
@@ -51,29 +53,41 @@ public:
 
     Cell root(const ReferenceList<T, D>& references) const {
         Cell cell;
+        Box<double, D> all;
         for (const auto& r : references) {
             const Box<T, D> own = r.box();
             const Box<double, D> box{Vec<double, D>(own.low), Vec<double, D>(own.high)};
-            cell.box.expand(box);
+            all.expand(box);
             if (const auto corners = corners_(r.id()))
                 cell.inside.add(r.id(), *corners);
             else
                 cell.inside.add(r.id(), box);
         }
-        cell.shape = Polytope<D>(cell.box);
+        cell.shape = Polytope<D>(all);
         return cell;
     }
 
     std::optional<Plane> choose(const Cell& cell, int) const {
-        if (cell.size() <= leaf_size_) return std::nullopt;
+        if (!may_pay_to_cut(cell)) return std::nullopt;
         Best best{{}, costs_.intersection_cost * cell.size()};
-        // A node alone may cost as much as the tests that it could save.
-        if (std::min(costs_.traversal_cost, costs_.plane_cost) >= best.cost) return std::nullopt;
         const double whole = cell.shape.surface();
         if (!(whole > 0)) return std::nullopt;
         const auto offer = [&](const Plane& plane) { weigh(cell, whole, plane, best); };
-        for (int axis = 0; axis < D; ++axis) offer_across(cell, whole, axis, offer);
-        if (costs_.plane_cost < best.cost) offer_through_parts(cell, best.cost, offer);
+        // Weigh the best plane across an axis, by surfaces that are interpolated.
+        double volume = 0;
+        KdBest<T> across;
+        for (int axis = 0; axis < D; ++axis) {
+            const BspAxisCosts<T, D> costs(
+                {costs_.traversal_cost, costs_.intersection_cost, costs_.empty_bonus}, cell.shape, whole,
+                cell.is_box, axis);
+            volume += costs.volume() / D;
+            if (cell.size() > most_sorted)
+                find_border(cell, costs, axis, across);
+            else
+                find_bound(cell, costs, axis, across);
+        }
+        if (across.cost < best.cost) offer(Plane::across(across.plane.axis, across.plane.position));
+        offer_through_parts(cell, volume / whole, best.cost, offer);
         return best.plane;
     }
 
@@ -82,9 +96,7 @@ public:
         std::pair<Cell, Cell> sides;
         auto& [low, high] = sides;
         std::tie(low.shape, high.shape) = cell.shape.cut(plane);
-        low.box = high.box = cell.box;
         low.is_box = high.is_box = cell.is_box && chosen.axis >= 0;
-        if (chosen.axis >= 0) low.box.high[chosen.axis] = high.box.low[chosen.axis] = plane.offset;
         for (const auto& part : cell.inside) {
             const auto [to_low, to_high] = sides_of(cell.inside, part, plane, chosen.axis);
             if (to_low && to_high) {
@@ -94,6 +106,7 @@ public:
                 (to_low ? low : high).inside.add(cell.inside, part);
             }
         }
+        restore_shape(low), restore_shape(high);
         return sides;
     }
 
@@ -102,55 +115,84 @@ private:
         std::optional<Plane> plane;
         double cost;
     };
-    struct Counts {
-        std::uint32_t low = 0, high = 0, all = 0;
+    /// How planes that are not across an axis are chosen in a cell: so many parts suggest them at least, they
+    /// are ranked by the sides of at most so many parts, and so many are weighed.
+    struct Effort {
+        std::uint32_t samples, counted;
+        std::size_t weighed;
     };
-    /// Planes are ranked by the sides of all parts, or in larger cells of at most so many.
-    static constexpr std::uint32_t most_counted = 16;
-    /// How many of the planes that are not across an axis are weighed.
-    static constexpr std::size_t most_weighed = 3;
+    static constexpr std::size_t most_weighed = 16;
+    Effort effort(const Cell& cell) const {
+        constexpr std::uint32_t large = 64;
+        if (cell.size() > large) return {2 * samples_, large, most_weighed};
+        return {samples_, 16, 3};
+    }
     /// Beyond this many parts, their bounds are counted in so many bins along each axis.
-    static constexpr std::uint32_t most_sorted = 1024;
-    static constexpr std::size_t bins = 256;
+    static constexpr std::uint32_t most_sorted = 256;
+    static constexpr std::size_t bins = 128;
 
+    /// Heights up to this count as on the plane.
+    static double on_plane(const CutPlane<D>& plane, int axis) {
+        return axis >= 0 ? -plane.margin : plane.margin / 4;
+    }
     /// Whether a part is in the low cell of a plane, and whether it is in the high one.
     [[gnu::always_inline]] static std::pair<bool, bool> sides_of(const BspParts<D>& parts,
                                                                  const BspPart<D>& part,
                                                                  const CutPlane<D>& plane, int axis) {
-        const double on = axis >= 0 ? -plane.margin : plane.margin / 4;
+        const double on = on_plane(plane, axis);
         const auto [low, high] = parts.heights(part, plane, axis);
         const bool to_high = high > on;
         return {low < -on || !to_high, to_high};
     }
 
-    /// How many of every stride-th part are on the sides of a plane.
-    static Counts count(const Cell& cell, const CutPlane<D>& plane, int axis, std::uint32_t stride) {
-        Counts counts;
-        for (std::uint32_t i = 0; i < cell.size(); i += stride, ++counts.all) {
-            const auto [to_low, to_high] = sides_of(cell.inside, cell.inside[i], plane, axis);
+    /// Whether a cut may save more tests than its node costs.
+    bool may_pay_to_cut(const Cell& cell) const {
+        return cell.size() > leaf_size_ &&
+               std::min(costs_.traversal_cost, costs_.plane_cost) < costs_.intersection_cost * cell.size();
+    }
+    /// Takes the box around the parts as the shape of a cell that is much shorter than its parts. Between
+    /// planes that coincide up to roundings a cell is a splinter, although within the margin of these planes
+    /// it holds all that lies along them.
+    void restore_shape(Cell& cell) const {
+        if (!may_pay_to_cut(cell)) return;
+        const auto length = [](const Box<double, D>& box) { return max_component(box.high - box.low); };
+        Box<double, D> around;
+        for (const auto& part : cell.inside) around.expand(part.bounds);
+        if (!cell.shape.empty() && length(around) <= 2 * length(cell.shape.bounds())) return;
+        cell.shape = Polytope<D>(around);
+        cell.is_box = true;
+    }
+    double node_cost(int axis) const { return axis >= 0 ? costs_.traversal_cost : costs_.plane_cost; }
+    /// Of `all` parts that stand for a cell, how many on both sides of a plane make it useless: the plane
+    /// then costs at least `most`, which is at most the cost of testing all parts. The sides have no less
+    /// surface together than the cell, so a plane costs at least the tests of its smaller side.
+    std::uint32_t too_many(const Cell& cell, int axis, std::uint32_t all, double most) const {
+        const double share = (most - node_cost(axis)) / (costs_.intersection_cost * cell.size());
+        return static_cast<std::uint32_t>(std::ceil(std::clamp(share, 0.0, 1.0) * all));
+    }
+    /// How many parts are on the sides of a plane, or fewer once `enough` are on both.
+    static BspCounts count(const Cell& cell, const CutPlane<D>& plane, int axis, std::uint32_t enough) {
+        BspCounts counts{0, 0, cell.size()};
+        for (const auto& part : cell.inside) {
+            const auto [to_low, to_high] = sides_of(cell.inside, part, plane, axis);
             counts.low += to_low, counts.high += to_high;
+            if (counts.smaller() >= enough) break;
         }
         return counts;
     }
     /// The SAH of a plane, by the surfaces of its sides over that of the cell.
-    double cost(const Cell& cell, int axis, const Counts& counts, double low_share, double high_share) const {
-        const double node = axis >= 0 ? costs_.traversal_cost : costs_.plane_cost;
+    double cost(const Cell& cell, int axis, const BspCounts& counts, double low_share,
+                double high_share) const {
         const double bonus = counts.low == 0 || counts.high == 0 ? 1 - costs_.empty_bonus : 1;
         const double test = costs_.intersection_cost * bonus * cell.size() / counts.all;
-        return node + product(test, low_share * counts.low + high_share * counts.high);
-    }
-    /// Whether a plane separates no parts, or surely costs no less than `most`: the sides have no less
-    /// surface together than the cell, so the cost is at least that of the smaller side's primitives.
-    bool is_useless(const Cell& cell, int axis, const Counts& counts, double most) const {
-        if (counts.low == counts.all && counts.high == counts.all) return true;
-        const bool fewer_low = counts.low < counts.high;
-        return cost(cell, axis, counts, fewer_low, !fewer_low) >= most;
+        return node_cost(axis) + product(test, low_share * counts.low + high_share * counts.high);
     }
     void weigh(const Cell& cell, double whole, const Plane& candidate, Best& best) const {
         if (cell.size() > worth_a_task) executor_.look();
         const CutPlane<D> plane = candidate.in_double(margin_);
-        const Counts counts = count(cell, plane, candidate.axis, 1);
-        if (is_useless(cell, candidate.axis, counts, best.cost)) return;
+        const std::uint32_t enough = too_many(cell, candidate.axis, cell.size(), best.cost);
+        const BspCounts counts = count(cell, plane, candidate.axis, enough);
+        if (counts.smaller() >= enough) return;
         const auto [low, high] = cell.shape.surfaces(plane, whole);
         const double low_share = low / whole, high_share = high / whole;
         if (!(low_share > 0 && high_share > 0)) return;  // the plane misses the cell
@@ -166,21 +208,8 @@ private:
         return {rounded_to<T>(part.bounds.low[axis] - 1.5 * margin_),
                 rounded_to<T>(part.bounds.high[axis] + 1.5 * margin_)};
     }
-    /// Offers the best of the planes across an axis, by surfaces that are interpolated.
-    template <class Offer>
-    void offer_across(const Cell& cell, double whole, int axis, Offer offer) const {
-        const BspAxisCosts<T, D> costs({costs_.traversal_cost, costs_.intersection_cost, costs_.empty_bonus},
-                                       cell.shape, whole, cell.is_box, axis);
-        KdBest<T> best;
-        if (cell.size() > most_sorted)
-            offer_borders(cell, costs, axis, best);
-        else
-            offer_bounds(cell, costs, axis, best);
-        if (best.cost < std::numeric_limits<double>::infinity())
-            offer(Plane::across(axis, best.plane.position));
-    }
-    /// Offers the planes beside all parts. O(n log n).
-    void offer_bounds(const Cell& cell, const BspAxisCosts<T, D>& costs, int axis, KdBest<T>& best) const {
+    /// Finds the best plane across an axis beside a part. O(n log n).
+    void find_bound(const Cell& cell, const BspAxisCosts<T, D>& costs, int axis, KdBest<T>& best) const {
         std::vector<KdEvent<T>> events;
         events.reserve(2 * cell.size());
         for (std::uint32_t i = 0; i < cell.size(); ++i) {
@@ -191,8 +220,8 @@ private:
         std::sort(events.begin(), events.end());
         sweep_events(events, cell.size(), costs, best);
     }
-    /// Offers the borders of equal bins. O(n).
-    void offer_borders(const Cell& cell, const BspAxisCosts<T, D>& costs, int axis, KdBest<T>& best) const {
+    /// Finds the best border of equal bins along an axis. O(n).
+    void find_border(const Cell& cell, const BspAxisCosts<T, D>& costs, int axis, KdBest<T>& best) const {
         if (!(costs.width() > 0)) return;
         const double scale = static_cast<double>(bins) / costs.width();
         const auto bin = [&](double x) {
@@ -210,63 +239,42 @@ private:
     }
 
     /// Offers the best of the planes that parts suggest and that may cost less than `most`, by a guess: the
-    /// surfaces of a plane's sides are taken to be in proportion to their extents across it.
+    /// cell is taken to be a prism along the plane's normal, with the cell's volume, surface and extent.
+    /// `mean_depth` is the volume over the surface.
     template <class Offer>
-    void offer_through_parts(const Cell& cell, double most, Offer offer) const {
-        const std::uint32_t apart = cell.size() > samples_ ? cell.size() / samples_ : 1;
-        const std::uint32_t stride = (cell.size() + most_counted - 1) / most_counted;
+    void offer_through_parts(const Cell& cell, double mean_depth, double most, Offer offer) const {
+        // A node alone may cost as much. Sets without corners suggest no planes.
+        if (costs_.plane_cost >= most || cell.inside[0].count == 0) return;
+        const auto [samples, counted, weighed] = effort(cell);
+        const std::uint32_t apart = std::max(1u, cell.size() / samples);
+        const BspPartLanes<T, D> sample(cell.inside, (cell.size() + counted - 1) / counted);
         std::array<std::pair<double, Plane>, most_weighed> ranked;
         std::size_t kept = 0;
-        const auto rank = [&](const Plane& candidate) {
+        const auto rank = [&, weighed = weighed](const Plane& candidate) {
             const CutPlane<D> plane = candidate.in_double(margin_);
-            const Counts counts = count(cell, plane, candidate.axis, stride);
-            if (is_useless(cell, candidate.axis, counts, most)) return;
+            const double worst = kept == weighed ? ranked[kept - 1].first : most;
+            const std::uint32_t enough = too_many(cell, candidate.axis, sample.size(), worst);
+            const BspCounts counts = sample.count(plane, on_plane(plane, candidate.axis), enough);
+            if (counts.smaller() >= enough) return;
             const auto [low, high] = cell.shape.heights(plane);
-            const double share = std::clamp(-low / (high - low), 0.0, 1.0);
-            const double guess = cost(cell, candidate.axis, counts, share, 1 - share);
+            if (!(low < high)) return;
+            const double ends = std::min(2 * mean_depth / (high - low), 1.0);  // over the surface of the cell
+            const double below = product(std::clamp(-low / (high - low), 0.0, 1.0), 1 - ends);
+            const double guess = cost(cell, candidate.axis, counts, ends + below, 1 - below);
             // Insert the plane before those of higher guesses.
             std::size_t place = kept;
             while (place > 0 && guess < ranked[place - 1].first) --place;
-            if (place == most_weighed) return;
-            kept = std::min(kept + 1, most_weighed);
+            if (place == weighed) return;
+            kept = std::min(kept + 1, weighed);
             std::move_backward(ranked.begin() + static_cast<std::ptrdiff_t>(place),
                                ranked.begin() + static_cast<std::ptrdiff_t>(kept) - 1,
                                ranked.begin() + static_cast<std::ptrdiff_t>(kept));
             ranked[place] = {guess, candidate};
         };
         for (std::uint32_t i = 0; i < cell.size(); i += apart) {
-            if (cell.inside[i].count == 0) continue;
             if (const auto corners = corners_(cell.inside[i].id)) for_each_plane_through(*corners, rank);
         }
         for (std::size_t i = 0; i < kept; ++i) offer(ranked[i].second);
-    }
-
-    /// Offers the plane of a triangle, and the planes through its edges at right angles to it.
-    template <class Offer>
-    static void for_each_plane_through(const std::array<Vec<T, 3>, 3>& corners, Offer offer) {
-        const std::array<Vec3d, 3> p = {Vec3d(corners[0]), Vec3d(corners[1]), Vec3d(corners[2])};
-        const Vec3d normal = normalized(cross(p[1] - p[0], p[2] - p[0]));
-        if (!(length2(normal) > 0.5)) return;
-        offer_plane(normal, p[0], offer);
-        for (std::size_t i = 0; i < 3; ++i)
-            offer_plane(normalized(cross(normal, p[(i + 1) % 3] - p[i])), p[i], offer);
-    }
-    /// Offers the line of a segment, and the lines through its ends at right angles to it.
-    template <class Offer>
-    static void for_each_plane_through(const std::array<Vec<T, 2>, 2>& corners, Offer offer) {
-        const Vec2d a(corners[0]), b(corners[1]), along = normalized(b - a);
-        if (!(length2(along) > 0.5)) return;
-        offer_plane(Vec2d(-along[1], along[0]), a, offer);
-        offer_plane(along, a, offer);
-        offer_plane(along, b, offer);
-    }
-    template <class Offer>
-    static void offer_plane(const Vec<double, D>& normal, const Vec<double, D>& through, Offer offer) {
-        for (int axis = 0; axis < D; ++axis)
-            if (std::abs(normal[axis]) > 1 - 1e-9)
-                return offer(Plane::across(axis, rounded_to<T>(through[axis])));
-        const Vec<T, D> stored(normal);
-        offer(Plane{stored, rounded_to<T>(dot(Vec<double, D>(stored), through)), -1});
     }
 
     Executor& executor_;

@@ -55,6 +55,14 @@ public:
             if ((a < 0 && b > 0) || (a > 0 && b < 0)) add_corner(p + (q - p) * (a / (a - b)));
         }
     }
+    /// The corners of a part, or of its box.
+    std::uint32_t corner_count(const Part& part) const { return part.count > 0 ? part.count : 1u << D; }
+    Point corner(const Part& part, std::uint32_t i) const {
+        if (part.count > 0) return corners_[part.first + i];
+        Point p;
+        for (int k = 0; k < D; ++k) p[k] = (i >> k & 1u) != 0 ? part.bounds.high[k] : part.bounds.low[k];
+        return p;
+    }
     /// The least and the greatest height of a part over a plane. `axis` is −1 unless the plane lies across
     /// it.
     [[gnu::always_inline]] std::pair<double, double> heights(const Part& part, const CutPlane<D>& plane,
