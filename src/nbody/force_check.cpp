@@ -28,7 +28,8 @@ double sum_of_sizes(const Charges<double>& charges, std::size_t target) {
 
 template <std::floating_point T>
 ForceCheck::ForceCheck(const Charges<T>& charges, std::size_t targets, Threads threads)
-    : step_(std::max<std::size_t>(1, charges.places.size() / std::max<std::size_t>(1, targets))) {
+    // An odd step, since neighbours in a list are often unlike each other.
+    : step_(charges.places.size() / std::max<std::size_t>(1, targets) | 1) {
     const std::size_t n = charges.places.size();
     const detail::Extremes<T> extremes(charges);  // throws for bad numbers
     for (std::size_t i = 0; i < n; ++i) charges_.push_back(static_cast<double>(charges.charges[i]));

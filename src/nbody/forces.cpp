@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <hedgerow/index.h>
+#include <hedgerow/nbody/force_check.h>
 #include <hedgerow/nbody/kernels.h>
 #include <hedgerow/nbody/plain_fmm.h>
 #include <hedgerow/primitives/point_cloud.h>
@@ -200,16 +201,27 @@ std::vector<ActingCell> cells_acting_on(const Charges<T>& charges, const detail:
     return acting;
 }
 
-/// Without kernels: as the method is described.
+/// Without kernels: as the method is described. Cells are opened farther until errors that are measured at
+/// some charges are half of what is allowed. Returns whether they are.
 template <class T>
-void plain_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, Executor& executor) {
+bool plain_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, double accuracy,
+                  Executor& executor) {
     const Index<PointOrthtree<T, 3>, PointCloudView<T, 3>> index(PointCloudView<T, 3>(charges.places),
                                                                  {.leaf_size = 32}, executor);
     std::vector<double> all(charges.charges.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<double>(charges.charges[i]);
-    const auto sums = PlainFmm<6>(0.5)(index, all);
-    for (std::size_t i = 0; i < sums.size(); ++i)
-        found[i] = {static_cast<T>(sums[i].potential), Vec<T, 3>(sums[i].gradient)};
+    const ForceCheck check(charges, 1000, executor);
+    for (const double opening_angle : {0.5, 0.35, 0.25}) {
+        const auto sums = PlainFmm<6>(opening_angle)(index, all);
+        bool finite = true;  // powers of the distances of a body far out are beyond double
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            found[i] = {static_cast<T>(sums[i].potential), Vec<T, 3>(sums[i].gradient)};
+            finite = finite && std::isfinite(length2(found[i].gradient));
+        }
+        const ForceErrors errors = check.errors_of(std::span<const PotentialAt<T>>(found));
+        if (finite && errors.rms <= accuracy / 2 && errors.largest <= 5 * accuracy) return true;
+    }
+    return false;
 }
 
 template <class T>
@@ -270,10 +282,7 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
             return multipole_forces(charges, cube, targets, found, plan, options, kernel, extremes, ieee);
         };
         if (plain) {
-            plain_forces(charges, found, ieee);
-            // Powers of the distances of a body far out are beyond double.
-            const auto finite = [](const PotentialAt<T>& at) { return std::isfinite(length2(at.gradient)); };
-            if (!std::all_of(found.begin(), found.end(), finite)) direct_sum(charges, found, ieee);
+            if (!plain_forces(charges, found, options.accuracy, ieee)) direct_sum(charges, found, ieee);
         } else if (plan.precision != Precision::single || !by(of_order(*kernels->fmm_float, plan.order)))
             by(of_order(*kernels->fmm_double, plan.order));
     });
