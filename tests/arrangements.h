@@ -289,6 +289,12 @@ inline std::vector<NamedArrangement> open_arrangements() {
         });
         return a;
     });
+    add("light bodies within a shell", [](N n, S s) {
+        return each(n, s, [](Arrangement& into, N i, Random& r) {
+            const Vec3d out = r.direction<3>();
+            i % 2 == 0 ? into.add(out, 1) : into.add(out * 0.8 * std::cbrt(r.uniform()), 1e-9);
+        });
+    });
     return all;
 }
 

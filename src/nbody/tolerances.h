@@ -105,16 +105,21 @@ Strength strength_at(const FmmCells<R>& sources, const Spot& spot) {
 /// few targets that are far out or where gradients are small count as they should.
 constexpr double error_power = 4;
 
-/// Sets the tolerance and the spread of a leaf. size_of tells about the size of the gradient at each target,
-/// in the units of the cells.
-template <class R, class F>
-void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
-    // No charge is farther away than the far side of all of them; in a cube, those of its own images are.
+/// What errors are at most shares of at targets of a leaf, however small gradients are: a hundredth of all
+/// charge at the far side of all of them; in a cube, of its own images.
+template <class R>
+double least_size(const FmmCells<R>& sources, const FmmCells<R>& targets, std::uint32_t leaf) {
     const double farthest =
         std::max(length(offset(sources, 0, spot_of(targets, leaf).place)) +
                      static_cast<double>(sources.radius[0]) + static_cast<double>(targets.radius[leaf]),
                  sources.side / 2);
-    const double least = 0.01 * static_cast<double>(sources.weight[0]) / (farthest * farthest);
+    return 0.01 * static_cast<double>(sources.weight[0]) / (farthest * farthest);
+}
+/// Sets the tolerance and the spread of a leaf. size_of tells about the size of the gradient at each target,
+/// in the units of the cells.
+template <class R, class F>
+void set_leaf(const FmmCells<R>& sources, FmmCells<R>& targets, std::uint32_t leaf, int order, F size_of) {
+    const double least = least_size(sources, targets, leaf);
     const std::size_t first = targets.first[leaf], end = first + targets.count[leaf];
     const double per_radius = targets.radius[leaf] > 0 ? 1 / static_cast<double>(targets.radius[leaf]) : 0;
     thread_local std::vector<double> sizes;
