@@ -23,12 +23,14 @@ struct ForceOptions {
 /// in the order of the charges. Where charges are masses, the acceleration is G times the gradient.
 ///
 /// By the fast multipole method (nbody/operators.h) over an octree of the charges: its order, its precision
-/// and which cells act as a whole follow from the accuracy, by estimates of the errors. Forces add up to
-/// nothing but for roundings: 10⁻⁶ of the sum of their sizes where single precision suffices for pairs, down
-/// to an accuracy of 3·10⁻⁷ (in a periodic cube 4·10⁻⁶), else 10⁻¹³. Pairs are summed again in double where
-/// their roundings would make more than half of the error that is aimed at, so it is kept however close
-/// charges are. Bare charges in one place do nothing to each other. O(n), but O(n²) for charges that are
-/// nearer to each other than 2⁻⁴⁸ of the extent of all; the same bits for any executor.
+/// and which cells act as a whole follow from the accuracy, by estimates of the errors; where gradients turn
+/// out to be much less than estimated, as within a shell, errors are measured at some charges and forces
+/// found again if need be, which takes twice as long or more. Forces add up to nothing but for roundings:
+/// 10⁻⁶ of the sum of their sizes where single precision suffices for pairs, down to an accuracy of 3·10⁻⁷
+/// (in a periodic cube 4·10⁻⁶), else 10⁻¹³. Pairs are summed again in double where their roundings would make
+/// more than half of the error that is aimed at, so it is kept however close charges are. Bare charges in one
+/// place do nothing to each other. O(n), but O(n²) for charges that are nearer to each other than 2⁻⁴⁸ of the
+/// extent of all; the same bits for any executor.
 ///
 /// Throws InputError if there is not one charge and one element of `found` (and of `tides`) a place, for
 /// numbers that are not finite or beyond 2⁶⁰ (in double 2⁴⁸⁰), and UsageError for an accuracy out of its
