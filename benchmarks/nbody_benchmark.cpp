@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
                 avx512_rate().c_str(), compiler().c_str(), repeats);
     const auto floats = points<float>(count);
     const auto doubles = points<double>(count);
-    const Particles stars = plummer(count);
+    const Particles stars = plummer(count), clusters = two_clusters(count);
 
     const std::size_t sources = std::min<std::size_t>(count, 20000),
                       targets = std::min<std::size_t>(sources, 4096);
@@ -96,7 +96,8 @@ int main(int argc, char** argv) {
     const std::vector<double> charges(count, 1.0 / static_cast<double>(count));
     for (const auto& [scene, all_places] :
          {std::pair<const char*, std::span<const Vec3d>>("unit cube", doubles.points),
-          {"Plummer sphere", stars.places}}) {
+          {"Plummer sphere", stars.places},
+          {"pair of unlike clusters", clusters.places}}) {
         const std::span<const Vec3d> places = all_places;
         std::printf("forces: %zu charges of a %s\n", count, scene);
         Contest methods;
