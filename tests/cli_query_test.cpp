@@ -356,7 +356,7 @@ void expect_both_regions(const std::string& scene, const fs::path& folder) {
 }
 
 TEST_F(Query, RegionsAnswerAsTheLibraryDoes) {
-    expect_both_regions<float, TriangleMesh<float>>("gen:teapot:60", folder);
+    expect_both_regions<float, TriangleMesh<float>>("gen:teapot:300", folder);
     expect_both_regions<double, SphereSet<double, 3>>("gen:spheres:100", folder);
     expect_both_regions<float, PointCloud<float, 3>>("gen:points:500", folder);
     expect_both_regions<double, SegmentSet<double>>("gen:segments2d:100", folder);

@@ -106,7 +106,8 @@ public:
                 (to_low ? low : high).inside.add(cell.inside, part);
             }
         }
-        restore_shape(low), restore_shape(high);
+        const Box<double, D> whole = cell.shape.bounds();
+        restore_shape(low, whole), restore_shape(high, whole);
         return sides;
     }
 
@@ -150,14 +151,17 @@ private:
         return cell.size() > leaf_size_ &&
                std::min(costs_.traversal_cost, costs_.plane_cost) < costs_.intersection_cost * cell.size();
     }
-    /// Takes the box around the parts as the shape of a cell that is much shorter than its parts. Between
-    /// planes that coincide up to roundings a cell is a splinter, although within the margin of these planes
-    /// it holds all that lies along them.
-    void restore_shape(Cell& cell) const {
+    /// Takes the box around the parts, within the cell that was cut, as the shape of a cell that is much
+    /// shorter than that. Between planes that coincide up to roundings a cell is a splinter, although within
+    /// the margin of these planes it holds all that lies along them.
+    void restore_shape(Cell& cell, const Box<double, D>& within) const {
         if (!may_pay_to_cut(cell)) return;
         const auto length = [](const Box<double, D>& box) { return max_component(box.high - box.low); };
         Box<double, D> around;
         for (const auto& part : cell.inside) around.expand(part.bounds);
+        const auto margin = Vec<double, D>::all(margin_);
+        around = intersection(around, Box<double, D>{within.low - margin, within.high + margin});
+        if (around.empty()) return;
         if (!cell.shape.empty() && length(around) <= 2 * length(cell.shape.bounds())) return;
         cell.shape = Polytope<D>(around);
         cell.is_box = true;
