@@ -81,21 +81,25 @@ Strength strength_at(const FmmCells<R>& sources, const Spot& spot) {
         // No place within a cell is nearer to its charge than the cell is wide.
         const double reach = static_cast<double>(extents[other]), near = std::max(distance, reach);
         if (!(near > 0)) continue;
-        const double share = reach / near;
-        if (periodic) doubt += weight / (near * near) * (share * share);
         // What is softened acts about as Plummer's charges do.
         const double soft = std::max(static_cast<double>(sources.softest[other]), spot.softest) / 3,
-                     softened = std::sqrt(near * near + soft * soft), far = softened + spot.radius,
-                     per_d2 = 1 / (far * far),
-                     along = (periodic ? 1 / (softened * softened) : per_d2) / softened;
+                     softened = soft > 0 ? std::sqrt(near * near + soft * soft) : near,
+                     far = softened + spot.radius, least = std::min(softened, near + spot.radius);
+        if (!periodic) {
+            const double per_volume = 1 / (far * far * softened);
+            sum += apart * (charge * per_volume), size += weight * per_volume * least;
+            continue;
+        }
+        const double per_softened = 1 / softened, along = per_softened * per_softened * per_softened;
         const auto between = [&](double x) {
             const double t = 2 * std::abs(x) * per_side;
             return x * (1 - t * t * t);
         };
         sum += Vec3d(between(apart[0]), between(apart[1]), between(apart[2])) * (charge * along);
-        size += weight * per_d2 * std::min(1.0, (near + spot.radius) / softened);
-        size_here += weight / (softened * softened);
-        bend += weight / (softened * softened * softened);
+        size += weight / (far * far) * (per_softened * least);
+        size_here += weight * per_softened * per_softened, bend += weight * along;
+        const double share = reach / near;
+        doubt += weight / (near * near) * (share * share);
     }
     const double left = length(sum) - doubt;
     return {std::max(left, 0.01 * size),
