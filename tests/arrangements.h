@@ -313,11 +313,12 @@ inline std::vector<NamedArrangement> periodic_arrangements() {
     });
     const std::pair<const char*, Vec3d> corners[] = {
         {"corner", {0, 0, 0}}, {"edge", {0, 1, 0.3}}, {"face", {0.6, 0, 0.2}}, {"middle", {0.5, 0.5, 0.5}}};
-    for (const auto& [name, at] : corners) {
-        add(std::string("clump at a ") + name, [at](N n, S s) { return clump(n, s, at, 1e-3, 0.5, 1); });
-        add(std::string("heavy clump at a ") + name,
-            [at](N n, S s) { return clump(n, s, at, 3e-3, 0.9, 100); });
-        add(std::string("clump at a ") + name + " and one", [at](N n, S s) {
+    for (const auto& corner : corners) {
+        const std::string name = corner.first;
+        const Vec3d at = corner.second;
+        add("clump at a " + name, [at](N n, S s) { return clump(n, s, at, 1e-3, 0.5, 1); });
+        add("heavy clump at a " + name, [at](N n, S s) { return clump(n, s, at, 3e-3, 0.9, 100); });
+        add("clump at a " + name + " and one", [at](N n, S s) {
             Arrangement a = clump(n - 1, s, at, 3e-3, 1, 1);
             a.add({0.49, 0.1, 0.51}, 0.01);
             return a;

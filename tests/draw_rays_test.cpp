@@ -8,6 +8,7 @@
 #include <hedgerow/ask/hausdorff.h>
 #include <hedgerow/io/image.h>
 #include <hedgerow/scenes/generate.h>
+#include <hedgerow/structures/brute_force.h>
 
 #include "svg_elements.h"
 #include "tool.h"

@@ -110,7 +110,8 @@ void expect_own_primitives_ask() {
     expect_again([&](std::size_t i) { return count_overlapping(index, ball(i)); },
                  all([&](std::size_t i) { return count_overlapping(oracle, ball(i)); }));
 
-    const Solid solid(index), of_oracle(oracle);
+    const Solid solid(index);
+    const Solid of_oracle(oracle);
     expect_again([&](std::size_t i) { return solid.winding_number(place(i)); },
                  all([&](std::size_t i) { return of_oracle.winding_number(place(i)); }));
     // Expansions hang on the tree, so the solid itself is the oracle.
