@@ -111,20 +111,15 @@ TEST_F(DrawRays, TwoMeshesAreFarthestWhereTheLibrarySays) {
 }
 
 TEST_F(DrawRays, WhatHasNoSuchPictureIsRefused) {
-    const auto refused = [&](const std::string& options, const std::string& reason) {
-        const auto r = run("draw " + options);
-        EXPECT_NE(r.code, 0) << options;
-        EXPECT_NE(r.output.find(reason), std::string::npos) << options << "\n" << r.output;
-    };
     const std::string svg = " -o " + file("x.svg"), png = " -o " + file("x.png");
-    refused("gen:segments2d:9 --fan 9" + svg, "--fan requires --ray");
-    refused("gen:segments2d:9 --ray=0,0,1,0 --angle 9" + svg, "--angle requires --fan");
-    refused("gen:segments2d:9 --ray=0,0,1,0 --fan 9" + png, "is written as .svg");
-    refused("gen:teapot:200 --ray=9,0,1,-1,0,0 --fan 9 --beam" + svg, "flat scene of segments");
-    refused("gen:segments2d:9 --ray=0,0,1,0 --cone 9" + png, "is flat");
-    refused("gen:cube --ray=9,9,9,1,0,0 --cone 9" + png, "hits nothing");
-    refused("gen:cube --hausdorff gen:cube" + svg, "the same set");
-    refused("gen:cube --hausdorff gen:segments2d:9" + svg, "triangles or points in one space");
+    expect_usage("draw gen:segments2d:9 --fan 9" + svg, "--fan requires --ray");
+    expect_usage("draw gen:segments2d:9 --ray=0,0,1,0 --angle 9" + svg, "--angle requires --fan");
+    expect_usage("draw gen:segments2d:9 --ray=0,0,1,0 --fan 9" + png, "is written as .svg");
+    expect_bad("draw gen:teapot:200 --ray=9,0,1,-1,0,0 --fan 9 --beam" + svg, "flat scene of segments");
+    expect_bad("draw gen:segments2d:9 --ray=0,0,1,0 --cone 9" + png, "is flat");
+    expect_bad("draw gen:cube --ray=9,9,9,1,0,0 --cone 9" + png, "hits nothing");
+    expect_bad("draw gen:cube --hausdorff gen:cube" + svg, "the same set");
+    expect_bad("draw gen:cube --hausdorff gen:segments2d:9" + svg, "triangles or points in one space");
 }
 
 }  // namespace

@@ -20,8 +20,7 @@ inline Image::Pixel pixel_of(const std::string& colour) {
     return p;
 }
 
-/// A pale view of the scene, and the depth of its surface at
-/// each pixel.
+/// A pale view of the scene, and the depth of its surface at each pixel.
 struct Background {
     RayMaker maker;
     Image image;

@@ -82,12 +82,10 @@ void add_far_images(const FmmCells<R>& sources, FmmCells<R>& at, double accuracy
     if (!at.tides.empty())
         images.bend({at.x.data(), at.y.data(), at.z.data(), targets}, at.tide_rows(), executor);
 }
-/// Finds forces at targets, or at the charges themselves. Returns the targets where gradients are less than
-/// half of what tolerances were set by: errors may be beyond the accuracy there.
+/// Finds forces at targets, or at the charges themselves. Returns what set_tolerances does.
 template <class R, class T>
-std::vector<std::size_t> act(const Sorted<R, T>& sources, Sorted<R, T>& at, std::span<PotentialAt<T>> found,
-                             const Plan& plan, const ForceOptions& options, const FmmKernel<R>& kernel,
-                             const Units& units, Executor& executor) {
+double act(const Sorted<R, T>& sources, Sorted<R, T>& at, std::span<PotentialAt<T>> found, const Plan& plan,
+           const ForceOptions& options, const FmmKernel<R>& kernel, const Units& units, Executor& executor) {
     const double share = set_tolerances(sources, at, options, plan, kernel.order, units, executor);
     FmmCells<R>& cells = at.cells;
     cells.tides.resize(6 * options.tides.size());
@@ -103,6 +101,14 @@ std::vector<std::size_t> act(const Sorted<R, T>& sources, Sorted<R, T>& at, std:
     if (sources.cells.side > 0) add_far_images(sources.cells, cells, options.accuracy, executor);
     hand_out(at, units, found, executor);
     hand_out(at, units, options.tides, executor);
+    return share;
+}
+/// The targets where gradients are less than half of what tolerances were set by: errors may be beyond the
+/// accuracy there. `share` is what `act` returned.
+template <class R, class T>
+std::vector<std::size_t> less_than_estimated(const Sorted<R, T>& sources, const Sorted<R, T>& at,
+                                             double share) {
+    const FmmCells<R>& cells = at.cells;
     std::vector<std::size_t> less;
     for (std::uint32_t leaf = 0; leaf < cells.size(); ++leaf) {
         if (!cells.is_leaf(leaf)) continue;
@@ -164,9 +170,13 @@ bool multipole_forces(const Charges<T>& charges, const RepeatingCube& cube, cons
     const Targets<T> targets =
         others != nullptr ? *others : Targets<T>(charges.places, charges.lengths, charges.charges);
     const auto act_at = [&](const Targets<T>& some, std::span<PotentialAt<T>> here, const ForceOptions& how) {
-        if (others == nullptr) return act(sources, sources, here, plan, how, kernel, units, executor);
+        const auto act_on = [&](Sorted<R, T>& at) {
+            const double share = act(sources, at, here, plan, how, kernel, units, executor);
+            return how.sizes.empty() ? less_than_estimated(sources, at, share) : std::vector<std::size_t>();
+        };
+        if (others == nullptr) return act_on(sources);
         Sorted<R, T> at(some, charges, units, plan.leaf_size, kernel, executor);
-        return act(sources, at, here, plan, how, kernel, units, executor);
+        return act_on(at);
     };
     // Nothing acts on sources that are no targets.
     if (others != nullptr)
@@ -174,12 +184,10 @@ bool multipole_forces(const Charges<T>& charges, const RepeatingCube& cube, cons
                   std::numeric_limits<R>::infinity());
     const std::vector<std::size_t> less = act_at(targets, found, options);
     const std::size_t few = others == nullptr ? found.size() / 1000 : 0;
-    const double farthest = 2 * static_cast<double>(sources.cells.radius[0]),
-                 least = units.gradient() * 0.01 * static_cast<double>(sources.cells.weight[0]) /
-                         (farthest * farthest);
+    const double least = units.gradient() * least_size(sources.cells, sources.cells, 0);
     ForceOptions how = options;
     constexpr int most_rounds = 8;
-    for (int round = 0; round < most_rounds && options.sizes.empty() && less.size() > few &&
+    for (int round = 0; round < most_rounds && less.size() > few &&
                         !are_accurate<T>(charges, targets, less, found, least, options.accuracy, executor);
          ++round) {
         if (round > 0) how.accuracy /= 2;
