@@ -53,6 +53,14 @@ TEST_F(Files, CoordinatesThatFloatsLoseAreReadInDouble) {
     const auto bench = run("bench --quick --sets primary " + file("utm.obj"));
     expect_told(bench, "floats move its coordinates by up to 0.2");
     EXPECT_EQ(bench.output.find("--precision"), std::string::npos);
+    // Files of which parts are read after each other.
+    write("utm.stl",
+          "solid a\nfacet normal 0 0 1\nouter loop\nvertex 431234 5412345.2 210\nvertex 431234.5 5412345.2 "
+          "210\nvertex 431234 5412345.7 210\nendloop\nendfacet\nendsolid a\n");
+    const std::string raster =
+        "render --visibility raster --size 8x8 -o " + file("p.png") + " " + file("utm.stl");
+    expect_told(run(raster), "is read in double, since floats would move its coordinates by up to 0.2");
+    expect_told(run(raster + " --precision float"), "floats move its coordinates by up to 0.2");
     // Nothing is said of ordinary files.
     write("a.csv", "x,y,z\n0.1,0.2,0.3\n1.1,0.2,0.3\n0.1,1.2,0.3\n");
     EXPECT_EQ(run("info " + file("a.csv") + " --quiet").output.find("double"), std::string::npos);

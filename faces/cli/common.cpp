@@ -55,17 +55,16 @@ namespace {
 std::uint64_t all_dropped = 0;
 }  // namespace
 
-void refuse_floats(const Common& c, const LoadReport& report) {
-    if (!c.quiet)
-        fmt::print(
-            stderr,
-            "hedgerow: {}: is read in double, since floats would move its coordinates by up to {:.2g}. "
-            "--precision float reads it in float all the same\n",
-            c.scene, report.rounding);
-    throw DoublesNeeded();
-}
-
 void tell(const Common& c, const LoadReport& report) {
+    if (report.loses_detail && c.precision == "auto") {
+        if (!c.quiet)
+            fmt::print(
+                stderr,
+                "hedgerow: {}: is read in double, since floats would move its coordinates by up to {:.2g}. "
+                "--precision float reads it in float all the same\n",
+                c.scene, report.rounding);
+        throw DoublesNeeded();
+    }
     for (const std::string& warning : report.warnings) fmt::print(stderr, "hedgerow: {}\n", warning);
     if (report.loses_detail)
         fmt::print(stderr, "hedgerow: {}: floats move its coordinates by up to {:.2g}, which matters\n",

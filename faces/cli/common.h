@@ -45,9 +45,9 @@ Scene<T> generate_scene(const Common& c, SceneSpec spec) {
 }
 /// Thrown where floats lose detail of a file, and the user named no precision.
 struct DoublesNeeded {};
-/// Tells that a file will be read in double, and throws DoublesNeeded.
-[[noreturn]] void refuse_floats(const Common& c, const LoadReport& report);
-/// Prints to stderr what the loader of a file reports, and remembers for print_json what was left out.
+/// Prints to stderr what the loader of a file reports, and remembers for print_json what was left out. Where
+/// floats lose detail and the user named no precision: tells that the file will be read in double, and throws
+/// DoublesNeeded.
 void tell(const Common& c, const LoadReport& report);
 
 /// Loads or generates the scene. `told`, if not null, gets what the loader of a file reports.
@@ -59,7 +59,6 @@ Scene<T> load(const Common& c, LoadReport* told = nullptr) {
         ProgressLine line("loading " + c.scene, c.quiet, "bytes");
         return load_scene<T>(c.scene, {c.drop_bad, &report}, line.progress());
     }();
-    if (report.loses_detail && c.precision == "auto") refuse_floats(c, report);
     tell(c, report);
     if (told != nullptr) *told = std::move(report);
     return scene;

@@ -24,17 +24,23 @@ namespace {
 const std::string cone_colour = "#1b5fa8", footprint_colour = "#d0103a";
 constexpr int rim_rays = 240, drawn_rays = 24;
 
+/// The ellipse of all middle + a cos φ + b sin φ.
+std::vector<Vec3d> ellipse_of(const Vec3d& middle, const Vec3d& a, const Vec3d& b) {
+    std::vector<Vec3d> ellipse;
+    for (int i = 0; i < rim_rays; ++i) {
+        const double turn = i * (360 * degree) / rim_rays;
+        ellipse.push_back(middle + a * cosine(turn) + b * sine(turn));
+    }
+    return ellipse;
+}
 /// Directions of length 1 on the rim of a cone about an axis of length 1. `slope` is the tangent of the angle
 /// between the axis and the rim.
 std::vector<Vec3d> rim_of(const Vec3d& axis, double slope) {
     Vec3d beside;
     beside[std::abs(axis[0]) < 0.5 ? 0 : 1] = 1;
-    const Vec3d u = normalized(cross(axis, beside)), v = cross(axis, u);
-    std::vector<Vec3d> rim;
-    for (int i = 0; i < rim_rays; ++i) {
-        const double turn = i * (360 * degree) / rim_rays;
-        rim.push_back(normalized(axis + (u * cosine(turn) + v * sine(turn)) * slope));
-    }
+    const Vec3d u = normalized(cross(axis, beside));
+    std::vector<Vec3d> rim = ellipse_of(axis, u * slope, cross(axis, u) * slope);
+    for (Vec3d& d : rim) d = normalized(d);
     return rim;
 }
 /// Draws a closed line through points.
@@ -72,11 +78,6 @@ int draw_cone_in(const DrawArguments& a, const P& set, const Seen& seen) {
         hits += bool(found);
         ends.push_back(found ? Vec3d(position(seen, beside, found)) : eye + d * distance);
     }
-    std::vector<Vec3d> ellipse;
-    for (int i = 0; i < rim_rays; ++i) {
-        const double turn = i * (360 * degree) / rim_rays;
-        ellipse.push_back(place + part.a * cosine(turn) + part.b * sine(turn));
-    }
     // Draw the cone, what its rim meets and the footprint over a pale view.
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
@@ -93,7 +94,7 @@ int draw_cone_in(const DrawArguments& a, const P& set, const Seen& seen) {
         wires.draw({Vec3f(eye), Vec3f(ends[i]), pixel_of(cone_colour), 0.8f * unit});
     wires.draw({Vec3f(eye), Vec3f(place), pixel_of("#111111"), 1.2f * unit});
     draw_loop(wires, ends, cone_colour, 1.8f * unit);
-    draw_loop(wires, ellipse, footprint_colour, 2.4f * unit);
+    draw_loop(wires, ellipse_of(place, part.a, part.b), footprint_colour, 2.4f * unit);
     const double wide = 2 * length(part.b), high = 2 * length(part.a);
     const std::vector<std::string> notes = {
         fmt::format("a cone of {:.3g} degrees, {:.3g} wide where its axis ends, at {:.3g}", a.cone,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hedgerow::cli {
 
@@ -17,7 +18,7 @@ bool Labels::free(const Box2d& box) const {
 std::optional<Vec2d> Labels::place(const Vec2d& wanted, const Vec2d& size, double reach) {
     // Try places on circles around the wanted one, 4 pixels apart and in 24 directions.
     constexpr int directions = 24;
-    constexpr double step = 4, turn = 2 * 3.14159265358979 / directions;
+    constexpr double step = 4, turn = 2 * std::numbers::pi / directions;
     for (double away = 0; away <= reach; away += step)
         for (int d = 0; d < (away > 0 ? directions : 1); ++d) {
             const Vec2d middle = wanted + Vec2d(std::sin(turn * d), -std::cos(turn * d)) * away;

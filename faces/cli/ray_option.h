@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ namespace hedgerow::cli {
 /// Cells that no ray visits are drawn too, in the background, if a structure has at most this many cells.
 inline constexpr std::size_t most_behind = 20'000;
 
-inline constexpr double degree = 3.141592653589793 / 180;
+inline constexpr double degree = std::numbers::pi / 180;
 
 template <class T>
 Section<2> section_along(const Ray<T, 2>&, const Upright&) {
@@ -70,7 +71,7 @@ template <class T, int D>
 std::vector<Ray<T, D>> fan_of(const DrawArguments& a, const Ray<T, D>& middle, const Section<D>& section) {
     std::vector<Ray<T, D>> rays;
     for (int i = 0; i < a.fan; ++i) {
-        const double share = a.fan > 1 ? double(i) / (a.fan - 1) - 0.5 : 0;
+        const double share = double(i) / (a.fan - 1) - 0.5;
         rays.push_back({middle.origin, Vec<T, D>(turned(middle, section, share * a.angle * degree))});
     }
     return rays;

@@ -102,6 +102,7 @@ int render_stream(const RenderArguments& a) {
         for (const auto& p : part.vertices) box.expand(Vec3f(p));
         o.primitives += part.size();
     });
+    tell(a, stream->report());
     o.upright = a.view.up == "auto" ? upright_by_format(a.scene, {}) : Upright{a.view.up[0] - 'x', ""};
     const RenderOptions options = options_of(a, box, o.upright);
     return finish(a, PictureParts<T>{rasterising, rasterising}, options, std::move(o), {{}, progress.cancel});

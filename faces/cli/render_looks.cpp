@@ -1,5 +1,7 @@
 #include "render_looks.h"
 
+#include <numbers>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -49,7 +51,7 @@ Camera camera_of(const RenderArguments& a, const Model<T>& model, const Camera& 
     c.up = Vec3f(normalized(from.to_world.vector({0, 1, 0})));
     if (const auto* const view = std::get_if<PerspectiveView>(&from.view))
         c.projection = Projection::perspective,
-        c.field_of_view = static_cast<float>(view->field_of_view * 180 / 3.14159265358979323846);
+        c.field_of_view = static_cast<float>(view->field_of_view * 180 / std::numbers::pi);
     else
         c.projection = Projection::orthographic,
         c.height = static_cast<float>(std::get<OrthographicView>(from.view).height);
@@ -64,7 +66,7 @@ Environment environment_of(const RenderArguments& a, const Vec3f& up) {
             "hedgerow: warning: {} has {}x{} pixels, where a panorama in latitude and longitude is twice "
             "as wide as high\n",
             a.environment, p.width, p.height);
-    const double angle = a.environment_rotation * (3.14159265358979323846 / 180);
+    const double angle = a.environment_rotation * (std::numbers::pi / 180);
     const Vec3d turned_x(cosine(angle), 0, -sine(angle)), turned_z(sine(angle), 0, cosine(angle));
     for (Vec3d& row : environment.to_world = upright_environment(up))
         row = Vec3d(dot(row, turned_x), row[1], dot(row, turned_z));

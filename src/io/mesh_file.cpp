@@ -91,7 +91,9 @@ void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, c
     file.expect(mesh.vertices.size() + mesh.size());
     write(file, mesh);
     file.commit();
-    if (report != nullptr) *report = detail::rounding_report(file.rounding(), mesh.vertices);
+    if (report != nullptr)
+        *report =
+            detail::rounding_report(file.rounding(), detail::box_of(mesh.vertices), mesh.vertices.size());
 }
 
 template TriangleMesh<float> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);

@@ -4,6 +4,7 @@
 
 #include <hedgerow/base/error.h>
 
+#include "load_report.h"
 #include "readers.h"
 #include "stl_facets.h"
 
@@ -22,18 +23,20 @@ public:
         facets_.reset();
         file_ = std::make_unique<detail::ByteSource>(path_, progress_);
         facets_.emplace(*file_);
-        facet_ = 0;
+        facet_ = 0, box_ = {};
     }
     void next(TriangleMesh<T>& part) override {
         part.vertices.clear(), part.triangles.clear(), part.faces.clear();
         for (std::uint32_t i = 0; i < this->part_size && facets_->next(corners_); ++i, ++facet_) {
             check();
+            for (const Vec<T, 3>& p : corners_) box_.expand(Vec3d(p));
             part.vertices.insert(part.vertices.end(), corners_.begin(), corners_.end());
             part.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
         }
         if (part.size() == 0 && facet_ == 0)
             file_->fail("holds neither faces nor points. Is it the right file?");
     }
+    LoadReport report() override { return detail::report_of(*file_, box_, 3 * facet_); }
 
 private:
     void check() const {
@@ -56,6 +59,7 @@ private:
     std::optional<detail::StlFacets<T>> facets_;
     std::vector<Vec<T, 3>> corners_;
     std::uint64_t facet_ = 0;
+    Box3d box_;  // of the facets that have been read
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include <hedgerow/io/load_options.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 
@@ -27,6 +28,9 @@ public:
     /// Replaces what the mesh holds by the next part; it is empty after the last. Throws InputError for
     /// faults of a file, and Cancelled.
     virtual void next(TriangleMesh<T>& part) = 0;
+    /// What the loader of a file tells of what has been read since the first triangle. Each warning is given
+    /// once.
+    virtual LoadReport report() { return {}; }
 
     /// Calls f(part, first) for all parts from the first triangle on; `first` is the number of the part's
     /// first triangle.

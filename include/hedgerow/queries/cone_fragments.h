@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include <hedgerow/queries/candidates.h>
@@ -43,7 +44,7 @@ private:
             y[static_cast<std::size_t>(i)] = radius * std::sin(angle);
         }
     }
-    static constexpr double pi = 3.14159265358979323846;
+    static constexpr double pi = std::numbers::pi;
 };
 
 /// A triangle that is the nearest at some samples (a bit each), and its least depth at these.

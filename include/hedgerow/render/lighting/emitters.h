@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -160,7 +161,7 @@ public:
     }
 
 private:
-    static constexpr double pi = 3.141592653589793;
+    static constexpr double pi = std::numbers::pi;
 
     /// The power; that of the sun and the environment is what a disc of this area receives.
     double unrounded_power(std::size_t i, double disc) const {

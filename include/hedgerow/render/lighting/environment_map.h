@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
@@ -114,7 +115,7 @@ public:
     std::size_t rows() const { return rows_; }
 
 private:
-    static constexpr double pi = 3.141592653589793;
+    static constexpr double pi = std::numbers::pi;
 
     void check_rotation() const {
         const auto& m = to_world_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/geometry/elementary.h>
@@ -34,7 +35,7 @@ namespace detail {
 
 /// A cone that contains both. Its angle is widened beyond the rounding of its axis to float.
 inline NormalCone merged(const NormalCone& a, const NormalCone& b) {
-    constexpr double pi = 3.141592653589793, slack = 4e-7;
+    constexpr double pi = std::numbers::pi, slack = 4e-7;
     const auto angle = [](const NormalCone& c) {
         return arc_tangent(static_cast<double>(c.sine), static_cast<double>(c.cosine));
     };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -128,7 +129,7 @@ public:
     }
 
 private:
-    static constexpr double pi = 3.141592653589793;
+    static constexpr double pi = std::numbers::pi;
 
     static bool is_light(const Vec3f& c) { return finite(c) && c[0] >= 0 && c[1] >= 0 && c[2] >= 0; }
     /// The texel that stands for one whose column and row may each be one outside.
