@@ -39,15 +39,15 @@ inline Arrangement made(const ForceQuestion& q) {
     return all;
 }
 /// The errors of the forces that are asked for, as shares of the accuracy: the greatest of the rms, a tenth
-/// of the largest but a thousandth and, in open space, a tenth of the largest of potentials. Adds the number
-/// of forces to `questions`.
+/// of the largest but a thousandth and, in open space, a thirtieth of the largest of potentials. Adds the
+/// number of forces to `questions`.
 inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
     Arrangement all = made(q);
     const std::size_t charges = all.size();
     if (charges == 0) return 0;
     const auto share = [&](const FoundErrors& errors) {
         const double potential = all.period > 0 ? 0 : errors.potential;  // those of neutral cubes cancel
-        return std::max(errors.excess(q.accuracy), potential / 10 / q.accuracy);
+        return std::max(errors.excess(q.accuracy), potential / 30 / q.accuracy);
     };
     std::vector<PotentialAt<double>> found(charges);
     if (q.at_targets) {

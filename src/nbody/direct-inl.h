@@ -18,9 +18,8 @@ namespace hedgerow::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// 1/√x from the processor's estimate e of b bits, by steps of Newton's: with h = 1 − x·e², a step e·(1 + h/2)
-// errs by 3/8·h², and e·(1 + h/2 + 3/8·h²) by 5/16·h³.
-// In float one step suffices for 2⁻²¹, two for about the last bit (`precise`).
+// 1/√x from the processor's estimate e, by steps of Newton's: with h = 1 − x·e², a step e·(1 + h/2) errs by
+// 3/8·h². In float one step suffices for 2⁻²¹, two for about the last bit (`precise`); in double two do.
 template <bool precise = false, class F, class V = hn::Vec<F>>
 HWY_INLINE V inverse_root(F f, V x) {
     using T = hn::TFromD<F>;
@@ -39,9 +38,7 @@ HWY_INLINE V inverse_root(F f, V x) {
     } else {
 #if HWY_TARGET == HWY_AVX3
         const V e = V{_mm512_rsqrt14_pd(x.raw)};
-        const V h = error(e);
-        const V correction = hn::Mul(h, hn::MulAdd(h, hn::Set(f, T(0.375)), half));
-        return hn::MulAdd(e, correction, e);
+        return step(step(e));
 #else
         return hn::Div(one, hn::Sqrt(x));
 #endif

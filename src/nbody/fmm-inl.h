@@ -70,6 +70,8 @@ class Fmm {
     static constexpr std::uint32_t most_children = E::most_children;
     // The sum of two radii over the distance of the centers stays below this: no estimate holds near 1.
     static constexpr double opening_angle = 0.8;
+    // A cell without a radius has the scale of its parent. Powers of that over a distance overflow nearer by.
+    static constexpr double most_scale = 16;
 
 public:
     Fmm(const FmmCells<T>& sources, FmmCells<T>& targets)
@@ -114,7 +116,8 @@ public:
     }
 
     // The method of Barnes and Hut for the targets of a leaf together: a cell acts by its multipole, or as
-    // one charge, if its radius is less than so many times the least distance of its center from them.
+    // one charge, if its radius is less than so many times the least distance of its center from them. One
+    // without a radius is one charge.
     void walk_group(std::uint32_t leaf, double angle, bool by_multipoles) {
         pairs_.near.clear(), pairs_.single.clear(), small_.clear();
         stack_.assign(1, 0);
@@ -128,7 +131,8 @@ public:
                          radius = double(sources_.radius[source]),
                          soft = double(HWY_MAX(sources_.softest[source], targets_.softest[leaf]));
             if (radius < angle * distance && radius + soft < distance)
-                by_multipoles ? small_.push_back(sources_.itself(source)) : pairs_.single.push_back(source);
+                by_multipoles&& radius > 0 ? small_.push_back(sources_.itself(source))
+                                           : pairs_.single.push_back(source);
             else if (!sources_.is_leaf(source))
                 for (std::uint32_t i = 0; i < sources_.children[source]; ++i)
                     stack_.push_back(sources_.child[source] + i);
@@ -256,8 +260,10 @@ private:
             const auto own = [&](const std::vector<T>& all) HWY_ATTR { return hn::Set(f, all[one]); };
             const W radii = row(cells.radius), radius = own(ones.radius), both = hn::Add(radii, radius);
             const W soft = hn::Max(row(cells.softest), own(ones.softest));
-            const auto apart = hn::And(hn::Lt(both, hn::Mul(hn::Set(f, T(opening_angle)), distance)),
-                                       hn::Lt(hn::Add(both, soft), distance));
+            const W scale = hn::Max(row(cells.scale), own(ones.scale));
+            const auto apart = hn::And(hn::And(hn::Lt(both, hn::Mul(hn::Set(f, T(opening_angle)), distance)),
+                                               hn::Lt(hn::Add(both, soft), distance)),
+                                       hn::Lt(scale, hn::Mul(hn::Set(f, T(most_scale)), distance)));
             const auto there =
                 errors(f, distance, own(ones.weight), own(ones.reach), radius, row(cells.spread));
             const auto here =
@@ -281,7 +287,8 @@ private:
         const T distance = static_cast<T>(std::sqrt(dx * dx + dy * dy + dz * dz));
         const T both = leaves.radius[leaf] + cells.radius[c];
         if (!(both < T(opening_angle) * distance &&
-              both + HWY_MAX(leaves.softest[leaf], cells.softest[c]) < distance))
+              both + HWY_MAX(leaves.softest[leaf], cells.softest[c]) < distance &&
+              HWY_MAX(leaves.scale[leaf], cells.scale[c]) < T(most_scale) * distance))
             return false;
         const hn::CappedTag<T, 1> f;
         const auto set = [&](T x) { return hn::Set(f, x); };

@@ -9,7 +9,9 @@ namespace hedgerow {
 
 struct ForceOptions {
     /// The error that is aimed at: the root of the mean square of |error of a gradient| / |gradient|, where
-    /// the second is at least a hundredth of Σ |q|/r². From 1e-9 to 0.1.
+    /// the second is at least a hundredth of Σ |q|/r². From 1e-9 to 0.1. Potentials err by less, as shares of
+    /// Σ |q|/r, but by up to 30 times as much in tight clumps, where gradients are far greater than those of
+    /// all charges outside.
     double accuracy = 1e-3;
     /// About the size of each gradient, if it is known, as of a step before: less to compute, and cells are
     /// taken as a whole as far as the accuracy allows. Empty: it is estimated.
