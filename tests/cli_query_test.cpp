@@ -524,7 +524,28 @@ TEST_F(Query, PairsWithinARadiusAnswerAsTheLibraryDoes) {
     expect_pairs("gen:points:500");
     pairs_within(build(a), build(b), {.radius = 0.25}, pairs);
     expect_pairs("gen:points:500 --with gen:points:200");
+    // The neighbours of each, also where space repeats.
+    NeighbourLists<double> lists;
+    for (const bool periodic : {false, true}) {
+        const Periods<3> periods(periodic ? 1 : 0, periodic ? 1.5 : 0, 0);
+        neighbours_within(a.points, 0.25, lists, {.periods = periods, .distances = true});
+        std::vector<double> want;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            for (std::size_t k = lists.offsets[i]; k < lists.offsets[i + 1]; ++k)
+                want.insert(want.end(), {double(i), double(lists.ids[k]), std::sqrt(lists.distances2[k])});
+        EXPECT_GT(want.size(), 0u);
+        expect_done("query neighbours-within gen:points:500 --radius 0.25 --precision double --quiet -o " +
+                    file("n.npy") + (periodic ? " --period 1,1.5,0" : ""));
+        EXPECT_EQ(rows_of(file("n.npy"), {"a", "b", "distance"}), want);
+    }
     const std::string to = " -o " + file("x.csv");
+    expect_usage("query neighbours-within gen:points --radius 1 --period 1,2" + to, "give one length, or 3");
+    expect_usage("query neighbours-within gen:points --radius 1 --period -1" + to, "is not a length");
+    expect_usage("query pairs-within gen:points --with gen:points --radius 1 --period 1" + to,
+                 "leave out --with");
+    expect_usage("query nearest gen:points -k 1 --period 1 --from " + file("n.npy") + to,
+                 "takes no --period");
+    expect_bad("query neighbours-within gen:cube --radius 1" + to, "points");
     expect_usage("query pairs-within gen:points" + to, "needs --radius");
     expect_usage("query pairs-within gen:points --radius -1" + to, "at least 0");
     expect_bad("query pairs-within gen:cube --radius 1" + to, "points");

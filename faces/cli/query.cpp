@@ -310,8 +310,14 @@ Run add_query(CLI::App& verb) {
     verb.add_option("-k,--count", a->count, "nearest, first-hits: how many to find");
     verb.add_option(
         "--radius", a->radius,
-        "the distance, not squared. within and pairs-within need it; closest-point and nearest find "
-        "nothing beyond it; overlap, contained, count and any-overlap are asked of balls");
+        "the distance, not squared. within, pairs-within and neighbours-within need it; closest-point and "
+        "nearest find nothing beyond it; overlap, contained, count and any-overlap are asked of balls");
+    verb.add_option(
+            "--period", a->periods,
+            "pairs-within, neighbours-within: the length after which space repeats, or one for each axis, "
+            "0 where it does not: X,Y,Z. Distances are those to the nearest image")
+        ->delimiter(',')
+        ->expected(1, 3);
     verb.add_option("--factor", a->factor,
                     "closest-point, nearest: how many times as far away as the exact answer one may be")
         ->capture_default_str();
@@ -357,6 +363,8 @@ Run add_query(CLI::App& verb) {
             throw UsageError("--error is the promise of --by expansion: ask for both");
         if (verb.count("--tolerance") > 0 && a->kind != "hausdorff")
             throw UsageError(a->kind + " takes no --tolerance");
+        if (!a->periods.empty() && a->kind != "pairs-within" && a->kind != "neighbours-within")
+            throw UsageError(a->kind + " takes no --period");
         if (is_one_of(pair_kinds())) {
             if (!a->by.empty()) throw UsageError(a->kind + " takes no --by");
             if (a->factor != 1) throw UsageError(a->kind + " takes no --factor");

@@ -47,6 +47,7 @@ struct QueryArguments : Common {
     std::string kind, from, with, format, output_format, structure = "wide", by;
     std::uint64_t count = 0;
     double radius = -1, factor = 1, error = 1e-3, tolerance = 1e-3;
+    std::vector<double> periods;
     bool feature = false;
     unsigned threads = 0;
     FileNumbers numbers, numbers_with;  // of the scene, and of the one of --with

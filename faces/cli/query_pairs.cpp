@@ -29,8 +29,12 @@ constexpr PairKind all_pair_kinds[] = {
      " -> a b lower upper ax ay az bx by bz from_b",
      Scenes::two},
     {"pairs-within",
-     "of points, or of two sets of points (--with): the pairs at most --radius apart -> a b distance",
+     "of points, or of two sets of points (--with): the pairs at most --radius apart, where space may repeat "
+     "(--period) -> a b distance",
      Scenes::either, true},
+    {"neighbours-within",
+     "of points: the others within --radius of each, where space may repeat (--period) -> a b distance",
+     Scenes::one, true},
 };
 
 template <class P>
@@ -118,29 +122,58 @@ void timed(const QueryArguments& a, QueryReport& report, F ask) {
     throw InputError(fmt::format("{}: {} is asked of {}. Name such scenes", scenes, a.kind, wanted));
 }
 
+/// The periods of --period: one for all axes, or one for each.
+template <int D>
+Periods<D> periods_of(const QueryArguments& a) {
+    if (a.periods.empty()) return {};
+    if (a.periods.size() != 1 && a.periods.size() != D)
+        throw UsageError(
+            fmt::format("--period: give one length, or {}: one for each axis, 0 where space does not "
+                        "repeat",
+                        D));
+    Periods<D> periods;
+    for (std::size_t k = 0; k < D; ++k)
+        periods[static_cast<int>(k)] = a.periods[a.periods.size() == 1 ? 0 : k];
+    return periods;
+}
+/// The pairs of points, each once, or the neighbours of each.
+template <class T, int D>
+int query_neighbours(const QueryArguments& a, const std::vector<Vec<T, D>>& points) {
+    QueryReport report;
+    report.primitives = points.size();
+    NeighbourLists<T> lists;
+    const NeighbourOptions<D> options{
+        .periods = periods_of<D>(a), .once = a.kind == "pairs-within", .distances = true};
+    timed(a, report, [&](Executor& executor) {
+        neighbours_within(points, rounded_to<T>(a.radius), lists, options, executor);
+    });
+    write_all(a, lists.ids.size(), report,
+              [&, point = std::size_t(0)](auto& f, std::optional<std::uint64_t> i) mutable {
+                  while (i && lists.offsets[point + 1] <= *i) ++point;
+                  f("a", a.numbers(static_cast<std::uint32_t>(point)));
+                  f("b", a.numbers(i ? lists.ids[*i] : no_primitive));
+                  f("distance", i ? std::sqrt(lists.distances2[*i]) : T(0));
+              });
+    return print_report(a, report);
+}
+
 template <class A>
 int query_self(const QueryArguments& a, const A& set) {
-    using T = typename A::Scalar;
-    constexpr bool triangles = TriangleSet<ViewOf<A>>, points = PointSet<ViewOf<A>>;
-    const bool within = a.kind == "pairs-within";
-    if constexpr (triangles || points) {
-        if (within == points) {
+    const bool of_triangles = a.kind == "self-intersections";
+    if constexpr (TriangleSet<ViewOf<A>>)
+        if (of_triangles) {
             QueryReport report;
             const double start = now();
             const auto index = build_pair_index(a, a.scene, set);
             report.build_seconds = now() - start, report.primitives = set.size();
-            std::conditional_t<points, std::vector<PairWithin<T>>, std::vector<ElementPair>> pairs;
-            timed(a, report, [&](Executor& executor) {
-                if constexpr (points)
-                    pairs_within(index, RowOptions{.radius = a.radius}.near<T>(), pairs, executor);
-                else
-                    self_intersections(index, pairs, executor);
-            });
+            std::vector<ElementPair> pairs;
+            timed(a, report, [&](Executor& executor) { self_intersections(index, pairs, executor); });
             write_pairs(a, index, index, pairs, report);
             return print_report(a, report);
         }
-    }
-    refuse(a, a.scene, within ? "points" : "triangles");
+    if constexpr (PointSet<ViewOf<A>>)
+        if (!of_triangles) return query_neighbours(a, set.points);
+    refuse(a, a.scene, of_triangles ? "triangles" : "points");
 }
 
 template <class A, class B>
@@ -231,6 +264,8 @@ int query_pairs(const QueryArguments& a) {
     if (kind.takes_radius && a.radius < 0)
         throw UsageError(a.kind + " needs --radius: a distance, at least 0");
     if (!kind.takes_radius && a.radius >= 0) throw UsageError(a.kind + " takes no --radius");
+    if (!a.periods.empty() && !a.with.empty())
+        throw UsageError("--period is for points of one scene: leave out --with, or the period");
     if (!(a.tolerance >= 0)) throw UsageError("--tolerance: a tolerance is at least 0");
     return in_precision(a, [&]<class T>(T) {
         QueryArguments numbered = a;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <hedgerow/engine/crossing_kernels.h>
-#include <hedgerow/engine/pair_kernels.h>
 #include <hedgerow/engine/point_kernels.h>
 #include <hedgerow/engine/ray_kernels.h>
 #include <hedgerow/parallel/ieee_executor.h>

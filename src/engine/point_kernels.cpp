@@ -13,7 +13,6 @@
 #include "closest-inl.h"
 #include "count-inl.h"
 #include "nearest-inl.h"
-#include "neighbours-inl.h"
 #include "width-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -93,18 +92,6 @@ std::size_t points_in_ball(const WidePoints& scene, const Sphere<float, 3>& ball
     return by_width<CountInBall>(scene, &ball);
 }
 
-template <int W>
-struct LeavesNear {
-    static std::size_t answer(const WidePoints& scene, const PointBlock<float, 3>* block, float max_distance2,
-                              std::uint32_t* leaves, std::size_t room) {
-        return leaves_near<W>(scene, *block, max_distance2, leaves, room);
-    }
-};
-std::size_t leaves_near_block(const WidePoints& scene, const PointBlock<float, 3>& block, float max_distance2,
-                              std::uint32_t* leaves, std::size_t room) {
-    return by_width<LeavesNear>(scene, &block, max_distance2, leaves, room);
-}
-
 template <class Search>
 inline constexpr ClosestKernels<typename Search::Scene> closest_kernels = {Closest<Search>::one,
                                                                            Closest<Search>::many};
@@ -118,8 +105,7 @@ const AllPointKernels point_kernels{kernels_of<ClosestTriangle<WideScene>, Keys<
                                     closest_kernels<ClosestTriangle<WideDoubles>>,
                                     walk_by_width<float>,
                                     walk_by_width<double>,
-                                    points_in_ball,
-                                    {leaves_near_block, list_neighbours}};
+                                    points_in_ball};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -6,11 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <hedgerow/ask/pairs.h>
+#include <hedgerow/ask/neighbours.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/index.h>
-#include <hedgerow/primitives/point_cloud.h>
-#include <hedgerow/structures/kdtree/point_kdtree.h>
 
 namespace hedgerow {
 namespace {
@@ -37,22 +34,24 @@ std::size_t bounce(Particles& spheres, std::span<const double> radii, double res
         throw UsageError("a restitution of " + std::to_string(restitution) + " is not from 0 to 1");
     expect_sound(spheres, radii);
     if (spheres.size() < 2) return 0;
-    const auto index =
-        build<PointKdTree>(PointCloudView<double, 3>(spheres.places), {}, threads.over(spheres.size()));
-    std::vector<PairWithin<double>> pairs;
-    pairs_within(index, {.radius = 2 * *std::max_element(radii.begin(), radii.end())}, pairs, threads);
+    NeighbourLists<double> near;
+    neighbours_within(spheres.places, 2 * *std::max_element(radii.begin(), radii.end()), near,
+                      {.once = true, .distances = true}, threads);
     std::size_t contacts = 0;
-    for (const auto& [a, b, distance2] : pairs) {
+    const auto meet = [&](std::size_t a, std::size_t b, double distance2) {
         const double reach = radii[a] + radii[b];
-        if (!(distance2 <= reach * reach && distance2 > 0)) continue;
+        if (!(distance2 <= reach * reach && distance2 > 0)) return;
         const Vec3d along = (spheres.places[b] - spheres.places[a]) / std::sqrt(distance2);
         const double approach = dot(spheres.velocities[a] - spheres.velocities[b], along);
-        if (!(approach > 0)) continue;
+        if (!(approach > 0)) return;
         const double impulse = (1 + restitution) * approach / (1 / spheres.masses[a] + 1 / spheres.masses[b]);
         spheres.velocities[a] -= along * (impulse / spheres.masses[a]);
         spheres.velocities[b] += along * (impulse / spheres.masses[b]);
         ++contacts;
-    }
+    };
+    for (std::size_t a = 0; a < spheres.size(); ++a)
+        for (std::size_t k = near.offsets[a]; k < near.offsets[a + 1]; ++k)
+            meet(a, near.ids[k], near.distances2[k]);
     return contacts;
 }
 

@@ -133,7 +133,11 @@ bool pairs_agree(std::size_t count) {
     const auto cloud = points<float>(count);
     const auto index = build<WideBvh>(cloud);
     std::vector<PairWithin<float>> want, got;
-    pairs_within(build<BruteForce>(cloud), {.radius = 0.1f}, want, serial_executor());
+    for (PrimitiveId a = 0; a < cloud.size(); ++a)
+        for (PrimitiveId b = a + 1; b < cloud.size(); ++b) {
+            const float distance2 = closest_point(cloud.points[a], cloud.points[b]).distance2;
+            if (within_radius(distance2, 0.1f)) want.push_back({a, b, distance2});
+        }
     std::uint64_t sum = 0xCBF29CE484222325u;
     for (const auto& pair : want)
         for (const std::uint32_t word : {pair.a, pair.b, std::bit_cast<std::uint32_t>(pair.distance2)})

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/ask/neighbours.h>
 #include <hedgerow/ask/points.h>
 #include <hedgerow/queries/crossings.h>
 #include <hedgerow/queries/minimum_distance.h>
-#include <hedgerow/queries/pairs_within.h>
 #include <hedgerow/queries/point_query.h>
 
 namespace hedgerow {
@@ -156,38 +156,41 @@ bool any_self_intersection(const Index<S, P>& index) {
     });
 }
 
+namespace detail {
+/// The points of a set in an array: its own, or copied to `copies`.
+template <PointSet P, class V>
+Strided<V> points_of(const P& set, std::vector<V>& copies) {
+    if constexpr (requires { set.points(); }) {
+        return set.points();
+    } else {
+        for (std::size_t i = 0; i < set.size(); ++i) copies.push_back(set.point(i));
+        return copies;
+    }
+}
+}  // namespace detail
+
 /// Writes all pairs (i, j), i < j, of points of one set that are within the options' distance of each other
 /// to `found`, each once and ascending, with the squared distance: what `within` finds for each point, so
 /// `pairs_within(index, {.radius = 0.5f}, found)`. None if the radius is negative or NaN. Returns how many
 /// there are. Takes memory for all pairs, which may be n²/2 of them, and as much again while it runs. Large
-/// sets are walked on all cores, unless an executor is given (Threads); the list is the same. The engine
-/// (WideBvh of float points in space) measures eight points to all that are near them, in vectors; other
-/// structures walk pairs of nodes.
+/// sets are searched on all cores, unless an executor is given (Threads); the list is the same. Whatever the
+/// index, the points are sorted by cells for it (ask/neighbours.h), which is faster than to walk one.
 template <class S, PointSet P>
 std::size_t pairs_within(const Index<S, P>& index, const NearOptions<typename P::Scalar>& options,
                          std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
-    const auto& set = index.primitives();
-    const auto radius2 = options.max_distance2();
-    if (detail::answered_by_kernel<PairsWithin<P, P>, Index<S, P>>([&](const auto& kernel) {
-            return kernel.answer_all(index, radius2, threads.over(index.size()), found);
-        }))
-        return found.size();
-    return detail::list_pairs(
-        index, threads, [&](auto f) { return PairsWithin(set, set, radius2, f, true); }, found);
+    std::vector<Vec<typename P::Scalar, P::dimension>> copies;
+    return detail::CellNeighbours<typename P::Scalar, P::dimension>::pairs(
+        detail::points_of(index.primitives(), copies), options.max_distance2(), found, threads);
 }
 /// Finds the pairs of a point of A and one of B.
 template <class SA, PointSet A, class SB, PointSet B>
 std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,
                          const NearOptions<typename A::Scalar>& options,
                          std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
-    const auto radius2 = options.max_distance2();
-    if (detail::answered_by_kernel<PairsWithin<A, B>, Index<SB, B>>([&](const auto& kernel) {
-            return kernel.answer_all(a, b, radius2, threads.over(a.size() + b.size()), found);
-        }))
-        return found.size();
-    return detail::list_pairs(
-        a, b, threads, [&](auto f) { return PairsWithin(a.primitives(), b.primitives(), radius2, f); },
-        found);
+    std::vector<Vec<typename A::Scalar, A::dimension>> copies_of_a, copies_of_b;
+    return detail::CellNeighbours<typename A::Scalar, A::dimension>::pairs(
+        detail::points_of(a.primitives(), copies_of_a), detail::points_of(b.primitives(), copies_of_b),
+        options.max_distance2(), found, threads);
 }
 
 }  // namespace hedgerow

@@ -132,35 +132,6 @@ struct PointKernels : ClosestKernels<Scene> {
     /// Appends all within the distance to the keys, in no order.
     void (*within)(const Scene&, const Vec<float, 3>&, float max_distance2, NearKeys& keys);
 };
-/// Rows of up to this many neighbours are put in order by counting, for each, those below it.
-inline constexpr std::size_t most_ranked = 256;
-/// The arrays, the caller's, of a kernel that lists the neighbours of the points of a block.
-struct NeighbourArrays {
-    /// Points near the block, and then those near one of its points: room for those of all leaves and for
-    /// sixteen more, aligned to 64 bytes.
-    float* at[3];
-    PrimitiveId *id, *row_ids;
-    float* row_distances2;
-    /// The lists of the block's points in turn, and how long each is: room for eight times the points of all
-    /// leaves.
-    PrimitiveId* ids;
-    float* distances2;
-    std::uint32_t counts[PointBlock<float, 3>::size];
-};
-/// The kernels that list the neighbours of the points of a block, in two steps. No coordinate may be beyond
-/// `largest_coordinate<float>`, and no distance may be NaN or negative.
-struct NeighbourKernels {
-    /// Writes the leaves that may hold points within the distance of a block's box, in no order. Returns how
-    /// many these are; beyond `room` none is written.
-    std::size_t (*leaves)(const WidePoints&, const PointBlock<float, 3>&, float max_distance2,
-                          std::uint32_t* leaves, std::size_t room);
-    /// Lists the points of the leaves that are within the distance of each point of the block; if `later`,
-    /// those with a greater id than its own. Lists of up to `most_ranked` points ascend by id, longer ones
-    /// are in no order.
-    void (*list)(const WidePoints&, const std::uint32_t* leaves, std::size_t count,
-                 const PointBlock<float, 3>&, float max_distance2, bool later, NeighbourArrays&);
-};
-
 /// The kernels of points of one instruction set.
 struct AllPointKernels {
     PointKernels<WideScene> triangles;
@@ -171,7 +142,6 @@ struct AllPointKernels {
     void (*walk_of_doubles)(const WideLeaves<double>&, const Vec<double, 3>&, double limit);
     /// The number of points in a solid ball, whose center and radius are within `largest_coordinate`.
     std::size_t (*points_in_ball)(const WidePoints&, const Sphere<float, 3>&);
-    NeighbourKernels neighbours;
 };
 
 /// The crossings of rays along an axis with the triangles of a WideScene or WideDoubles (SignedCrossings).

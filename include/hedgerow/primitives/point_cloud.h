@@ -20,6 +20,7 @@ public:
     explicit PointCloudView(Strided<Vec<T, D>> points) : points_(points) {}
 
     std::size_t size() const { return points_.size(); }
+    const Strided<Vec<T, D>>& points() const { return points_; }
     Vec<T, D> point(std::size_t i) const { return points_[i]; }
     Box<T, D> bounds(std::size_t i) const { return {points_[i], points_[i]}; }
     Foot<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {

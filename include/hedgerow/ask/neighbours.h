@@ -1,0 +1,98 @@
+/// The neighbours of every point of an array: what molecular dynamics, fluids of particles and clouds of
+/// points ask at each step.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <hedgerow/base/strided.h>
+#include <hedgerow/geometry/periods.h>
+#include <hedgerow/parallel/executor.h>
+#include <hedgerow/primitives/concepts.h>
+#include <hedgerow/queries/pairs_within.h>
+
+namespace hedgerow {
+
+/// Lists of neighbours: those of point i stand from offsets[i] to offsets[i + 1], ascending. The vectors are
+/// the caller's: what they hold is replaced, and their memory used again.
+template <std::floating_point T>
+struct NeighbourLists {
+    std::vector<std::size_t> offsets;
+    std::vector<PrimitiveId> ids;
+    std::vector<T> distances2;  ///< squared distances, where they are asked for; else empty
+};
+
+template <int D>
+struct NeighbourOptions {
+    /// Space repeats after these lengths along each axis, and distances are those to the nearest image; 0
+    /// where it does not. Points may be anywhere.
+    Periods<D> periods = {};
+    /// Each pair once: only neighbours with a greater number are listed.
+    bool once = false;
+    bool distances = false;  ///< whether to measure squared distances
+    /// If not null: gets the points in the order of cells in rows, and lists are in that order too. Number i
+    /// is then that of point (*order)[i] of the array, in the lists and in what they hold. A simulation that
+    /// puts its arrays in this order keeps near particles near in memory, and lists are written as they are
+    /// found: else they are renumbered, which takes twice to five times as long as to find them.
+    std::vector<PrimitiveId>* order = nullptr;
+};
+
+namespace detail {
+/// What this header's functions and `pairs_within` do, compiled in the library `core`: T is float or double,
+/// D 2 or 3.
+template <std::floating_point T, int D>
+struct CellNeighbours {
+    using Points = Strided<Vec<T, D>>;
+    static std::size_t list(const Points& points, T radius, NeighbourLists<T>& lists,
+                            const NeighbourOptions<D>& options, Threads threads);
+    static std::size_t list(const Points& points, const Points& asking, T radius, NeighbourLists<T>& lists,
+                            const NeighbourOptions<D>& options, Threads threads);
+    /// Writes the pairs of points of one set, each once, or of two, that are within a squared distance.
+    static std::size_t pairs(const Points& points, T max_distance2, std::vector<PairWithin<T>>& found,
+                             Threads threads);
+    static std::size_t pairs(const Points& a, const Points& b, T max_distance2,
+                             std::vector<PairWithin<T>>& found, Threads threads);
+};
+}  // namespace detail
+
+/// Lists for each point the others within a radius: those whose distance, in double and rounded once to T, is
+/// at most the radius (geometry/radius.h), as `within` of each point finds them but for the point itself.
+/// Coincident points are neighbours. Nobody has any if the radius is negative or NaN. Returns how many
+/// neighbours are listed.
+///
+/// O(n + pairs) time, wherever the points are, and memory for the lists and 24 to 60 bytes a point. Large
+/// arrays are listed on all cores, unless an executor is given (Threads); the lists are the same for any
+/// threads and instruction set. Points are sorted by cells of the radius's length (the method of linked
+/// cells, Hockney and Eastwood, Computer Simulation Using Particles, 1981, section 8.4; cells are stored as
+/// rows of a sorted array); vectors of float relative to a cell decide which points are near, and those in
+/// doubt are measured in double.
+///
+/// Throws InputError for a point whose coordinate is NaN, infinite or beyond `largest_coordinate`, and
+/// UsageError for a period that is negative, NaN or infinite. T is float or double, D 2 or 3.
+template <std::floating_point T, int D>
+std::size_t neighbours_within(const Strided<Vec<T, D>>& points, T radius, NeighbourLists<T>& lists,
+                              const NeighbourOptions<D>& options = {}, Threads threads = {}) {
+    return detail::CellNeighbours<T, D>::list(points, radius, lists, options, threads);
+}
+/// Lists for each point of `asking` all `points` within a radius of it, in the order of `asking`. Throws
+/// UsageError also for the options `once` and `order`.
+template <std::floating_point T, int D>
+std::size_t neighbours_within(const Strided<Vec<T, D>>& points, const Strided<Vec<T, D>>& asking, T radius,
+                              NeighbourLists<T>& lists, const NeighbourOptions<D>& options = {},
+                              Threads threads = {}) {
+    return detail::CellNeighbours<T, D>::list(points, asking, radius, lists, options, threads);
+}
+/// Of vectors of points.
+template <std::floating_point T, int D>
+std::size_t neighbours_within(const std::vector<Vec<T, D>>& points, T radius, NeighbourLists<T>& lists,
+                              const NeighbourOptions<D>& options = {}, Threads threads = {}) {
+    return detail::CellNeighbours<T, D>::list(points, radius, lists, options, threads);
+}
+template <std::floating_point T, int D>
+std::size_t neighbours_within(const std::vector<Vec<T, D>>& points, const std::vector<Vec<T, D>>& asking,
+                              T radius, NeighbourLists<T>& lists, const NeighbourOptions<D>& options = {},
+                              Threads threads = {}) {
+    return detail::CellNeighbours<T, D>::list(points, asking, radius, lists, options, threads);
+}
+
+}  // namespace hedgerow
