@@ -285,9 +285,13 @@ int print_report(const QueryArguments& a, const QueryReport& r) {
                     {"queries_per_second", rate},
                     {"finished", r.finished}});
     } else if (!a.quiet && !r.output.empty()) {
-        fmt::print(to, "{}: {} rows, {} of {} primitives, {} in {:.1f} ms", r.output, r.answered, a.kind,
-                   r.primitives, r.loaded ? "loaded" : "built", r.build_seconds * 1e3);
-        if (r.asked > 0) fmt::print(to, "; {} queries, {:.3f} million a second", r.asked, rate * 1e-6);
+        fmt::print(to, "{}: {} rows, {} of {} primitives", r.output, r.answered, a.kind, r.primitives);
+        if (r.build_seconds > 0)
+            fmt::print(to, ", {} in {:.1f} ms", r.loaded ? "loaded" : "built", r.build_seconds * 1e3);
+        if (r.asked > 0)
+            fmt::print(to, "; {} queries, {:.3f} million a second", r.asked, rate * 1e-6);
+        else
+            fmt::print(to, "; found in {:.1f} ms", r.seconds * 1e3);
         fmt::print(to, "\n");
     }
     if (!r.finished)
