@@ -123,21 +123,26 @@ T distance_to(const Points<T, D>& points, std::size_t from, std::size_t rank, co
     return distances[rank];
 }
 
+/// Calls f(name, points, period) for the hunter's arrangements of about n charges, open and periodic.
+template <class T, int D, class F>
+void for_each_arrangement(std::size_t n, std::uint64_t seed, F f) {
+    for (const bool periodic : {false, true})
+        for (const auto& one : periodic ? periodic_arrangements() : open_arrangements()) {
+            const Arrangement all = one.make(n, seed);
+            const auto points = places_of<T, D>(all);
+            if (points.size() >= 20) f(one.name, points, all.period);
+        }
+}
+
 /// The hunter's arrangements; radii are distances that some pair has exactly, and others.
 TYPED_TEST(Neighbours, OfTheHuntersArrangements) {
     using T = typename TypeParam::T;
     constexpr int D = TypeParam::D;
-    for (const bool periodic : {false, true})
-        for (const auto& one : periodic ? periodic_arrangements() : open_arrangements()) {
-            const Arrangement all = one.make(150, 1);
-            const auto points = places_of<T, D>(all);
-            if (points.size() < 20) continue;
-            Periods<D> periods;
-            for (int k = 0; k < D; ++k) periods[k] = all.period;
-            for (const std::size_t rank : {std::size_t(1), std::size_t(9), points.size() / 2})
-                expect_neighbours(one.name, points, distance_to(points, points.size() / 3, rank, periods),
-                                  periods);
-        }
+    for_each_arrangement<T, D>(150, 1, [](const auto& name, const auto& points, double period) {
+        const auto periods = Periods<D>::all(period);
+        for (const std::size_t rank : {std::size_t(1), std::size_t(9), points.size() / 2})
+            expect_neighbours(name, points, distance_to(points, points.size() / 3, rank, periods), periods);
+    });
 }
 
 /// Boxes that repeat along some axes, also narrow ones, with points outside of them.
@@ -218,43 +223,37 @@ TYPED_TEST(Neighbours, OfLatticesLinesAndExtremes) {
 TYPED_TEST(Neighbours, AgreeWithExactFractions) {
     using T = typename TypeParam::T;
     constexpr int D = TypeParam::D;
-    for (const bool periodic : {false, true})
-        for (const auto& one : periodic ? periodic_arrangements() : open_arrangements()) {
-            const Arrangement all = one.make(70, 2);
-            const auto points = places_of<T, D>(all);
-            if (points.size() < 20) continue;
-            const T radius = distance_to(points, 3, 6, Periods<D>::all(all.period));
-            NeighbourLists<T> lists;
-            neighbours_within(points, radius, lists, {.periods = Periods<D>::all(all.period)});
-            const mpq_class r2 = mpq_class(static_cast<double>(radius)) *
-                                 mpq_class(static_cast<double>(radius)),
-                            slack =
-                                r2 * mpq_class(4 * static_cast<double>(std::numeric_limits<T>::epsilon())) +
+    for_each_arrangement<T, D>(70, 2, [](const auto& name, const auto& points, double of_period) {
+        const T radius = distance_to(points, 3, 6, Periods<D>::all(of_period));
+        NeighbourLists<T> lists;
+        neighbours_within(points, radius, lists, {.periods = Periods<D>::all(of_period)});
+        const mpq_class r2 = mpq_class(static_cast<double>(radius)) * mpq_class(static_cast<double>(radius)),
+                        slack = r2 * mpq_class(4 * static_cast<double>(std::numeric_limits<T>::epsilon())) +
                                 mpq_class(2 * static_cast<double>(std::numeric_limits<T>::denorm_min()));
-            for (std::size_t i = 0; i < points.size(); ++i)
-                for (std::size_t j = 0; j < points.size(); ++j) {
-                    mpq_class d2 = 0;
-                    for (int k = 0; k < D; ++k) {
-                        mpq_class away = mpq_class(static_cast<double>(points[i][k])) -
-                                         mpq_class(static_cast<double>(points[j][k]));
-                        if (periodic) {
-                            const mpq_class period = all.period, turns = away / period + mpq_class(1, 2);
-                            mpz_class whole;
-                            mpz_fdiv_q(whole.get_mpz_t(), turns.get_num_mpz_t(), turns.get_den_mpz_t());
-                            away -= whole * period;
-                        }
-                        d2 += away * away;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            for (std::size_t j = 0; j < points.size(); ++j) {
+                mpq_class d2 = 0;
+                for (int k = 0; k < D; ++k) {
+                    mpq_class away = mpq_class(static_cast<double>(points[i][k])) -
+                                     mpq_class(static_cast<double>(points[j][k]));
+                    if (of_period > 0) {
+                        const mpq_class period = of_period, turns = away / period + mpq_class(1, 2);
+                        mpz_class whole;
+                        mpz_fdiv_q(whole.get_mpz_t(), turns.get_num_mpz_t(), turns.get_den_mpz_t());
+                        away -= whole * period;
                     }
-                    const auto begin = lists.ids.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i]),
-                               end = lists.ids.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i + 1]);
-                    const bool listed = std::binary_search(begin, end, static_cast<PrimitiveId>(j));
-                    if (i == j || d2 > r2 + slack) {
-                        EXPECT_FALSE(listed) << one.name << ": " << i << ", " << j;
-                    } else if (d2 < r2 - slack) {
-                        EXPECT_TRUE(listed) << one.name << ": " << i << ", " << j;
-                    }
+                    d2 += away * away;
                 }
-        }
+                const auto begin = lists.ids.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i]),
+                           end = lists.ids.begin() + static_cast<std::ptrdiff_t>(lists.offsets[i + 1]);
+                const bool listed = std::binary_search(begin, end, static_cast<PrimitiveId>(j));
+                if (i == j || d2 > r2 + slack) {
+                    EXPECT_FALSE(listed) << name << ": " << i << ", " << j;
+                } else if (d2 < r2 - slack) {
+                    EXPECT_TRUE(listed) << name << ": " << i << ", " << j;
+                }
+            }
+    });
 }
 
 /// Many points: the same lists for any executor, instruction set and order of the array.

@@ -41,6 +41,8 @@ public:
     std::uint32_t count() const { return count_; }
     double side() const { return side_; }
     double period() const { return period_; }
+    /// Whether cells are so few to a period that some touch from both sides.
+    bool wraps() const { return period_ > 0 && count_ < 3; }
     /// The cell of a place; of one that lies within the period, if there is one.
     std::uint32_t cell(double x) const {
         const Part part = part_of(x);

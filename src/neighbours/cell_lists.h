@@ -35,15 +35,13 @@ public:
         for (int k = 0; k < D; ++k) {
             const CellAxis& axis = order.axes()[k];
             side = std::max(side, axis.side());
-            wraps_ |= axis.period() > 0 && axis.count() < 3;
+            task_.wraps |= axis.wraps();
             plain_ &= !(axis.period() > 0);
         }
-        task_.asking = &asking, task_.order = &order, task_.listed = listed, task_.scale = 1 / side,
-        task_.wraps = wraps_;
+        task_.asking = &asking, task_.order = &order, task_.listed = listed, task_.scale = 1 / side;
         for (int k = 0; k < D; ++k) {
             const CellAxis& axis = order.axes()[k];
-            if (axis.period() > 0 && axis.count() < 3)
-                task_.periods[k] = static_cast<float>(axis.period() * task_.scale);
+            if (axis.wraps()) task_.periods[k] = static_cast<float>(axis.period() * task_.scale);
             if (asking.wrapped() || order.wrapped())
                 moved_ = std::max(moved_, 2 * unit_roundoff<T> * axis.period() * task_.scale);
         }
@@ -161,7 +159,7 @@ private:
     double surely_within_,
         farthest_within_;  // distances; squares below the least number of T round up or down
     double moved_ = 0;
-    bool distances_, wraps_ = false, plain_ = true;  // plain: without periods
+    bool distances_, plain_ = true;  // plain: without periods
     CellTask<T, D> task_ = {};
     std::array<std::uint32_t, CellTask<T, D>::most_points> counts_;
     std::array<BareVector<float>, 3> at_;

@@ -64,13 +64,11 @@ private:
         auto begin() const { return all.begin(); }
         auto end() const { return all.begin() + static_cast<std::ptrdiff_t>(count); }
     };
-    /// Whether a cell touches another from both sides.
-    static bool few_to_a_period(std::uint32_t count) { return count < 3; }
     static AllBeside beside(std::uint32_t at, const CellAxis& axis) {
         AllBeside found;
         const std::uint32_t count = axis.count();
         const double period = axis.period();
-        if (period > 0 && few_to_a_period(count)) {
+        if (axis.wraps()) {
             for (std::uint32_t i = 0; i < count; ++i) found.add(i, 0);
             return found;
         }
@@ -127,8 +125,7 @@ private:
         const auto& cells = order_.cells();
         const CellAxis& axis = axes_[0];
         const std::uint32_t at = asking_.cells()[cell].number, count = axis.count();
-        const bool repeats = axis.period() > 0, all = repeats && few_to_a_period(count),
-                   wraps = repeats && !all;
+        const bool all = axis.wraps(), repeats = axis.period() > 0 && !all;
         std::size_t n = 0;
         const auto add = [&](std::uint32_t low, std::uint32_t high, const Near& near, double shift) {
             if (low == high) return;
@@ -142,7 +139,7 @@ private:
                 add(near.begin, near.end, near, 0);
                 continue;
             }
-            if (wraps && at == count - 1 && cells[near.begin].number == 0)
+            if (repeats && at == count - 1 && cells[near.begin].number == 0)
                 add(near.begin, near.begin + 1, near, axis.period());
             // The part, or what asks, may begin in the middle of the row.
             if (near.low == near.begin && cells[near.begin].number + few < at)
@@ -151,7 +148,7 @@ private:
             near.high = std::max(near.low, near.high);
             while (near.high < near.end && cells[near.high].number <= at + 1) ++near.high;
             add(near.low, near.high, near, 0);
-            if (wraps && at == 0 && cells[near.end - 1].number == count - 1)
+            if (repeats && at == 0 && cells[near.end - 1].number == count - 1)
                 add(near.end - 1, near.end, near, -axis.period());
         }
         return {runs_.data(), n};
