@@ -63,7 +63,7 @@ std::string tests_text(const TraceRow& row) {
     }
     return text.empty() ? "-" : text;
 }
-constexpr std::string_view columns[] = {"step", "node",          "level",   "kind",
+constexpr std::string_view step_columns[] = {"step", "node",          "level",   "kind",
                                         "box",  "t in the cell", "t limit", "primitives tested"};
 
 }  // namespace
@@ -72,7 +72,7 @@ std::string interval_text(const Interval<double>& in) {
     return fmt::format("[{}, {}]", number_text(in.entry), number_text(in.exit));
 }
 std::span<const std::string_view> table_columns() {
-    return columns;
+    return step_columns;
 }
 std::vector<std::string> texts_of(const TraceRow& row, std::size_t step) {
     return {fmt::format("{}", step),
@@ -86,9 +86,9 @@ std::vector<std::string> texts_of(const TraceRow& row, std::size_t step) {
 }
 
 std::string text_of(const TraceTable& table) {
-    std::vector<std::vector<std::string>> lines = {{std::begin(columns), std::end(columns)}};
+    std::vector<std::vector<std::string>> lines = {{std::begin(step_columns), std::end(step_columns)}};
     for (std::size_t i = 0; i < table.rows.size(); ++i) lines.push_back(texts_of(table.rows[i], i + 1));
-    std::vector<std::size_t> wide(std::size(columns));
+    std::vector<std::size_t> wide(std::size(step_columns));
     for (const auto& line : lines)
         for (std::size_t c = 0; c < wide.size(); ++c) wide[c] = std::max(wide[c], line[c].size());
     std::string text;
