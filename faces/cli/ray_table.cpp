@@ -64,7 +64,7 @@ std::string tests_text(const TraceRow& row) {
     return text.empty() ? "-" : text;
 }
 constexpr std::string_view step_columns[] = {"step", "node",          "level",   "kind",
-                                        "box",  "t in the cell", "t limit", "primitives tested"};
+                                             "box",  "t in the cell", "t limit", "primitives tested"};
 
 }  // namespace
 
