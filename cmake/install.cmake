@@ -1,4 +1,4 @@
-# Each component (core, nbody, render, any, measure, io, tool) has its own install component and export file, so that
+# Each component (core, nbody, fluid, render, any, measure, io, tool) has its own install component and export file, so that
 # `cmake --install BUILD --component core` alone is a working package.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -52,7 +52,7 @@ install(DIRECTORY include/hedgerow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPO
         PATTERN include/hedgerow/measure EXCLUDE
         PATTERN include/hedgerow/io EXCLUDE
         PATTERN include/hedgerow/scenes EXCLUDE)
-foreach(component nbody render)
+foreach(component nbody fluid render)
   hedgerow_install(${component})
   hedgerow_pkg_config(${component} hedgerow-core)
 endforeach()
@@ -89,7 +89,7 @@ configure_package_config_file(cmake/hedgerow-config.cmake.in hedgerow-config.cma
                               INSTALL_DESTINATION ${hedgerow_package_dir})
 # Before 1.0 a minor version may break what is built on it.
 write_basic_package_version_file(hedgerow-config-version.cmake COMPATIBILITY SameMinorVersion)
-foreach(component core nbody render any measure io tool)
+foreach(component core nbody fluid render any measure io tool)
   # With every component: each may be the only one that is installed.
   install(FILES ${PROJECT_BINARY_DIR}/hedgerow-config.cmake ${PROJECT_BINARY_DIR}/hedgerow-config-version.cmake
           DESTINATION ${hedgerow_package_dir} COMPONENT ${component})

@@ -5,14 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <string>
 #include <utility>
 
 #include <hedgerow/ask/points.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/geometry/fixed_point.h>
 #include <hedgerow/index.h>
+#include <hedgerow/parallel/fixed_sums.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/structures/kdtree/point_kdtree.h>
 
@@ -39,34 +38,10 @@ std::array<double, 8> share_of(const MotionState& state, std::size_t i) {
 }  // namespace
 
 Conserved conserved(const MotionState& state, Threads threads) {
-    // In fixed point, so that neither the order of particles nor threads matter: each sum by its largest
-    // term.
     const std::size_t n = state.particles.size();
-    std::array<double, 8> largest{};
-    std::array<FixedPoint::Sum, 8> sums;
-    std::mutex joining;
-    Executor& executor = threads.over(n / 4);
-    executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
-        std::array<double, 8> here{};
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto share = share_of(state, i);
-            for (std::size_t k = 0; k < 8; ++k) here[k] = FixedPoint::larger(here[k], share[k]);
-        }
-        const std::lock_guard lock(joining);
-        for (std::size_t k = 0; k < 8; ++k) largest[k] = FixedPoint::larger(largest[k], here[k]);
-    });
-    const std::vector<FixedPoint> points(largest.begin(), largest.end());
-    executor.for_each_piece(n, 4096, [&](std::size_t begin, std::size_t end) {
-        std::array<FixedPoint::Sum, 8> here;
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto share = share_of(state, i);
-            for (std::size_t k = 0; k < 8; ++k) here[k] += points[k].integer(share[k]);
-        }
-        const std::lock_guard lock(joining);
-        for (std::size_t k = 0; k < 8; ++k) sums[k] += here[k];
-    });
-    const auto value = [&](std::size_t k) { return points[k].value(sums[k]); };
-    return {value(0), value(1), {value(2), value(3), value(4)}, {value(5), value(6), value(7)}};
+    const auto sums =
+        fixed_sums<8>(n, threads.over(n / 4), [&](std::size_t i) { return share_of(state, i); });
+    return {sums[0], sums[1], {sums[2], sums[3], sums[4]}, {sums[5], sums[6], sums[7]}};
 }
 
 double usual_softening(const Particles& all) {

@@ -133,4 +133,16 @@ private:
     std::vector<Row> rows_;
 };
 
+/// The first cell of parts with about as many points each, and the end of the last.
+template <class Order>
+std::vector<std::size_t> parts_of(const Order& order) {
+    constexpr std::size_t points_each = 4096;
+    const auto& cells = order.cells();
+    std::vector<std::size_t> begins;
+    for (std::size_t c = 0; c + 1 < cells.size(); ++c)
+        if (begins.empty() || cells[c].first - cells[begins.back()].first >= points_each) begins.push_back(c);
+    begins.push_back(cells.size() - 1);
+    return begins;
+}
+
 }  // namespace hedgerow::detail

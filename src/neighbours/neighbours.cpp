@@ -12,18 +12,6 @@ namespace hedgerow {
 
 namespace {
 
-/// Cells in parts of about as many points.
-template <class Order>
-std::vector<std::size_t> parts_of(const Order& order) {
-    constexpr std::size_t points_each = 4096;
-    const auto& cells = order.cells();
-    std::vector<std::size_t> begins;
-    for (std::size_t c = 0; c + 1 < cells.size(); ++c)
-        if (begins.empty() || cells[c].first - cells[begins.back()].first >= points_each) begins.push_back(c);
-    begins.push_back(cells.size() - 1);
-    return begins;
-}
-
 /// The lists of the points of a part, one after the other, and where each ends. The vectors may be longer.
 template <class T>
 struct PartLists {
@@ -47,7 +35,7 @@ void list_in_order(const detail::CellOrder<T, D>& order, T max_distance2, detail
         lister().list(0, order.cells().size() - 1, lists.offsets.data() + 1, lists.ids, lists.distances2);
     } else {
         using Part = PartLists<T>;
-        const auto begins = parts_of(order);
+        const auto begins = detail::parts_of(order);
         const auto first = [&](std::size_t part) { return order.cells()[begins[part]].first; };
         const auto grow = [](auto& vector, std::size_t size, double expected) {
             if (vector.size() < size) vector.resize(std::max(size, static_cast<std::size_t>(expected)));
@@ -199,7 +187,7 @@ template <class T, int D, class Taker>
 void list_renumbered(const detail::CellOrder<T, D>& asking, const detail::CellOrder<T, D>& order,
                      T max_distance2, detail::Listed listed, Taker taker, Executor& executor) {
     const bool once = listed == detail::Listed::later;
-    const auto begins = parts_of(asking);
+    const auto begins = detail::parts_of(asking);
     const auto first = [&](std::size_t part) { return asking.cells()[begins[part]].first; };
     const auto number = [&](std::size_t i) { return asking.order()[i]; };
     std::vector<PartLists<T>> parts(begins.size() - 1);
