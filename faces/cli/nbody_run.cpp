@@ -1,8 +1,6 @@
 /// hedgerow nbody --until: moves particles, with snapshots, a log and pictures in a folder.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include <fmt/format.h>
@@ -15,6 +13,7 @@
 #include "nbody.h"
 #include "nbody_steps.h"
 #include "picture_notes.h"
+#include "run_folder.h"
 #include "view.h"
 
 namespace hedgerow::cli {
@@ -22,70 +21,9 @@ namespace hedgerow::cli {
 namespace {
 
 using nlohmann::ordered_json;
-namespace fs = std::filesystem;
 
-constexpr std::string_view no_pictures = "0x0";
 constexpr std::string_view log_columns =
     "step,time,kinetic,potential,energy,virial_ratio,momentum,angular_momentum,forces,seconds";
-
-std::string numbered(std::string_view name, std::uint64_t step, std::string_view ending) {
-    return fmt::format("{}-{:07}{}", name, step, ending);
-}
-
-/// The folder of a run: options, snapshots by the number of their step, pictures and the log.
-class RunFolder {
-public:
-    explicit RunFolder(const std::string& path) : path_(path) {}
-    /// Snapshots are .npy unless told otherwise.
-    void hold(const std::string& snapshots) { ending_ = "." + snapshots; }
-
-    fs::path options() const { return path_ / "run.json"; }
-    fs::path log() const { return path_ / "log.csv"; }
-    fs::path snapshot(std::uint64_t step) const { return path_ / numbered("snapshot", step, ending_); }
-    fs::path picture(std::uint64_t step) const { return path_ / numbered("picture", step, ".png"); }
-
-    /// Throws UsageError if a run is in the folder already.
-    void expect_none() const {
-        if (fs::exists(options()))
-            throw UsageError(path_.string() +
-                             " holds a run; go on with it by --resume, or name another folder");
-    }
-    void make() const {
-        std::error_code failed;
-        fs::create_directories(path_, failed);
-        if (failed) throw OutputError(path_.string() + ": this folder cannot be made: " + failed.message());
-    }
-    /// The step of the last snapshot. Throws InputError if there is none.
-    std::uint64_t last_step() const {
-        std::uint64_t last = 0;
-        bool found = false;
-        std::error_code failed;
-        for (const auto& file : fs::directory_iterator(path_, failed)) {
-            const std::string name = file.path().filename().string();
-            unsigned long long step = 0;
-            int length = 0;
-            if (std::sscanf(name.c_str(), "snapshot-%llu%n", &step, &length) == 1 &&
-                name.substr(static_cast<std::size_t>(length)) == ending_)
-                last = std::max<std::uint64_t>(last, step), found = true;
-        }
-        if (!found) throw InputError(path_.string() + ": there is no snapshot to go on from");
-        return last;
-    }
-    /// The log without the lines after a step.
-    std::string log_until(std::uint64_t step) const {
-        std::string kept, line;
-        std::ifstream old(log());
-        while (std::getline(old, line)) {
-            const bool head = line == log_columns;
-            if (head || (!old.eof() && std::strtoull(line.c_str(), nullptr, 10) <= step)) kept += line + "\n";
-        }
-        return kept;
-    }
-
-private:
-    fs::path path_;
-    std::string ending_ = ".npy";
-};
 
 /// What run.json holds: all that a run goes on with, beside its snapshots.
 ordered_json options_of(const NbodyArguments& a, const DensityFrame& frame) {
@@ -109,11 +47,8 @@ ordered_json options_of(const NbodyArguments& a, const DensityFrame& frame) {
               {"half_height", frame.half_height},
               {"most", frame.most}}}};
 }
-void read_options(const fs::path& path, NbodyArguments& a, DensityFrame& frame) {
-    std::ifstream file(path);
-    if (!file) throw InputError(path.string() + ": there is no run to go on with");
-    try {
-        const auto options = ordered_json::parse(file);
+void read_options(const RunFolder& folder, NbodyArguments& a, DensityFrame& frame) {
+    folder.read_options([&](const ordered_json& options) {
         a.scene = options.at("scene"), a.seed = options.at("seed"), a.accuracy = options.at("accuracy");
         a.softening = options.at("softening"), a.kernel = options.at("kernel"),
         a.gravity = options.at("gravity");
@@ -125,29 +60,28 @@ void read_options(const fs::path& path, NbodyArguments& a, DensityFrame& frame) 
         a.snapshots = options.value("snapshots", "npy");
         const auto& of_frame = options.at("frame");
         frame = {{of_frame.at("x"), of_frame.at("y")}, of_frame.at("half_height"), of_frame.at("most")};
-    } catch (const nlohmann::json::exception& fault) {
-        throw InputError(path.string() + ": " + fault.what());
-    }
+    });
 }
 
 class Recorder {
 public:
     Recorder(const NbodyArguments& a, const RunFolder& folder, const DensityFrame& frame)
-        : folder_(folder), frame_(frame), period_(a.period), seed_(a.seed), began_(now()) {
+        : folder_(folder),
+          frame_(frame),
+          log_(folder.log()),
+          period_(a.period),
+          seed_(a.seed),
+          began_(now()) {
         if (a.size != no_pictures) std::tie(width_, height_) = parse_size(a.size);
     }
 
-    void open_log(const std::string& kept) {
-        save_text(folder_.log(), kept.empty() ? std::string(log_columns) + "\n" : kept);
-        log_.open(folder_.log(), std::ios::app);
-    }
+    void begin_log() { log_.begin(log_columns); }
+    void go_on_with_log_after(std::uint64_t step) { log_.go_on_after(step, log_columns); }
     void line(std::uint64_t step, const MotionState& state, std::uint64_t found) {
         const Conserved sums = conserved(state);
-        log_ << fmt::format("{},{},{},{},{},{},{},{},{},{:.3f}\n", step, state.time, sums.kinetic,
-                            sums.potential, sums.energy(), sums.virial_ratio(), length(sums.momentum),
-                            length(sums.angular_momentum), found, now() - began_);
-        log_.flush();
-        if (!log_) throw OutputError(folder_.log().string() + " cannot be written");
+        log_.line(fmt::format("{},{},{},{},{},{},{},{},{},{:.3f}", step, state.time, sums.kinetic,
+                              sums.potential, sums.energy(), sums.virial_ratio(), length(sums.momentum),
+                              length(sums.angular_momentum), found, now() - began_));
     }
     void snapshot(std::uint64_t step, const MotionState& state) {
         save_state(folder_.snapshot(step), state, period_);
@@ -162,7 +96,7 @@ public:
 private:
     const RunFolder& folder_;
     const DensityFrame& frame_;
-    std::ofstream log_;
+    RunLog log_;
     double period_;
     std::uint64_t seed_;
     double began_;
@@ -221,13 +155,11 @@ int nbody_run(NbodyArguments a) {
     DensityFrame frame;
     MotionState start;
     std::uint64_t step = 0;
-    std::string kept;
     if (a.resume) {
-        read_options(folder.options(), a, frame);
+        read_options(folder, a, frame);
         folder.hold(a.snapshots);
         step = folder.last_step();
         start = load_state(folder.snapshot(step));
-        kept = folder.log_until(step);
     } else {
         folder.expect_none();
         folder.hold(a.snapshots);
@@ -249,12 +181,13 @@ int nbody_run(NbodyArguments a) {
         }
     }
     Recorder recorder(a, folder, frame);
-    recorder.open_log(kept);
-    if (first) {
+    if (!first) {
+        recorder.go_on_with_log_after(step);
+    } else {
+        recorder.begin_log();
         recorder.line(0, motion.state(), motion.state().particles.size());
         recorder.snapshot(0, motion.state());
-        // Last, so that where there are options there is a snapshot to go on from.
-        save_text(folder.options(), options_of(a, frame).dump(2) + "\n");
+        folder.save_options(options_of(a, frame));
     }
     // Step until the time is reached, or the run is interrupted.
     std::uint64_t found = 0;

@@ -1,0 +1,86 @@
+#include "run_folder.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/io/text_file.h>
+
+namespace hedgerow::cli {
+
+namespace fs = std::filesystem;
+
+fs::path RunFolder::snapshot(std::uint64_t step) const {
+    return path_ / fmt::format("snapshot-{:07}{}", step, ending_);
+}
+fs::path RunFolder::picture(std::uint64_t step) const {
+    return path_ / fmt::format("picture-{:07}.png", step);
+}
+
+void RunFolder::expect_none() const {
+    if (fs::exists(options()))
+        throw UsageError(path_.string() + " holds a run; go on with it by --resume, or name another folder");
+}
+void RunFolder::make() const {
+    std::error_code failed;
+    fs::create_directories(path_, failed);
+    if (failed) throw OutputError(path_.string() + ": this folder cannot be made: " + failed.message());
+}
+std::uint64_t RunFolder::last_step() const {
+    std::uint64_t last = 0;
+    bool found = false;
+    std::error_code failed;
+    for (const auto& file : fs::directory_iterator(path_, failed)) {
+        const std::string name = file.path().filename().string();
+        unsigned long long step = 0;
+        int length = 0;
+        if (std::sscanf(name.c_str(), "snapshot-%llu%n", &step, &length) == 1 &&
+            name.substr(static_cast<std::size_t>(length)) == ending_)
+            last = std::max<std::uint64_t>(last, step), found = true;
+    }
+    if (!found) throw InputError(path_.string() + ": there is no snapshot to go on from");
+    return last;
+}
+
+void RunFolder::save_options(const nlohmann::ordered_json& all) const {
+    save_text(options(), all.dump(2) + "\n");
+}
+void RunFolder::read_options(const std::function<void(const nlohmann::ordered_json&)>& read) const {
+    std::ifstream file(options());
+    if (!file) throw InputError(options().string() + ": there is no run to go on with");
+    try {
+        read(nlohmann::ordered_json::parse(file));
+    } catch (const nlohmann::json::exception& fault) {
+        throw InputError(options().string() + ": " + fault.what());
+    }
+}
+
+void RunLog::begin(std::string_view columns) {
+    open(std::string(columns) + "\n");
+}
+void RunLog::go_on_after(std::uint64_t step, std::string_view columns) {
+    std::string kept, line;
+    std::ifstream old(path_);
+    while (std::getline(old, line)) {
+        const bool head = line == columns;
+        // A last line without its end was cut off when the run was killed.
+        if (head || (!old.eof() && std::strtoull(line.c_str(), nullptr, 10) <= step)) kept += line + "\n";
+    }
+    open(kept.empty() ? std::string(columns) + "\n" : kept);
+}
+void RunLog::open(const std::string& kept) {
+    save_text(path_, kept);
+    file_.open(path_, std::ios::app);
+}
+void RunLog::line(std::string_view text) {
+    file_ << text << '\n';
+    file_.flush();
+    if (!file_) throw OutputError(path_.string() + " cannot be written");
+}
+
+}  // namespace hedgerow::cli

@@ -1,0 +1,68 @@
+/// The folder of a run: what verbs that move particles leave behind, and go on from.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace hedgerow::cli {
+
+/// The --size of a run without pictures.
+inline constexpr std::string_view no_pictures = "0x0";
+
+/// The files of a run: its options, its log, and snapshots and pictures by the number of their step.
+class RunFolder {
+public:
+    explicit RunFolder(const std::string& path) : path_(path) {}
+    /// Sets the format of snapshots, "npy" or "hdf5". They are .npy files unless told otherwise.
+    void hold(const std::string& snapshots) { ending_ = "." + snapshots; }
+
+    std::filesystem::path options() const { return path_ / "run.json"; }
+    std::filesystem::path log() const { return path_ / "log.csv"; }
+    std::filesystem::path snapshot(std::uint64_t step) const;
+    std::filesystem::path picture(std::uint64_t step) const;
+
+    /// Throws UsageError if a run is in the folder already.
+    void expect_none() const;
+    /// Makes the folder. Throws OutputError if that fails.
+    void make() const;
+    /// The step of the last snapshot. Throws InputError if there is none.
+    std::uint64_t last_step() const;
+
+    /// Writes run.json. It comes after the first snapshot, so that a folder with options has a snapshot to go
+    /// on from. Throws OutputError.
+    void save_options(const nlohmann::ordered_json& options) const;
+    /// Calls `read` with the options of run.json. Throws InputError if there are none, and with the file's
+    /// name for what `read` does not find in them.
+    void read_options(const std::function<void(const nlohmann::ordered_json&)>& read) const;
+
+private:
+    std::filesystem::path path_;
+    std::string ending_ = ".npy";
+};
+
+/// The log of a run: a line with the names of columns, then a line for each step, which begins with the
+/// step's number.
+class RunLog {
+public:
+    explicit RunLog(const std::filesystem::path& path) : path_(path) {}
+    /// Begins a log in place of an earlier one. Throws OutputError.
+    void begin(std::string_view columns);
+    /// Goes on with a log after the line of a step. Later lines are removed. Throws OutputError.
+    void go_on_after(std::uint64_t step, std::string_view columns);
+    /// Appends a line of a step. Throws OutputError.
+    void line(std::string_view text);
+
+private:
+    void open(const std::string& kept);
+
+    std::filesystem::path path_;
+    std::ofstream file_;
+};
+
+}  // namespace hedgerow::cli
