@@ -52,10 +52,12 @@ install(DIRECTORY include/hedgerow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPO
         PATTERN include/hedgerow/measure EXCLUDE
         PATTERN include/hedgerow/io EXCLUDE
         PATTERN include/hedgerow/scenes EXCLUDE)
-foreach(component nbody fluid render)
+foreach(component nbody render)
   hedgerow_install(${component})
   hedgerow_pkg_config(${component} hedgerow-core)
 endforeach()
+hedgerow_install(fluid)
+hedgerow_pkg_config(fluid hedgerow-nbody)
 # Its headers need these of the components io and scenes, which use no library.
 foreach(header io/image.h io/exr.h scenes/random.h)
   get_filename_component(folder ${header} DIRECTORY)
