@@ -105,6 +105,12 @@ constexpr Verb verbs[] = {
      "  hedgerow nbody gen:hernquist:100000 --compare\n\n"
      "forces between particles, their motion, and what each way to find them costs",
      add_nbody},
+    {"particles",
+     "Examples:\n  hedgerow particles gen:teapot -o run\n"
+     "  hedgerow particles dragon.ply --emit rain --until 4 --every 0.1 -o rain\n"
+     "  hedgerow particles --resume --until 8 -o rain\n\n"
+     "particles that fall on a mesh, bounce off it and off each other: snapshots, pictures, a log",
+     add_particles},
     {"info",
      "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n"
      "  hedgerow info scan.ply --check\n\n"

@@ -60,18 +60,18 @@ void RunFolder::read_options(const std::function<void(const nlohmann::ordered_js
     }
 }
 
-void RunLog::begin(std::string_view columns) {
-    open(std::string(columns) + "\n");
+void RunLog::begin(std::string_view names) {
+    open(std::string(names) + "\n");
 }
-void RunLog::go_on_after(std::uint64_t step, std::string_view columns) {
+void RunLog::go_on_after(std::uint64_t step, std::string_view names) {
     std::string kept, line;
     std::ifstream old(path_);
     while (std::getline(old, line)) {
-        const bool head = line == columns;
+        const bool head = line == names;
         // A last line without its end was cut off when the run was killed.
         if (head || (!old.eof() && std::strtoull(line.c_str(), nullptr, 10) <= step)) kept += line + "\n";
     }
-    open(kept.empty() ? std::string(columns) + "\n" : kept);
+    open(kept.empty() ? std::string(names) + "\n" : kept);
 }
 void RunLog::open(const std::string& kept) {
     save_text(path_, kept);

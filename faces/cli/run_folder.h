@@ -52,9 +52,9 @@ class RunLog {
 public:
     explicit RunLog(const std::filesystem::path& path) : path_(path) {}
     /// Begins a log in place of an earlier one. Throws OutputError.
-    void begin(std::string_view columns);
+    void begin(std::string_view names);
     /// Goes on with a log after the line of a step. Later lines are removed. Throws OutputError.
-    void go_on_after(std::uint64_t step, std::string_view columns);
+    void go_on_after(std::uint64_t step, std::string_view names);
     /// Appends a line of a step. Throws OutputError.
     void line(std::string_view text);
 
