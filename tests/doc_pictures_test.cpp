@@ -72,7 +72,8 @@ struct Shown {
 /// Adds the pictures of a document, with their commands if those are there.
 void add_pictures(const fs::path& document, std::map<std::string, Shown>& all) {
     const std::string text = bytes_of(document);
-    const auto commands = matches(text, "(hedgerow (?:draw|render|nbody|compare|bench) [^`\n#]*-o [^ `\n]+)");
+    const auto commands =
+        matches(text, "(hedgerow (?:draw|render|nbody|particles|compare|bench) [^`\n#]*-o [^ `\n]+)");
     auto shown = matches(text, R"(!\[[^\]]*\]\(([^)]*pictures/[^)]+)\))");
     for (auto& more : matches(text, "<img src=\"([^\"]*pictures/[^\"]+)\"")) shown.push_back(std::move(more));
     for (const std::string& reference : shown) {
@@ -82,8 +83,9 @@ void add_pictures(const fs::path& document, std::map<std::string, Shown>& all) {
         for (const std::string& command : commands) {
             const std::size_t output_at = command.rfind(' ') + 1;
             const std::string output = fs::path(command.substr(output_at)).filename().string();
-            const bool in_folder =
-                command.starts_with("hedgerow nbody gen:") && path.parent_path().filename() == output;
+            const bool in_folder = (command.starts_with("hedgerow nbody gen:") ||
+                                    command.starts_with("hedgerow particles gen:")) &&
+                                   path.parent_path().filename() == output;
             if (path.filename() == output || in_folder)
                 s.document = document.filename().string(), s.output = output,
                 s.command = command.substr(9, output_at - 9);  // without "hedgerow "

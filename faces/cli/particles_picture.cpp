@@ -52,17 +52,21 @@ struct BallsAndMesh {
         Ray3f before = ray;
         if (on_mesh) before.t_max = on_mesh.t;
         const auto on_ball = closest_hit(balls, before);
-        if (!on_mesh && !on_ball) return plain.background();
+        // It is dusk where balls glow.
+        const float day = glow ? 0.2f : 1;
+        if (!on_mesh && !on_ball) return plain.background() * day;
         if (on_ball && glow) return colours[on_ball.element];
         const Vec3f place = on_ball ? position(balls, ray, on_ball) : position(mesh, ray, on_mesh);
         Vec3f n = on_ball ? normal(balls, ray, on_ball) : normal(mesh, ray, on_mesh);
         if (dot(n, ray.direction) > 0) n = -n;
         // The plain shading is that of grey; a ball has a colour in its place.
-        const Vec3f colour = on_ball ? colours[on_ball.element] * (1 / PlainShading::grey) : Vec3f(1, 1, 1);
+        const Vec3f colour = on_ball ? colours[on_ball.element] * (1 / PlainShading::grey) : Vec3f::all(day);
         Vec3f sum = plain.sky(n);
         const float facing = dot(n, plain.to_light());
         const Ray3f to_light{place + n * least, plain.to_light(), 0};
-        if (facing > 0 && !any_hit(mesh, to_light) && !any_hit(balls, to_light)) sum += plain.direct(facing);
+        // What glows casts no shadow.
+        if (facing > 0 && !any_hit(mesh, to_light) && (glow || !any_hit(balls, to_light)))
+            sum += plain.direct(facing);
         return map(sum, colour, [](float a, float b) { return product(a, b); });
     }
 };

@@ -54,7 +54,7 @@ struct ParticleEmitter {
 /// Forces per mass on a particle of velocity v: gravity − (linear + quadratic·|v − wind|)·(v − wind).
 struct ParticleForces {
     Vec3d gravity{0, 0, -9.81};
-    Vec3d wind;
+    Vec3d wind = {};
     double linear_drag = 0;     ///< per time
     double quadratic_drag = 0;  ///< per length
 };
@@ -67,9 +67,9 @@ struct ParticleContacts {
 };
 
 struct ParticleSystemOptions {
-    std::vector<ParticleEmitter> emitters;
-    ParticleForces forces;
-    ParticleContacts contacts;
+    std::vector<ParticleEmitter> emitters = {};
+    ParticleForces forces = {};
+    ParticleContacts contacts = {};
     std::uint64_t seed = 0;
 };
 
