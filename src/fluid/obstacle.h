@@ -18,7 +18,7 @@ struct Moved {
     Vec3d normal;
 };
 
-/// The mesh at a distance that matters, and the direction from it.
+/// How far away the mesh is from a place, and the direction from its closest point to the place.
 struct Touch {
     double distance;
     Vec3d normal;
@@ -26,7 +26,7 @@ struct Touch {
 
 class Obstacle {
 public:
-    /// Of an index that is borrowed; null: nothing.
+    /// Borrows the index of the mesh. Null: there is no mesh.
     explicit Obstacle(const MeshIndex<double>* mesh)
         : mesh_(mesh != nullptr && !mesh->bounds().empty() ? mesh : nullptr) {
         if (mesh_ != nullptr)
@@ -36,7 +36,7 @@ public:
     explicit operator bool() const { return mesh_ != nullptr; }
 
     /// The least distance from the mesh at which a move may end. All errors of the move, of a hit's t and of
-    /// a distance are below 2⁻⁴⁹ of the numbers that it is a share of (probes/ray.h).
+    /// a distance are below 2⁻⁴⁸ of the largest coordinate (probes/ray.h).
     double margin(const Vec3d& place, const Vec3d& way) const {
         return 0x1p-40 * (scale_ + max_component(abs(place)) + max_component(abs(way)));
     }

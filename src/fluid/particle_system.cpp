@@ -304,7 +304,7 @@ void ParticleSystem::step_until(double time, Threads threads) {
             for (std::size_t i = begin; i < end; ++i) move(i, dt, flights_[i]);
         });
         state_.time = time;
-        bury();
+        remove_dead();
         if (options_.contacts.each_other && state_.size() > 1) {
             bounce(state_.particles, state_.radii, options_.contacts.restitution, threads);
             separate(threads);
@@ -383,11 +383,11 @@ void ParticleSystem::separate(Threads threads) {
     });
 }
 
-void ParticleSystem::bury() {
+void ParticleSystem::remove_dead() {
     Particles& all = state_.particles;
     std::size_t alive = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        // Those beyond all coordinates are dead too. NaN compares false.
+        // Particles beyond all coordinates are dead too. NaN compares false.
         const bool lives = state_.ages[i] < state_.lives[i] && finite(all.places[i]) &&
                            finite(all.velocities[i]) &&
                            max_component(abs(all.places[i])) <= largest_coordinate<double> &&

@@ -42,13 +42,17 @@ struct FromSurface {
 /// numbers from a random stream of its own.
 struct ParticleEmitter {
     std::variant<FromPoint, FromDisc, FromBox, FromSurface> source;
-    double rate = 100;                                                ///< particles per unit of time
-    double begin = 0, end = std::numeric_limits<double>::infinity();  ///< the time of births
-    Vec3d direction{0, 0, 1};                                         ///< of any length above 0
-    double spread = 0;                                                ///< the largest angle to it, up to π
+    double rate = 100;  ///< particles per unit of time, at most 2⁴⁰
+    /// Particles are born from the time `begin` on, and before the time `end`.
+    double begin = 0, end = std::numeric_limits<double>::infinity();
+    /// The middle of the directions in which particles start, of any length above 0, and the largest angle to
+    /// it, up to π. Directions are even by solid angle. On a surface its normal takes the place of
+    /// `direction`.
+    Vec3d direction{0, 0, 1};
+    double spread = 0;
     double speed = 1, speed_spread = 0;  ///< speeds are even from speed − spread to speed + spread
-    double life = 1, life_spread = 0;    ///< so are the lengths of lives
-    double radius = 0;                   ///< 0: a point
+    double life = 1, life_spread = 0;    ///< lives are even from life − spread to life + spread
+    double radius = 0;                   ///< of the ball that a particle is; 0: a point
 };
 
 /// Forces per mass on a particle of velocity v: gravity − (linear + quadratic·|v − wind|)·(v − wind).
@@ -94,7 +98,8 @@ struct ParticleState {
 /// fast it is, nor through edges and vertices of a closed mesh, since no ray slips between triangles that
 /// share them. A ball stops where its radius reaches the surface, and a ball that rests lies a radius above
 /// it. A ball that moves more than eight radii a step may clip a rim that its center misses. Contacts slower
-/// than what gravity gives in two steps do not bounce, so that balls come to rest.
+/// than what gravity gives in two steps do not bounce, so that balls come to rest. A way has 64 legs at most:
+/// a particle with more contacts in a step waits for the next one.
 ///
 /// With `each_other` balls exchange momentum as `bounce` (nbody/contacts.h) lets them, and overlapping ones
 /// are pushed apart by half of what they overlap.
@@ -118,9 +123,10 @@ public:
     explicit ParticleSystem(ParticleSystemOptions options, const MeshIndex<double>* mesh = nullptr,
                             ParticleState start = {});
 
-    /// Moves all particles, lets new ones be born and removes those whose lives end. Expects two closest
-    /// points and a ray for each particle near the mesh, one closest point for others, and with `each_other`
-    /// two lists of neighbours: O(particles · log triangles + pairs that touch).
+    /// Moves all particles, adds new ones and removes those whose lives end. A particle near the mesh costs
+    /// some closest points and at most a ray for each leg of its way, any other one closest point, and
+    /// `each_other` two lists of neighbours: O(particles · log triangles + pairs within twice the largest
+    /// radius).
     ///
     /// Throws UsageError for a length of time that is not above 0 and finite.
     void step(double dt, Threads threads = {});
@@ -128,14 +134,14 @@ public:
     void step_until(double time, Threads threads = {});
 
     const ParticleState& state() const { return state_; }
-    /// The number of particles that emitters have brought forth so far. O(emitters).
+    /// The number of particles that were born so far. O(emitters).
     std::uint64_t emitted() const;
 
 private:
     void emit(double until);
     void move(std::size_t i, double dt, double flight);
     void separate(Threads threads);
-    void bury();
+    void remove_dead();
 
     ParticleSystemOptions options_;
     const MeshIndex<double>* mesh_;
