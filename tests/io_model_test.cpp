@@ -53,6 +53,53 @@ TEST(Models, HaveTheTrianglesOfTheMesh) {
     }
 }
 
+/// Normals and a material that save_mesh writes are read back.
+TEST(Models, SavedNormalsAndMaterialsAreRead) {
+    TempFolder folder;
+    folder.file("glass.mtl", "newmtl clear\nillum 7\nNi 1.25\nNs 1000000\n");
+    std::mt19937_64 random(9);
+    const auto mesh = random_mesh<double>(random);
+    std::vector<Vec3f> normals;
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+        normals.push_back(normalized(Vec3f(static_cast<float>(i) + 0.5f, 1, -2)));
+    for (const std::string name : {"a.ply", "a.obj"}) {
+        SCOPED_TRACE(name);
+        SavedLooks looks{.normals = normals, .material_file = "", .material = ""};
+        if (name == "a.obj") looks.material_file = "glass.mtl", looks.material = "clear";
+        save_mesh(folder / name, mesh, {}, nullptr, looks);
+        const auto model = load_model<double>(folder / name);
+        EXPECT_TRUE(model.warnings.empty());
+        ASSERT_EQ(model.objects.size(), 1u);
+        const auto& object = model.objects[0];
+        ASSERT_EQ(object.mesh.triangles, mesh.triangles);
+        EXPECT_EQ(object.mesh.vertices, mesh.vertices);
+        for (std::size_t t = 0; t < mesh.size(); ++t) {
+            const auto corners = object.attributes.normals.at_corners(object.mesh, t);
+            for (std::size_t k = 0; k < 3; ++k)
+                EXPECT_EQ(object.attributes.normals.values.at(corners[k]), normals[mesh.triangles[t][k]]);
+        }
+        if (name == "a.obj") {
+            const Material& material = model.materials.at(object.material_of(0));
+            EXPECT_EQ(material.name, "clear");
+            EXPECT_EQ(material.ior, 1.25f);
+        }
+    }
+    const auto refuses = [&](const std::string& name, const SavedLooks& looks, const std::string& part) {
+        try {
+            save_mesh(folder / name, mesh, {}, nullptr, looks);
+            ADD_FAILURE() << name << ": " << part;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        }
+        EXPECT_FALSE(std::filesystem::exists(folder / name));
+    };
+    refuses("b.stl", {normals, "", ""}, "normals are not saved as .stl");
+    refuses("b.off", {normals, "", ""}, "normals are not saved as .off");
+    refuses("b.ply", {normals, "", "clear"}, "materials are not saved as .ply");
+    normals.pop_back();
+    refuses("b.obj", {normals, "", ""}, "Give each vertex one");
+}
+
 TEST(Models, WithoutLooksTakeNoMemoryForThem) {
     TempFolder folder;
     std::mt19937_64 random(8);

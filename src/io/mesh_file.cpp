@@ -61,6 +61,18 @@ void check_indices(const TriangleMesh<T>& mesh) {
                                  std::to_string(mesh.vertices.size()) + ". Repair the mesh");
 }
 
+/// Throws InputError if the format has no such looks, or normals are not as many as vertices.
+void check_looks(const std::string& extension, std::size_t vertices, const SavedLooks& looks) {
+    if (extension != ".obj" && !(looks.material.empty() && looks.material_file.empty()))
+        throw InputError("materials are not saved as " + extension + ". Save the mesh as .obj");
+    if (looks.normals.empty()) return;
+    if (extension != ".obj" && extension != ".ply")
+        throw InputError("normals are not saved as " + extension + ". Save the mesh as .ply or .obj");
+    if (looks.normals.size() != vertices)
+        throw InputError("the mesh to save has " + std::to_string(vertices) + " vertices and " +
+                         std::to_string(looks.normals.size()) + " normals. Give each vertex one");
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -78,18 +90,18 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 
 template <class T>
 void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress,
-               RoundingReport* report) {
+               RoundingReport* report, const SavedLooks& looks) {
     const std::string extension = detail::lower_case(path.extension().string());
-    void (*write)(detail::OutputFile&, const TriangleMesh<T>&) = nullptr;
-    if (extension == ".ply") write = detail::write_ply;
-    if (extension == ".stl") write = detail::write_stl;
-    if (extension == ".obj") write = detail::write_obj;
-    if (extension == ".off") write = detail::write_off;
-    if (write == nullptr) detail::fail_unknown(path, ".ply .stl .obj .off");
+    const bool ply = extension == ".ply", stl = extension == ".stl", obj = extension == ".obj";
+    if (!ply && !stl && !obj && extension != ".off") detail::fail_unknown(path, ".ply .stl .obj .off");
+    detail::check_looks(extension, mesh.vertices.size(), looks);
     detail::check_indices(mesh);
     detail::OutputFile file(path, progress);
     file.expect(mesh.vertices.size() + mesh.size());
-    write(file, mesh);
+    if (ply) detail::write_ply(file, mesh, looks);
+    if (obj) detail::write_obj(file, mesh, looks);
+    if (stl) detail::write_stl(file, mesh);
+    if (extension == ".off") detail::write_off(file, mesh);
     file.commit();
     if (report != nullptr)
         *report =
@@ -99,8 +111,8 @@ void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, c
 template TriangleMesh<float> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
 template TriangleMesh<double> load_mesh(const std::filesystem::path&, const LoadOptions&, const Progress&);
 template void save_mesh(const std::filesystem::path&, const TriangleMesh<float>&, const Progress&,
-                        RoundingReport*);
+                        RoundingReport*, const SavedLooks&);
 template void save_mesh(const std::filesystem::path&, const TriangleMesh<double>&, const Progress&,
-                        RoundingReport*);
+                        RoundingReport*, const SavedLooks&);
 
 }  // namespace hedgerow

@@ -35,18 +35,20 @@ void expect_floats(const Vec<T, 3>& p, std::uint32_t vertex) {
 }  // namespace
 
 template <class T>
-void write_ply(OutputFile& file, const TriangleMesh<T>& mesh) {
+void write_ply(OutputFile& file, const TriangleMesh<T>& mesh, const SavedLooks& looks) {
     const std::string type = std::is_same_v<T, float> ? "float" : "double";
     const bool small = mesh.vertices.size() < (std::size_t(1) << 31);
     std::string header = "ply\nformat binary_little_endian 1.0\n";
     header += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
     for (const char axis : {'x', 'y', 'z'}) header += "property " + type + " " + axis + "\n";
+    if (!looks.normals.empty()) header += "property float nx\nproperty float ny\nproperty float nz\n";
     header += "element face " + std::to_string(mesh.size()) + "\n";
     header +=
         std::string("property list uchar ") + (small ? "int" : "uint") + " vertex_indices\nend_header\n";
     file.write(header);
-    for (const Vec<T, 3>& p : mesh.vertices) {
-        write_point(file, p);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        write_point(file, mesh.vertices[i]);
+        if (!looks.normals.empty()) write_point(file, looks.normals[i]);
         file.advance();
     }
     for (const TriangleIndices& t : mesh.triangles) {
@@ -80,18 +82,28 @@ void write_stl(OutputFile& file, const TriangleMesh<T>& mesh) {
 }
 
 template <class T>
-void write_obj(OutputFile& file, const TriangleMesh<T>& mesh) {
+void write_obj(OutputFile& file, const TriangleMesh<T>& mesh, const SavedLooks& looks) {
     std::string line;
+    if (!looks.material_file.empty()) file.write("mtllib " + looks.material_file + "\n");
     for (const Vec<T, 3>& p : mesh.vertices) {
         line.assign("v ", 2);
         append_point(line, p);
         file.write(line);
         file.advance();
     }
+    for (std::size_t i = 0; i < looks.normals.size(); ++i) {
+        line.assign("vn ", 3);
+        append_point(line, looks.normals[i]);
+        file.write(line);
+    }
+    if (!looks.material.empty()) file.write("usemtl " + looks.material + "\n");
     for (const auto& [a, b, c] : mesh.triangles) {
         file.advance();
         line.assign(1, 'f');
-        for (const std::uint32_t v : {a, b, c}) line += ' ', append_number(line, std::uint64_t(v) + 1);
+        for (const std::uint32_t v : {a, b, c}) {
+            line += ' ', append_number(line, std::uint64_t(v) + 1);
+            if (!looks.normals.empty()) line += "//", append_number(line, std::uint64_t(v) + 1);
+        }
         file.write(line += '\n');
     }
 }
@@ -114,12 +126,12 @@ void write_off(OutputFile& file, const TriangleMesh<T>& mesh) {
     }
 }
 
-template void write_ply(OutputFile&, const TriangleMesh<float>&);
-template void write_ply(OutputFile&, const TriangleMesh<double>&);
+template void write_ply(OutputFile&, const TriangleMesh<float>&, const SavedLooks&);
+template void write_ply(OutputFile&, const TriangleMesh<double>&, const SavedLooks&);
 template void write_stl(OutputFile&, const TriangleMesh<float>&);
 template void write_stl(OutputFile&, const TriangleMesh<double>&);
-template void write_obj(OutputFile&, const TriangleMesh<float>&);
-template void write_obj(OutputFile&, const TriangleMesh<double>&);
+template void write_obj(OutputFile&, const TriangleMesh<float>&, const SavedLooks&);
+template void write_obj(OutputFile&, const TriangleMesh<double>&, const SavedLooks&);
 template void write_off(OutputFile&, const TriangleMesh<float>&);
 template void write_off(OutputFile&, const TriangleMesh<double>&);
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
+#include <hedgerow/base/strided.h>
 #include <hedgerow/io/load_options.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/primitives/triangle_mesh.h>
@@ -45,6 +47,14 @@ template <class T = float>
 TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& options = {},
                           const Progress& progress = {});
 
+/// The looks that `save_mesh` writes beside triangles. Each may be empty.
+struct SavedLooks {
+    Strided<Vec3f> normals;  ///< one a vertex, for `.ply` and `.obj`
+    /// The name of an MTL file and of a material in it, which all triangles get; for `.obj`. The file is not
+    /// written.
+    std::string material_file, material;
+};
+
 /// Writes a mesh as `.ply` (binary, little endian), `.stl` (binary; **float, whatever T is**), `.obj` or
 /// `.off` (the shortest decimals that read back to the same T). Triangles keep their order; `faces` is not
 /// written. The file is written under another name beside `path` and then renamed, so there is never half a
@@ -52,11 +62,12 @@ TriangleMesh<T> load_mesh(const std::filesystem::path& path, const LoadOptions& 
 ///
 /// `progress` counts the vertices and triangles written. Throws InputError if the extension is none of these,
 /// if a triangle names a vertex that does not exist, if there are more triangles than `.stl` can count
-/// (2^32 − 1), or if a coordinate is too large for its floats. Throws OutputError if the path cannot be
+/// (2^32 − 1), if a coordinate is too large for its floats, if the number of normals is not that of the
+/// vertices, or if the format does not have the looks. Throws OutputError if the path cannot be
 /// written (the disk is full, say), and Cancelled if `progress` is cancelled. T is float or double.
 /// O(vertices + triangles).
 template <class T>
 void save_mesh(const std::filesystem::path& path, const TriangleMesh<T>& mesh, const Progress& progress = {},
-               RoundingReport* report = nullptr);
+               RoundingReport* report = nullptr, const SavedLooks& looks = {});
 
 }  // namespace hedgerow
