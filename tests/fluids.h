@@ -20,7 +20,7 @@ template <int D>
 void compress(FluidState<D>& state, double surface, const FluidOptions<D>& options) {
     for (std::size_t i = 0; i < state.size(); ++i)
         state.compressions[i] =
-            -options.gravity[1] * (surface - state.places[i][1]) / (options.sound * options.sound);
+            -options.gravity[D - 1] * (surface - state.places[i][D - 1]) / (options.sound * options.sound);
 }
 /// Options of water that falls from a height, in metres.
 template <int D>
@@ -37,7 +37,7 @@ FluidFlow<D> dam(double spacing, Threads threads = {}) {
     for (int k = 0; k < D; ++k) tank.low[k] = column.low[k] = 0;
     const auto side = [&](double spacings) { return spacings * spacing; };
     tank.high = column.high = Vec<double, D>::all(side(8));
-    column.high[1] = side(12), tank.high[0] = side(24), tank.high[1] = side(20);
+    column.high[D - 1] = side(12), tank.high[0] = side(24), tank.high[D - 1] = side(20);
     return {filled(column, spacing), walls_of_box(tank, spacing), water<D>(spacing, side(12)), threads};
 }
 

@@ -111,6 +111,12 @@ constexpr Verb verbs[] = {
      "  hedgerow particles --resume --until 8 -o rain\n\n"
      "particles that fall on a mesh, bounce off it and off each other: snapshots, pictures, a log",
      add_particles},
+    {"flow",
+     "Examples:\n  hedgerow flow gen:dam:20000 --until 2 --every 0.05 -o dam\n"
+     "  hedgerow flow gen:dam --plane -o dam\n  hedgerow flow bunny.ply --surface obj -o splash\n"
+     "  hedgerow flow --resume --until 4 -o dam\n\n"
+     "fluids of particles that break, fall, splash and come to rest: snapshots, pictures, surfaces, a log",
+     add_flow},
     {"info",
      "Examples:\n  hedgerow info dragon.ply\n  hedgerow info gen:cube --json\n"
      "  hedgerow info scan.ply --check\n\n"

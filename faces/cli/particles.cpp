@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/base/error.h>
-#include <hedgerow/io/rows.h>
 
 #include "picture_notes.h"
 #include "run_folder.h"
+#include "snapshot_rows.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -42,39 +42,25 @@ ColumnList snapshot_columns() {
 }
 
 void save_snapshot(const std::filesystem::path& path, const ParticleState& state) {
-    RowWriter out(path, row_format(path), snapshot_columns().all, state.size());
-    constexpr std::size_t at_once = 1 << 15;
-    for (std::size_t first = 0; first < state.size(); first += at_once) {
-        const std::size_t count = std::min(at_once, state.size() - first);
-        std::string records;
-        append_records(records, count, 11 * sizeof(double), [&](std::size_t k, Record& record) {
-            each_column(state, first + k, [&](const char* name, auto number) { record(name, number); });
-        });
-        out.write(out.encode(std::move(records)), count);
-    }
-    out.finish();
+    save_snapshot_rows(path, snapshot_columns(), state.size(), [&](std::size_t i, Record& record) {
+        each_column(state, i, [&](const char* name, auto number) { record(name, number); });
+    });
 }
 ParticleState load_snapshot(const std::filesystem::path& path, double time) {
     ParticleState state;
     state.time = time;
-    InputColumns wanted;
-    for (const Column& column : snapshot_columns().all) wanted.names.push_back(column.name);
-    const auto rows = open_rows<double>(path, row_format(path), wanted);
-    std::vector<double> numbers;
-    while (const std::size_t count = rows->read(numbers, 1 << 15)) {
-        const std::size_t first = state.size();
-        resize(state, first + count);
-        auto next = numbers.cbegin();
-        for (std::size_t i = 0; i < count; ++i)
-            each_column(state, first + i, [&]<class N>(const char*, N& number) {
-                // A number of 2^53 or more, or one below 0, is none that a run wrote.
-                if constexpr (std::is_same_v<N, std::uint64_t>)
-                    if (!(*next >= 0 && *next < 0x1p53))
-                        throw InputError(path.string() + ": the number of a particle is " +
-                                         fmt::format("{}", *next));
-                number = static_cast<N>(*next++);
-            });
-    }
+    load_snapshot_rows(path, snapshot_columns(), [&](const double* next) {
+        const std::size_t i = state.size();
+        resize(state, i + 1);
+        each_column(state, i, [&]<class N>(const char*, N& number) {
+            // A number of 2^53 or more, or one below 0, is none that a run wrote.
+            if constexpr (std::is_same_v<N, std::uint64_t>)
+                if (!(*next >= 0 && *next < 0x1p53))
+                    throw InputError(path.string() + ": the number of a particle is " +
+                                     fmt::format("{}", *next));
+            number = static_cast<N>(*next++);
+        });
+    });
     return state;
 }
 

@@ -16,7 +16,7 @@ namespace hedgerow::cli {
 
 namespace {
 
-constexpr const char* kind = "paths";
+constexpr const char* kind_of_state = "paths";
 constexpr std::uint32_t state_version = 4;
 
 std::string text_of(const Camera& c) {
@@ -69,10 +69,10 @@ void PathState::write(const PathPicture& picture) const {
         for (int half = 0; half < halves_; ++half)
             parts.push_back(std::as_bytes(std::span(light->half(half).pixels())));
     for (const auto& spreads : picture.spreads) parts.push_back(std::as_bytes(std::span(spreads)));
-    save_state(file_, kind, state_version, of_, parts);
+    save_state(file_, kind_of_state, state_version, of_, parts);
 }
 PathPicture PathState::load(int width, int height) const {
-    const WorkState state = load_state(file_, kind, state_version, of_);
+    const WorkState state = load_state(file_, kind_of_state, state_version, of_);
     std::span<const std::byte> rest = state.bytes;
     const auto take = [&rest](auto& numbers) {
         const auto into = std::as_writable_bytes(std::span(numbers));

@@ -31,9 +31,8 @@ void RunFolder::make() const {
     fs::create_directories(path_, failed);
     if (failed) throw OutputError(path_.string() + ": this folder cannot be made: " + failed.message());
 }
-std::uint64_t RunFolder::last_step() const {
-    std::uint64_t last = 0;
-    bool found = false;
+std::vector<std::uint64_t> RunFolder::steps() const {
+    std::vector<std::uint64_t> all;
     std::error_code failed;
     for (const auto& file : fs::directory_iterator(path_, failed)) {
         const std::string name = file.path().filename().string();
@@ -41,10 +40,15 @@ std::uint64_t RunFolder::last_step() const {
         int length = 0;
         if (std::sscanf(name.c_str(), "snapshot-%llu%n", &step, &length) == 1 &&
             name.substr(static_cast<std::size_t>(length)) == ending_)
-            last = std::max<std::uint64_t>(last, step), found = true;
+            all.push_back(step);
     }
-    if (!found) throw InputError(path_.string() + ": there is no snapshot to go on from");
-    return last;
+    std::sort(all.begin(), all.end());
+    return all;
+}
+std::uint64_t RunFolder::last_step() const {
+    const auto all = steps();
+    if (all.empty()) throw InputError(path_.string() + ": there is no snapshot to go on from");
+    return all.back();
 }
 
 void RunFolder::save_options(const nlohmann::ordered_json& all) const {

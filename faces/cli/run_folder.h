@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -31,6 +32,10 @@ public:
     void expect_none() const;
     /// Makes the folder. Throws OutputError if that fails.
     void make() const;
+    std::filesystem::path file(std::string_view name) const { return path_ / name; }
+
+    /// The steps of all snapshots, ascending.
+    std::vector<std::uint64_t> steps() const;
     /// The step of the last snapshot. Throws InputError if there is none.
     std::uint64_t last_step() const;
 

@@ -20,6 +20,7 @@ Run add_compare(CLI::App& verb);
 Run add_bench(CLI::App& verb);
 Run add_nbody(CLI::App& verb);
 Run add_particles(CLI::App& verb);
+Run add_flow(CLI::App& verb);
 Run add_info(CLI::App& verb);
 Run add_generate(CLI::App& verb);
 Run add_convert(CLI::App& verb);

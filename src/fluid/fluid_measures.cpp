@@ -10,16 +10,19 @@ namespace hedgerow {
 
 namespace {
 
-/// The absolute compression that 99.9% of the particles stay below whose surroundings are half full.
+/// Measures the compressions of particles whose surroundings are half full.
 template <int D>
-double compression_of_most(const FluidFlow<D>& flow) {
+void measure_compressions(const FluidFlow<D>& flow, FluidMeasures<D>& m) {
     std::vector<double> sizes;
     for (std::size_t i = 0; i < flow.fills().size(); ++i)
         if (flow.fills()[i] >= 0.5f) sizes.push_back(std::abs(flow.state().compressions[i]));
-    if (sizes.empty()) return 0;
+    m.dense = sizes.size();
+    m.far_from_rest = static_cast<std::size_t>(
+        std::count_if(sizes.begin(), sizes.end(), [](double c) { return c > 0.05; }));
+    if (sizes.empty()) return;
     const auto most = sizes.begin() + static_cast<std::ptrdiff_t>((sizes.size() - 1) * 999 / 1000);
     std::nth_element(sizes.begin(), most, sizes.end());
-    return *most;
+    m.compression_of_most = *most;
 }
 
 }  // namespace
@@ -42,7 +45,7 @@ FluidMeasures<D> measures(const FluidFlow<D>& flow, Threads threads) {
     m.mean_compression = n > 0 ? sums[2] / static_cast<double>(n) : 0;
     for (int k = 0; k < D; ++k) m.momentum[k] = sums[static_cast<std::size_t>(3 + k)];
     for (const auto& v : state.velocities) m.fastest = std::max(m.fastest, length(v));
-    m.compression_of_most = compression_of_most(flow);
+    measure_compressions(flow, m);
     return m;
 }
 

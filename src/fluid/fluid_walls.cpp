@@ -5,27 +5,13 @@
 
 #include <hedgerow/base/error.h>
 
+#include "lattice_cells.h"
+
 namespace hedgerow {
 
+using detail::Cell, detail::for_each_cell, detail::middle_of;
+
 namespace {
-
-/// The number of a cell of a lattice along each axis.
-template <int D>
-using Cell = std::array<int, static_cast<std::size_t>(D)>;
-
-/// Calls f(cell) for each cell of a lattice from `low` up to `high`, the first axis fastest.
-template <int D, class F>
-void for_each_cell(const Cell<D>& low, const Cell<D>& high, F f) {
-    for (int k = 0; k < D; ++k)
-        if (low[static_cast<std::size_t>(k)] >= high[static_cast<std::size_t>(k)]) return;
-    Cell<D> at = low;
-    while (true) {
-        f(at);
-        std::size_t k = 0;
-        while (k < D && ++at[k] == high[k]) at[k] = low[k], ++k;
-        if (k == D) return;
-    }
-}
 
 /// How many spacings a box is long along each axis.
 template <int D>
@@ -42,20 +28,13 @@ Cell<D> cells_of(const Box<double, D>& box, double spacing) {
     return count;
 }
 
-template <int D>
-Vec<double, D> middle_of(const Box<double, D>& box, const Cell<D>& cell, double spacing) {
-    Vec<double, D> p = box.low;
-    for (int k = 0; k < D; ++k) p[k] += (cell[static_cast<std::size_t>(k)] + 0.5) * spacing;
-    return p;
-}
-
 }  // namespace
 
 template <int D>
 std::vector<Vec<double, D>> fill_box(const Box<double, D>& box, double spacing) {
     std::vector<Vec<double, D>> places;
     for_each_cell<D>({}, cells_of(box, spacing),
-                     [&](const auto& cell) { places.push_back(middle_of<D>(box, cell, spacing)); });
+                     [&](const auto& cell) { places.push_back(middle_of<D>(box.low, cell, spacing)); });
     return places;
 }
 
@@ -71,7 +50,7 @@ FluidWalls<D> walls_of_box(const Box<double, D>& box, double spacing, const BoxF
     for_each_cell<D>(low, high, [&](const auto& cell) {
         bool inside = true;
         for (std::size_t k = 0; k < D; ++k) inside &= cell[k] >= 0 && cell[k] < count[k];
-        if (!inside) walls.places.push_back(middle_of<D>(box, cell, spacing));
+        if (!inside) walls.places.push_back(middle_of<D>(box.low, cell, spacing));
     });
     return walls;
 }

@@ -9,6 +9,7 @@
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/spelling.h>
+#include <hedgerow/scenes/size_text.h>
 
 #include "precision.h"
 
@@ -129,7 +130,9 @@ std::uint64_t multiplier(std::string_view suffix) {
     return 0;
 }
 
-std::uint64_t parse_size(std::string_view name, std::string_view text) {
+}  // namespace
+
+std::uint64_t parse_scene_size(std::string_view name, std::string_view text) {
     std::uint64_t value = 0;
     const char* const end = text.data() + text.size();
     const auto [rest, error] = std::from_chars(text.data(), end, value);
@@ -143,8 +146,6 @@ std::uint64_t parse_size(std::string_view name, std::string_view text) {
                          " is too large; ask for at most " + std::to_string(largest_scene_size));
     return value * times;
 }
-
-}  // namespace
 
 std::span<const SceneInfo> scene_list() {
     return scenes;
@@ -162,7 +163,7 @@ SceneSpec parse_scene_spec(std::string_view text) {
     name = name.substr(0, colon);
     SceneSpec spec;
     spec.name = scene_named(name).name;
-    if (sized) spec.size = parse_size(name, size);
+    if (sized) spec.size = parse_scene_size(name, size);
     return spec;
 }
 

@@ -24,7 +24,7 @@ namespace detail {
 template <int D>
 Vec<double, D> downward(double size) {
     Vec<double, D> v;
-    v[1] = -size;
+    v[D - 1] = -size;
     return v;
 }
 }  // namespace detail
@@ -37,7 +37,7 @@ struct FluidOptions {
     /// as much shorter as sound is faster. 0: ten times what a fall from the highest to the lowest particle
     /// or wall gives, √(2·g·height).
     double sound = 0;
-    /// The acceleration that acts on all particles; the second axis points up.
+    /// The acceleration that acts on all particles; the last axis points up.
     Vec<double, D> gravity = detail::downward<D>(9.81);
     /// The kinematic viscosity. The fluid then clings to walls (Morris, Fox and Zhu 1997); if it is 0, they
     /// are slippery. An artificial viscosity that acts along the lines between particles (Monaghan 2005)

@@ -14,6 +14,9 @@ struct FluidMeasures {
     /// The absolute compression that 99.9% of the particles stay below whose surroundings are at least half
     /// full.
     double compression_of_most = 0;
+    /// How many particles have surroundings that are at least half full, and how many of them are compressed
+    /// or stretched by more than a twentieth.
+    std::size_t dense = 0, far_from_rest = 0;
 };
 
 /// Neither the order of particles nor threads change a bit. O(n). D is 2 or 3.

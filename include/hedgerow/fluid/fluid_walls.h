@@ -32,7 +32,7 @@ struct BoxFaces {
     /// All but that above: a tank.
     static constexpr BoxFaces open_above() {
         BoxFaces faces;
-        faces.high[1] = false;
+        faces.high[D - 1] = false;
         return faces;
     }
 };

@@ -1,0 +1,328 @@
+/// hedgerow flow: moves a fluid, with snapshots, pictures, surfaces and a log in a folder.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <hedgerow/base/error.h>
+#include <hedgerow/fluid/fluid_measures.h>
+#include <hedgerow/fluid/surface_of.h>
+#include <hedgerow/io/mesh_file.h>
+#include <hedgerow/io/text_file.h>
+
+#include "flow.h"
+#include "picture_notes.h"
+#include "run_folder.h"
+#include "snapshot_rows.h"
+#include "view.h"
+
+namespace hedgerow::cli {
+
+namespace {
+
+constexpr std::string_view columns_of_flow_log =
+    "step,time,kinetic,potential,fastest,mean_compression,compression_of_most,leaks,seconds";
+constexpr int log_lines_per_snapshot = 10;
+
+/// Calls f(name, number) for the columns of a particle in a snapshot.
+template <int D, class State, class F>
+void each_column(State& s, std::size_t i, F&& f) {
+    constexpr const char* places[] = {"x", "y", "z"};
+    constexpr const char* velocities[] = {"vx", "vy", "vz"};
+    constexpr const char* accelerations[] = {"ax", "ay", "az"};
+    for (int k = 0; k < D; ++k) f(places[k], s.places[i].data[k]);
+    for (int k = 0; k < D; ++k) f(velocities[k], s.velocities[i].data[k]);
+    for (int k = 0; k < D; ++k) f(accelerations[k], s.accelerations[i].data[k]);
+    f("compression", s.compressions[i]), f("compression_rate", s.compression_rates[i]);
+}
+/// What the file has beside them, which follows from the state.
+struct Derived {
+    double mass, density, pressure, time;
+    template <class F>
+    void each(F&& f) {
+        f("mass", mass), f("density", density), f("pressure", pressure), f("time", time);
+    }
+};
+template <int D, class F>
+void each_column_with_derived(FluidState<D>& s, std::size_t i, Derived derived, F&& f) {
+    each_column<D>(s, i, f);
+    derived.each(f);
+}
+template <int D>
+ColumnList snapshot_columns() {
+    ColumnList list;
+    FluidState<D> one;
+    one.resize(1);
+    each_column_with_derived(one, 0, {}, list);
+    return list;
+}
+template <int D>
+void save_snapshot(const std::filesystem::path& path, const FluidFlow<D>& flow) {
+    FluidState<D> state = flow.state();
+    const double density = flow.options().rest_density;
+    save_snapshot_rows(path, snapshot_columns<D>(), state.size(), [&](std::size_t i, Record& record) {
+        const Derived derived = {flow.mass(), density * (1 + state.compressions[i]), flow.pressure(i),
+                                 state.time};
+        each_column_with_derived(state, i, derived,
+                                 [&](const char* name, double number) { record(name, number); });
+    });
+}
+template <int D>
+FluidState<D> load_snapshot(const std::filesystem::path& path) {
+    FluidState<D> state;
+    load_snapshot_rows(path, snapshot_columns<D>(), [&](const double* next) {
+        const std::size_t i = state.size();
+        state.resize(i + 1);
+        each_column<D>(state, i, [&](const char*, double& number) { number = *next++; });
+        state.time = next[3];
+    });
+    return state;
+}
+
+/// What run.json holds. `visit` is called with the name and the value of each option.
+template <class Arguments, class Visit>
+void each_flow_option(Arguments& a, Visit visit) {
+    visit("scene", a.scene), visit("seed", a.seed), visit("drop_bad", a.drop_bad), visit("plane", a.plane);
+    visit("walls", a.walls), visit("up", a.up), visit("spacing", a.spacing), visit("sound", a.sound);
+    visit("viscosity", a.viscosity), visit("gravity", a.gravity), visit("until", a.until);
+    visit("every", a.every), visit("colour", a.colour), visit("size", a.size), visit("surface", a.surface);
+}
+
+constexpr std::string_view clear_water =
+    "# Clear water. Without the exponent it would be rough.\n"
+    "newmtl water\nKd 1 1 1\nKs 1 1 1\nNi 1.33\nNs 1000000\nd 0\nillum 7\n";
+
+/// The files that a run writes as it goes on.
+template <int D>
+class FlowRecorder {
+public:
+    FlowRecorder(const FlowArguments& a, const RunFolder& folder, const FlowScene<D>& scene)
+        : a_(a), folder_(folder), scene_(scene), log_(folder.log()), began_(now()) {
+        size_ = flow_picture_size(a, scene);
+    }
+    void begin_log() { log_.begin(columns_of_flow_log); }
+    void go_on_with_log_after(std::uint64_t step) { log_.go_on_after(step, columns_of_flow_log); }
+    /// Writes a line, and keeps the worst of all.
+    FluidMeasures<D> line(std::uint64_t step, const FluidFlow<D>& flow) {
+        const auto m = measures(flow);
+        const std::size_t outside = leaks(scene_, flow.state());
+        log_.line(fmt::format("{},{},{},{},{},{},{},{},{:.3f}", step, flow.state().time, m.kinetic,
+                              m.potential, m.fastest, m.mean_compression, m.compression_of_most, outside,
+                              now() - began_));
+        worst_mean = std::max(worst_mean, m.mean_compression);
+        dense += m.dense, far_from_rest += m.far_from_rest;
+        most_leaks = std::max(most_leaks, outside);
+        return m;
+    }
+    void snapshot(std::uint64_t step, const FluidFlow<D>& flow) {
+        save_snapshot(folder_.snapshot(step), flow);
+        if (size_)
+            save_png(folder_.picture(step),
+                     flow_picture(a_, scene_, flow.state(), size_->first, size_->second), {},
+                     picture_notes(a_.seed));
+        if constexpr (D == 3)
+            if (!a_.surface.empty()) save_surface(step, flow);
+    }
+    /// Writes up to twelve pictures of the run side by side.
+    void sheet() const {
+        if (!size_) return;
+        const auto steps = folder_.steps();
+        constexpr std::size_t most = 12, in_a_row = 4;
+        const std::size_t count = std::min(steps.size(), most);
+        if (count < 2) return;
+        const int width = 360, height = std::max(1, width * size_->second / size_->first), gap = 6;
+        const auto columns = static_cast<int>(std::min(in_a_row, count)),
+                   rows = static_cast<int>((count + in_a_row - 1) / in_a_row);
+        Image all(columns * (width + gap) - gap, rows * (height + gap) - gap, {255, 255, 255});
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint64_t step = steps[i * (steps.size() - 1) / (count - 1)];
+            const auto state = load_snapshot<D>(folder_.snapshot(step));
+            paste(flow_picture(a_, scene_, state, width, height), all,
+                  static_cast<int>(i % in_a_row) * (width + gap),
+                  static_cast<int>(i / in_a_row) * (height + gap));
+        }
+        save_png(folder_.file("sheet.png"), all, {}, picture_notes(a_.seed));
+    }
+
+    /// The share of particles, over all lines, whose density is more than a twentieth from that at rest.
+    double share_far_from_rest() const {
+        return dense > 0 ? static_cast<double>(far_from_rest) / static_cast<double>(dense) : 0;
+    }
+
+    double worst_mean = 0;
+    std::size_t most_leaks = 0, dense = 0, far_from_rest = 0;
+
+private:
+    void save_surface(std::uint64_t step, const FluidFlow<D>& flow) {
+        PointSurfaceOptions options;
+        options.spacing = flow.options().spacing;
+        const auto surface = surface_of(flow.state().places, options);
+        SavedLooks looks{Strided<Vec3f>(surface.normals), "", ""};
+        if (a_.surface == "obj") {
+            save_text(folder_.file("water.mtl"), std::string(clear_water));
+            looks.material_file = "water.mtl", looks.material = "water";
+        }
+        save_mesh(folder_.file(fmt::format("surface-{:07}.{}", step, a_.surface)), surface.mesh, {}, nullptr,
+                  looks);
+    }
+
+    const FlowArguments& a_;
+    const RunFolder& folder_;
+    const FlowScene<D>& scene_;
+    RunLog log_;
+    double began_;
+    std::optional<std::pair<int, int>> size_;
+};
+
+/// The pressures of a fluid that has come to rest, beside those of its weight. Empty while it moves.
+template <int D>
+std::string hydrostatics(const FlowScene<D>& scene, const FluidFlow<D>& flow, bool& kept) {
+    const FluidState<D>& state = flow.state();
+    const double g = length(scene.options.gravity), n = static_cast<double>(state.size());
+    double surface = -1e300, low = 1e300, speeds = 0, errors = 0;
+    for (std::size_t i = 0; i < state.size(); ++i) {
+        surface = std::max(surface, state.places[i][scene.up]),
+        low = std::min(low, state.places[i][scene.up]);
+        speeds += length2(state.velocities[i]);
+    }
+    surface += scene.options.spacing / 2;
+    const double depth = surface - low + scene.options.spacing / 2;
+    if (!(std::sqrt(speeds / n) < 0.01 * std::sqrt(g * depth))) return "the fluid moves: no hydrostatics";
+    for (std::size_t i = 0; i < state.size(); ++i) {
+        const double wanted = flow.options().rest_density * g * (surface - state.places[i][scene.up]);
+        errors += std::pow(flow.pressure(i) - wanted, 2);
+    }
+    const double rms = std::sqrt(errors / n) / (flow.options().rest_density * g * depth);
+    kept &= rms < 0.02;
+    return fmt::format("pressures differ from those of its weight by {:.2f}% (rms) of the deepest",
+                       100 * rms);
+}
+
+template <int D>
+int report_of_flow(const FlowArguments& a, const FlowScene<D>& scene, const FluidFlow<D>& flow,
+                   const FlowRecorder<D>& recorder, const FluidMeasures<D>& first, std::uint64_t step,
+                   std::uint64_t moved, double seconds) {
+    const auto last = measures(flow);
+    // Energies above that of the deepest point that the fluid can come to.
+    const double scale = std::abs(flow.mass() * static_cast<double>(flow.state().size()) *
+                                  length(scene.options.gravity) * scene.depth()),
+                 gained = last.kinetic + last.potential - first.kinetic - first.potential;
+    bool kept = true;
+    std::string text;
+    if (a.check) {
+        kept = recorder.worst_mean < 0.01 && recorder.share_far_from_rest() < 0.001 &&
+               recorder.most_leaks == 0 && !(gained > 0.01 * scale);
+        text = hydrostatics(scene, flow, kept);
+    }
+    if (a.json) {
+        nlohmann::ordered_json all = {{"output", a.output},
+                                      {"particles", flow.state().size()},
+                                      {"walls", flow.walls().places.size()},
+                                      {"time", flow.state().time},
+                                      {"step", step},
+                                      {"spacing", scene.options.spacing},
+                                      {"sound", flow.options().sound},
+                                      {"kinetic", last.kinetic},
+                                      {"potential", last.potential},
+                                      {"particle_steps", moved},
+                                      {"seconds", seconds}};
+        if (a.check)
+            all["check"] = {{"mean_compression", recorder.worst_mean},
+                            {"share_far_from_rest", recorder.share_far_from_rest()},
+                            {"leaks", recorder.most_leaks},
+                            {"energy_gained", gained},
+                            {"hydrostatics", text},
+                            {"kept", kept}};
+        print_json(all);
+    } else if (!a.quiet) {
+        fmt::print(
+            "{}: {} particles {:.3g} apart and {} of walls to time {:g}, {} steps (sound {:.3g})\n"
+            "kinetic energy {:.3g}, at most {:.2g} fast; density within {:.2f}% in the mean; "
+            "{:.3g} million particle steps in {:.1f} s\n",
+            a.output, flow.state().size(), scene.options.spacing, flow.walls().places.size(),
+            flow.state().time, step, flow.options().sound, last.kinetic, last.fastest,
+            100 * last.mean_compression, static_cast<double>(moved) / 1e6, seconds);
+        if (a.check)
+            fmt::print(
+                "check: density within {:.2f}% in the mean, farther than 5% from rest for {:.3f}% of "
+                "particles; {} behind walls, energy {} "
+                "by {:.1f}% of that of the fall; {}: {}\n",
+                100 * recorder.worst_mean, 100 * recorder.share_far_from_rest(), recorder.most_leaks,
+                gained > 0 ? "grew" : "fell", 100 * std::abs(gained) / std::max(scale, 0x1p-1000), text,
+                kept ? "good" : "NOT as it should be");
+    }
+    return interrupted ? 130 : kept ? 0 : 1;
+}
+
+}  // namespace
+
+template <int D>
+int flow_run(FlowArguments a) {
+    RunFolder folder(a.output);
+    const double began = now();
+    std::uint64_t step = 0;
+    if (a.resume) {
+        const double until = a.until;
+        folder.read_options([&](const nlohmann::ordered_json& options) {
+            each_flow_option(a, [&](const char* name, auto& value) { options.at(name).get_to(value); });
+        });
+        if (until >= 0) a.until = until;
+        step = folder.last_step();
+    } else {
+        folder.expect_none();
+    }
+    FlowScene<D> scene = flow_scene<D>(a);
+    if (a.until < 0) a.until = scene.until;
+    if (a.every < 0) a.every = a.until / 20;
+    FluidState<D> start = a.resume ? load_snapshot<D>(folder.snapshot(step)) : scene.start;
+    FluidFlow<D> flow(std::move(start), scene.walls, scene.options);
+    const double steps_left = (a.until - flow.state().time) / flow.longest_step();
+    if (!(steps_left < 1e9))
+        throw UsageError(
+            fmt::format("steps are {:.2g} long here, and {:.2g} of them would be needed; give a longer "
+                        "spacing, or less --viscosity or --sound",
+                        flow.longest_step(), steps_left));
+    FlowRecorder<D> recorder(a, folder, scene);
+    if (a.resume) {
+        recorder.go_on_with_log_after(step);
+    } else {
+        folder.make();
+        recorder.begin_log();
+    }
+    const FluidMeasures<D> first = a.resume ? measures(flow) : recorder.line(0, flow);
+    if (!a.resume) {
+        recorder.snapshot(0, flow);
+        nlohmann::ordered_json options;
+        each_flow_option(a, [&](const char* name, const auto& value) { options[name] = value; });
+        folder.save_options(options);
+    }
+    // Step from one line of the log to the next, until the time is reached, or the run is interrupted.
+    std::uint64_t moved = 0;
+    {
+        ProgressLine line("moving the fluid", a.quiet);
+        const Progress progress = line.progress();
+        const double from = flow.state().time, of_line = a.every / log_lines_per_snapshot;
+        auto number = static_cast<std::uint64_t>(std::floor(from / of_line * (1 + 1e-12) + 1e-9)) + 1;
+        bool saved = true;
+        while (flow.state().time < a.until && !interrupted) {
+            const double next = std::min(a.until, static_cast<double>(number) * of_line);
+            flow.step_towards(next);
+            ++step, moved += flow.state().size(), saved = false;
+            if (flow.state().time >= next) {
+                recorder.line(step, flow);
+                saved = number++ % log_lines_per_snapshot == 0 || next == a.until;
+                if (saved) recorder.snapshot(step, flow);
+            }
+            progress(static_cast<std::uint64_t>(1e6 * (flow.state().time - from) / (a.until - from)),
+                     1000000);
+        }
+        if (!saved) recorder.snapshot(step, flow);
+    }
+    recorder.sheet();
+    return report_of_flow(a, scene, flow, recorder, first, step, moved, now() - began);
+}
+template int flow_run<2>(FlowArguments);
+template int flow_run<3>(FlowArguments);
+
+}  // namespace hedgerow::cli
