@@ -1,5 +1,5 @@
 /// A cell list that is written by hand for the processor's vectors, as programs of particles have them: the
-/// peer of neighbours_benchmark.
+/// peer of neighbours_benchmark and fluid_benchmark.
 #pragma once
 
 #include <cstddef>
