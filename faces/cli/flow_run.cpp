@@ -194,7 +194,8 @@ std::string hydrostatics(const FlowScene<D>& scene, const FluidFlow<D>& flow, bo
         errors += std::pow(flow.pressure(i) - wanted, 2);
     }
     const double rms = std::sqrt(errors / n) / (flow.options().rest_density * g * depth);
-    kept &= rms < 0.02;
+    // The surface is known to a part of a spacing.
+    kept &= rms < std::max(0.02, 0.25 * scene.options.spacing / depth);
     return fmt::format("pressures differ from those of its weight by {:.2f}% (rms) of the deepest",
                        100 * rms);
 }

@@ -242,7 +242,8 @@ private:
     /// Calls f(lists) for parts of an order, with the neighbours in an order over the same axes.
     template <class F>
     void for_lists(const Order& asking, const Order& asked, Executor& executor, F f) const {
-        const auto begins = detail::parts_of(asking);
+        constexpr std::size_t points_each = 1024;  // whose lists stay in a processor's cache
+        const auto begins = detail::parts_of(asking, points_each);
         const auto listed = &asking == &asked ? detail::Listed::others : detail::Listed::all;
         const double reach2 = reach() * reach();
         executor.for_each_piece(begins.size() - 1, 1, [&](std::size_t from, std::size_t to) {

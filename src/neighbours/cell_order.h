@@ -135,8 +135,7 @@ private:
 
 /// The first cell of parts with about as many points each, and the end of the last.
 template <class Order>
-std::vector<std::size_t> parts_of(const Order& order) {
-    constexpr std::size_t points_each = 4096;
+std::vector<std::size_t> parts_of(const Order& order, std::size_t points_each = 4096) {
     const auto& cells = order.cells();
     std::vector<std::size_t> begins;
     for (std::size_t c = 0; c + 1 < cells.size(); ++c)
