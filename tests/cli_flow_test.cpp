@@ -103,6 +103,18 @@ TEST_F(FlowVerb, AMeshIsFilledAndFallsIntoAMesh) {
     const auto info = run("info --json " + file("run/" + named("run", "surface").back()));
     EXPECT_TRUE(json::parse(info.output)["closed"]) << info.output;
 }
+TEST_F(FlowVerb, SurfacesHaveAFloorForPictures) {
+    const auto r =
+        run("flow gen:drop:300 --until 0.01 --every 0.01 --size 0x0 --surface obj --floor -o " + file("run"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    const std::string surface = "run/" + named("run", "surface").back(), picture = file("water.png");
+    EXPECT_NE(bytes_of(surface).find("usemtl floor"), std::string::npos);
+    EXPECT_NE(bytes_of("run/water.mtl").find("newmtl floor"), std::string::npos);
+    const auto made =
+        run("render " + file(surface) + " --up z --shading path --spp 1 --size 32x24 -o " + picture);
+    EXPECT_EQ(made.code, 0) << made.output;
+    EXPECT_EQ(load_png(picture).width, 32);
+}
 TEST_F(FlowVerb, BadInputIsRefusedWithASentence) {
     const auto refused = [&](const std::string& options, int code, const std::string& words) {
         const auto r = run("flow " + options);
@@ -120,6 +132,7 @@ TEST_F(FlowVerb, BadInputIsRefusedWithASentence) {
     refused("gen:dam --spacing 0.1" + out, 2, "number of particles");
     refused("gen:dam:200 --plane --surface obj" + out, 2, "in space");
     refused("gen:dam:200 --plane --viscosity 1e12" + out, 2, "steps are");
+    refused("gen:dam:200 --floor" + out, 2, "--surface obj");
     refused("gen:dam:100G" + out, 2, "too large");
     save_mesh(folder / "cube.ply", cube<double>(12));
     auto open = cube<double>(12);

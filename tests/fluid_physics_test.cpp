@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -18,6 +20,11 @@ namespace hedgerow {
 namespace {
 
 constexpr double g = 9.81, pi = std::numbers::pi;
+
+/// Prints a figure, which docs/fluids.md has.
+void tell(const std::string& what, double found) {
+    std::printf("  %s: %.4f\n", what.c_str(), found);
+}
 
 /// The line of pressures over depths by least squares, and what they differ by from those of water at rest.
 struct Hydrostatics {
@@ -53,14 +60,19 @@ void expect_rest(double spacing, int width, int height, double rms) {
         if (until > static_cast<double>(in_long_runs(20, 1))) break;
         flow.advance(until);
         found.push_back(hydrostatics(flow, h));
-        SCOPED_TRACE("at " + std::to_string(until) + " s");
+        const std::string at = std::to_string(D) + "D at " + std::to_string(int(until)) + " s, ";
+        SCOPED_TRACE(at);
+        tell(at + "rms over the deepest pressure", found.back().rms);
+        tell(at + "pressure at the floor", found.back().floor);
+        tell(at + "slope", found.back().slope);
         EXPECT_LT(found.back().rms, rms);
         EXPECT_NEAR(found.back().floor, 1, 0.02);
         EXPECT_NEAR(found.back().slope, 1, 0.02);
         if (until > 1) {
             const auto m = measures(flow);
-            EXPECT_LT(std::sqrt(2 * m.kinetic / (flow.mass() * double(flow.state().size()))),
-                      (D == 2 ? 2e-3 : 5e-3) * std::sqrt(g * h));
+            const double speed = std::sqrt(2 * m.kinetic / (flow.mass() * double(flow.state().size())));
+            tell(at + "rms speed in thousandths of √(gH)", 1000 * speed / std::sqrt(g * h));
+            EXPECT_LT(speed, (D == 2 ? 2e-3 : 5e-3) * std::sqrt(g * h));
         }
     }
     if (found.size() == 3) {
@@ -130,6 +142,8 @@ TEST(FluidPhysics, TheFrontOfADamBreakIsThatOfTheExperiment) {
     const double found = speed([&](double t) { return front.at(t - shift); }, experiment[1], experiment[10]),
                  wanted = (experiment[10][1] - experiment[1][1]) / (experiment[10][0] - experiment[1][0]);
     EXPECT_NEAR(found / wanted, 1, 0.08);
+    tell("shift in time", shift), tell("rms over a", rms),
+        tell("speed over that of the experiment", found / wanted);
 }
 TEST(FluidPhysics, ABrokenDamComesToRestWithoutLeaksAndKeepsItsDensity) {
     constexpr double a = 0.5, height = 3;
@@ -138,6 +152,7 @@ TEST(FluidPhysics, ABrokenDamComesToRestWithoutLeaksAndKeepsItsDensity) {
     FluidFlow<2> flow(filled(box, spacing), walls_of_box(tank, spacing), water<2>(spacing, 2 * a));
     const double start = measures(flow).potential;
     std::size_t dense = 0, far_from_rest = 0;  // particles, summed over steps
+    double kinetic = 0, mean = 0;
     while (flow.state().time < until) {
         flow.step();
         for (const auto& p : flow.state().places)
@@ -146,15 +161,20 @@ TEST(FluidPhysics, ABrokenDamComesToRestWithoutLeaksAndKeepsItsDensity) {
                     << p[0] << " " << p[1] << " at " << flow.state().time;
         const auto m = measures(flow);
         ASSERT_LT(m.mean_compression, 0.01);
+        mean = std::max(mean, m.mean_compression);
         dense += m.dense, far_from_rest += m.far_from_rest;
         ASSERT_LT(m.kinetic + m.potential, 1.001 * start);
         if (flow.state().time > 10) {
             ASSERT_LT(m.kinetic, 0.02 * start) << flow.state().time;
+            kinetic = std::max(kinetic, m.kinetic / start);
             double highest = 0;
             for (const auto& p : flow.state().places) highest = std::max(highest, p[1]);
             ASSERT_LT(highest, 2 * a * 2 * a / (4 * a) * 2);  // two depths
         }
     }
+    tell("greatest mean compression", mean);
+    tell("share of particles beyond 5%, in thousandths", 1000 * double(far_from_rest) / double(dense));
+    tell("greatest kinetic energy from 10 s on, over the energy at the start", kinetic);
     EXPECT_GT(dense, 0u);
     EXPECT_LT(far_from_rest, dense / 1000);
 }
@@ -187,6 +207,9 @@ TEST(FluidPhysics, ALongDamHasTheDepthsOfRitter) {
         squares += std::pow(depth(x) - std::pow(2 * c - (x - L) / time, 2) / (9 * g), 2), columns += 1;
     }
     EXPECT_LT(std::sqrt(squares / columns), 0.04 * H);
+    tell("rms of depths over H", std::sqrt(squares / columns) / H);
+    tell("depth at the gate over 4H/9", (depth(L - wide / 2) + depth(L + wide / 2)) / 2 / (4 * H / 9));
+    tell("speed of the tip over √(gH)", (front() - before) / (time - then) / c);
     EXPECT_NEAR((depth(L - wide / 2) + depth(L + wide / 2)) / 2, 4 * H / 9, 0.05 * 4 * H / 9);
     const double tip = (front() - before) / (time - then) / c;
     EXPECT_GT(tip, 1.5);
@@ -221,6 +244,7 @@ TEST(FluidPhysics, AStandingWaveHasThePeriodOfItsLength) {
     const double found =
         2 * (crossings.back() - crossings.front()) / static_cast<double>(crossings.size() - 1);
     EXPECT_NEAR(found / period, 1, 0.02);
+    tell("period over that of the theory", found / period);
 }
 
 /// The rms of what velocities along a channel of height 1 differ by from exact ones.
@@ -229,7 +253,9 @@ double error_in_channel(const FluidFlow<2>& flow, F exact) {
     double sum = 0;
     for (std::size_t i = 0; i < flow.state().size(); ++i)
         sum += std::pow(flow.state().velocities[i][0] - exact(flow.state().places[i][1]), 2);
-    return std::sqrt(sum / static_cast<double>(flow.state().size()));
+    const double rms = std::sqrt(sum / static_cast<double>(flow.state().size()));
+    tell("rms of velocities over the greatest", rms);
+    return rms;
 }
 FluidFlow<2> channel(double spacing, double viscosity, double push, double belt) {
     FluidOptions<2> options;
@@ -300,6 +326,7 @@ TEST(FluidPhysics, VorticesOfTaylorAndGreenDecay) {
     flow.advance(2);
     const double rate = std::log(before / measures(flow).kinetic) / 2 / 1.5;
     EXPECT_NEAR(rate / (8 * pi * pi * viscosity), 1, 0.05);
+    tell("rate of decay over 8π²ν", rate / (8 * pi * pi * viscosity));
 }
 
 }  // namespace

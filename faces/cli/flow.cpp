@@ -54,6 +54,7 @@ Run add_flow(CLI::App& verb) {
             "also write the surface of the fluid at each snapshot, as a closed mesh with normals: obj (of "
             "clear water), ply or stl")
         ->check(CLI::IsMember({"obj", "ply", "stl"}));
+    verb.add_flag("--floor", a->floor, "surfaces of obj have a floor below the tank, for pictures");
     verb.add_option("--threads", a->threads, "0: all")->capture_default_str();
     add_reporting(verb, *a);
     add_drop_bad(verb, *a);
@@ -76,6 +77,8 @@ Run add_flow(CLI::App& verb) {
                 [&](const nlohmann::ordered_json& options) { options.at("plane").get_to(a->plane); });
         if (a->plane && !a->surface.empty())
             throw UsageError("--surface is for fluids in space: leave --plane out");
+        if (a->floor && a->surface != "obj" && !a->resume)
+            throw UsageError("--floor is for --surface obj, which holds two materials");
         const ThreadLimit limit(a->threads);
         return a->plane ? flow_run<2>(*a) : flow_run<3>(*a);
     };

@@ -16,7 +16,7 @@ namespace hedgerow::cli {
 
 /// The options of a run. Numbers below 0 are chosen by the scene.
 struct FlowArguments : Common {
-    bool plane = false, resume = false, check = false;
+    bool plane = false, resume = false, check = false, floor = false;
     std::string walls, up = "auto", colour = "pressure", size = "auto", surface;
     double until = -1, every = -1;
     double spacing = -1, sound = -1, viscosity = -1, gravity = 9.81;

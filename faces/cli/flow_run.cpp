@@ -1,6 +1,8 @@
 /// hedgerow flow: moves a fluid, with snapshots, pictures, surfaces and a log in a folder.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +22,8 @@
 namespace hedgerow::cli {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::string_view columns_of_flow_log =
     "step,time,kinetic,potential,fastest,mean_compression,compression_of_most,leaks,seconds";
@@ -87,11 +91,13 @@ void each_flow_option(Arguments& a, Visit visit) {
     visit("walls", a.walls), visit("up", a.up), visit("spacing", a.spacing), visit("sound", a.sound);
     visit("viscosity", a.viscosity), visit("gravity", a.gravity), visit("until", a.until);
     visit("every", a.every), visit("colour", a.colour), visit("size", a.size), visit("surface", a.surface);
+    visit("floor", a.floor);
 }
 
-constexpr std::string_view clear_water =
+constexpr std::string_view materials_of_surfaces =
     "# Clear water. Without the exponent it would be rough.\n"
-    "newmtl water\nKd 1 1 1\nKs 1 1 1\nNi 1.33\nNs 1000000\nd 0\nillum 7\n";
+    "newmtl water\nKd 1 1 1\nKs 1 1 1\nNi 1.33\nNs 1000000\nd 0\nillum 7\n"
+    "newmtl floor\nKd 0.7 0.66 0.6\n";
 
 /// The files that a run writes as it goes on.
 template <int D>
@@ -160,11 +166,31 @@ private:
         const auto surface = surface_of(flow.state().places, options);
         SavedLooks looks{Strided<Vec3f>(surface.normals), "", ""};
         if (a_.surface == "obj") {
-            save_text(folder_.file("water.mtl"), std::string(clear_water));
+            save_text(folder_.file("water.mtl"), std::string(materials_of_surfaces));
             looks.material_file = "water.mtl", looks.material = "water";
         }
-        save_mesh(folder_.file(fmt::format("surface-{:07}.{}", step, a_.surface)), surface.mesh, {}, nullptr,
-                  looks);
+        const fs::path path = folder_.file(fmt::format("surface-{:07}.{}", step, a_.surface));
+        save_mesh(path, surface.mesh, {}, nullptr, looks);
+        if (!a_.floor) return;
+        std::ifstream in(path, std::ios::binary);
+        std::string text{std::istreambuf_iterator<char>(in), {}};
+        save_text(path, text + floor_below(surface.mesh.vertices.size()));
+    }
+    /// A floor a spacing below the tank and five times as wide, as lines of an OBJ after so many vertices.
+    std::string floor_below(std::size_t vertices) const {
+        const int up = scene_.up, right = up == 0 ? 1 : 0, back = 3 - up - right;
+        const Vec3d middle = scene_.tank.center(), reach = scene_.tank.extent() * 2.5;
+        std::string text;
+        for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+            Vec3d p;
+            p[right] = middle[right] + x * reach[right], p[back] = middle[back] + y * reach[right];
+            p[up] = scene_.tank.low[up] - scene_.options.spacing;
+            text += fmt::format("v {} {} {}\n", p[0], p[1], p[2]);
+        }
+        // Counterclockwise as seen from above.
+        const bool turned = up == 1;
+        const std::size_t a = vertices + 1, b = vertices + (turned ? 4 : 2), d = vertices + (turned ? 2 : 4);
+        return text + fmt::format("usemtl floor\nf {} {} {} {}\n", a, b, vertices + 3, d);
     }
 
     const FlowArguments& a_;
