@@ -30,6 +30,7 @@ const std::map<std::string, std::string> not_compared = {
     {"visibility/terrain.svg", "shows times"},
     {"paths/convergence.svg", "is made by a benchmark, of errors that take hours to measure"},
     {"particles/spheres.png", "is written by the example bouncing_spheres"},
+    {"fluids/water.png", "is a frame of a run that takes a minute"},
     {"visibility/points.png", "is written by the block of C++ above it"},
     {"visibility/areas.png", "is written by the block of C++ above it"},
 };
@@ -73,7 +74,7 @@ struct Shown {
 void add_pictures(const fs::path& document, std::map<std::string, Shown>& all) {
     const std::string text = bytes_of(document);
     const auto commands =
-        matches(text, "(hedgerow (?:draw|render|nbody|particles|compare|bench) [^`\n#]*-o [^ `\n]+)");
+        matches(text, "(hedgerow (?:draw|render|nbody|particles|flow|compare|bench) [^`\n#]*-o [^ `\n]+)");
     auto shown = matches(text, R"(!\[[^\]]*\]\(([^)]*pictures/[^)]+)\))");
     for (auto& more : matches(text, "<img src=\"([^\"]*pictures/[^\"]+)\"")) shown.push_back(std::move(more));
     for (const std::string& reference : shown) {
