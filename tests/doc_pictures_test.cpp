@@ -84,9 +84,10 @@ void add_pictures(const fs::path& document, std::map<std::string, Shown>& all) {
         for (const std::string& command : commands) {
             const std::size_t output_at = command.rfind(' ') + 1;
             const std::string output = fs::path(command.substr(output_at)).filename().string();
-            const bool in_folder = (command.starts_with("hedgerow nbody gen:") ||
-                                    command.starts_with("hedgerow particles gen:")) &&
-                                   path.parent_path().filename() == output;
+            const bool is_run = command.starts_with("hedgerow nbody gen:") ||
+                                command.starts_with("hedgerow particles gen:") ||
+                                command.starts_with("hedgerow flow gen:");
+            const bool in_folder = is_run && path.parent_path().filename() == output;
             if (path.filename() == output || in_folder)
                 s.document = document.filename().string(), s.output = output,
                 s.command = command.substr(9, output_at - 9);  // without "hedgerow "

@@ -190,7 +190,7 @@ private:
 
     /// Finds accelerations and rates of compression in the middle of the step, in the order of cells.
     void find_rates(Executor& executor) {
-        choose_walls(executor);
+        choose_walls();
         const std::array<Strided<V>, 2> sets = {Strided<V>(middle_), Strided<V>(near_walls_)};
         const detail::CellAxes<double, D> cells(std::span(sets.data(), near_walls_.empty() ? 1 : 2), reach(),
                                                 options.periods, executor);
@@ -260,7 +260,7 @@ private:
     }
 
     /// Chooses the walls that the fluid may reach.
-    void choose_walls(Executor&) {
+    void choose_walls() {
         Box<double, D> box;
         for (const V& p : middle_) box.expand(p);
         near_walls_.clear(), wall_ids_.clear();
@@ -407,8 +407,12 @@ template <int D>
 void FluidFlow<D>::step_towards(double until) {
     const double left = until - state().time;
     if (!(left > 0)) return;
-    const double steps = std::ceil(left / longest_step());
-    steps_->step(left / steps);
+    const double steps = std::ceil(left / longest_step()), dt = left / steps;
+    if (state().time + dt == state().time)
+        throw InputError("steps of " + std::to_string(dt) + " no longer move the time of " +
+                         std::to_string(state().time) +
+                         ": the fluid is too fast or too viscous for its spacing");
+    steps_->step(dt);
     if (steps <= 1) steps_->state.time = until;
 }
 template <int D>

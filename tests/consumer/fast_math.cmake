@@ -7,7 +7,7 @@ set(allowed version.h base/error.h base/column.h base/instruction_set.h nbody/ke
             render/lettering.h render/film/around.h
             render/sampling/sobol.h measure/advice.h measure/break_even.h measure/clock.h measure/contest.h measure/costs.h measure/fit.h
             measure/growth.h measure/lists.h measure/machine.h measure/quantity.h measure/reason.h predicted_memory.h io/writable.h parallel/sort.h parallel/watched_executor.h structures/item_limit.h structures/hash_grid/cell_table.h
-            walks/kernel.h)
+            walks/kernel.h scenes/size_text.h)
 
 file(GLOB_RECURSE headers RELATIVE ${INCLUDE}/hedgerow ${INCLUDE}/hedgerow/*.h)
 foreach(header ${headers})

@@ -49,7 +49,8 @@ struct FluidOptions {
     /// which is 28 and 58 neighbours.
     double smoothing = 0;
     double diffusion = 0.1;  ///< δ, of density
-    /// Lengths after which all repeats along each axis; 0 where it does not.
+    /// Lengths after which all repeats along each axis; 0 where it does not. Places are not wrapped:
+    /// particles may leave the first period.
     Periods<D> periods = {};
 };
 
@@ -78,7 +79,8 @@ public:
     void step();
     /// Steps until a time. Returns how many.
     std::uint64_t advance(double until);
-    /// One step of at most so long, such that steps of about one length end at a time.
+    /// One step, such that steps of about one length end at a time. Throws as `step` does, and InputError if
+    /// steps have become so short that the time no longer grows.
     void step_towards(double until);
 
     /// The length that the next step may have: 0.35·h/(sound + the highest speed), or 0.1·h²/viscosity if
