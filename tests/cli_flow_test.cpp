@@ -103,6 +103,20 @@ TEST_F(FlowVerb, AMeshIsFilledAndFallsIntoAMesh) {
     const auto info = run("info --json " + file("run/" + named("run", "surface").back()));
     EXPECT_TRUE(json::parse(info.output)["closed"]) << info.output;
 }
+TEST_F(FlowVerb, ASourceFlowsAndGoesOn) {
+    auto tap = cube<double>(12);
+    for (auto& p : tap.vertices) p = p * 0.15 + Vec3d(0.25, 0.25, 0.75);
+    save_mesh(folder / "tap.ply", tap);
+    const std::string options = "flow gen:column:300 --inflow " + file("tap.ply") +
+                                " --inflow-velocity 0,0,-1 --every 0.1 --size 0x0 --json ";
+    const auto whole = run(options + "--until 0.2 -o " + file("whole"));
+    ASSERT_EQ(whole.code, 0) << whole.output;
+    EXPECT_GT(json::parse(whole.output)["particles"], 343 + 40);
+    ASSERT_EQ(run(options + "--until 0.1 -o " + file("part")).code, 0);
+    ASSERT_EQ(run("flow --resume --until 0.2 -o " + file("part")).code, 0);
+    for (const auto& name : named("whole", "snapshot"))
+        EXPECT_EQ(bytes_of(fs::path("whole") / name), bytes_of(fs::path("part") / name)) << name;
+}
 TEST_F(FlowVerb, SurfacesHaveAFloorForPictures) {
     const auto r =
         run("flow gen:drop:300 --until 0.01 --every 0.01 --size 0x0 --surface obj --floor -o " + file("run"));

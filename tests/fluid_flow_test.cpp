@@ -283,6 +283,35 @@ TYPED_TEST(Fluids, ADropFallsFreely) {
     flow.advance(5);
     EXPECT_NEAR(flow.state().velocities[0][D - 1], -10, 1e-9);
 }
+TYPED_TEST(Fluids, ASourceKeepsFull) {
+    constexpr int D = TypeParam::D;
+    FluidOptions<D> options = water<D>(0.1, 1);
+    options.gravity = {};
+    Box<double, D> source;
+    for (int k = 0; k < D; ++k) source.low[k] = 0, source.high[k] = 0.3;
+    const auto places = fill_box(source, 0.1);
+    Vec<double, D> velocity;
+    velocity[0] = 1;
+    FluidFlow<D> flow({}, {}, options);
+    EXPECT_EQ(flow.pour(places, velocity), places.size());
+    EXPECT_EQ(flow.pour(places, velocity), 0u);
+    auto doubled = places;
+    doubled.insert(doubled.end(), places.begin(), places.end());
+    EXPECT_EQ(FluidFlow<D>({}, {}, options).pour(doubled, velocity), places.size());
+    for (const auto& v : flow.state().velocities) EXPECT_EQ(v, velocity);
+    // What has left makes room for about as much: a layer for each spacing.
+    const std::size_t layer = places.size() / 3;
+    std::size_t added = 0;
+    while (flow.state().time < 1) added += flow.pour(places, velocity), flow.step();
+    EXPECT_NEAR(static_cast<double>(added), 10.0 * static_cast<double>(layer),
+                3.0 * static_cast<double>(layer));
+    const auto state = flow.state();
+    FluidFlow<D> resumed(state, {}, flow.options());
+    EXPECT_EQ(resumed.pour(places, velocity), flow.pour(places, velocity));
+    flow.step(), resumed.step();
+    expect_same(flow.state(), resumed.state());
+    EXPECT_THROW(flow.pour({Vec<double, D>::all(std::nan(""))}, velocity), InputError);
+}
 TYPED_TEST(Fluids, NoParticlesFlowAtNoCost) {
     constexpr int D = TypeParam::D;
     FluidFlow<D> flow({}, {}, water<D>(0.1, 1));

@@ -446,8 +446,10 @@ TEST(ParticleSystem, BallsLieOnEachOther) {
     options.contacts = {.restitution = 0.2, .friction = 0.3, .each_other = true};
     ParticleState start;
     constexpr double r = 0.15;
-    for (int i = 0; i < 150; ++i)
-        add(start, Vec3d(i % 5, i / 5 % 5, i / 25) * 0.32 + Vec3d(-0.65 + 0.001 * i, -0.65, -0.8), {}, r);
+    for (int i = 0; i < 150; ++i) {
+        const int row = i / 5 % 5, layer = i / 25;
+        add(start, Vec3d(i % 5, row, layer) * 0.32 + Vec3d(-0.65 + 0.001 * i, -0.65, -0.8), {}, r);
+    }
     ParticleSystem system(options, &index, start);
     for (int i = 0; i < 1500; ++i) system.step(0.002);
     double deepest = 0, energy = 0;

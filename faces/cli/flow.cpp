@@ -26,6 +26,10 @@ Run add_flow(CLI::App& verb) {
         verb.add_option("--every", a->every, "the time between snapshots; else a twentieth of the whole");
     verb.add_option("--walls", a->walls,
                     "a closed mesh: the tank, if the fluid begins inside of it, or what stands in its way");
+    verb.add_option("--inflow", a->inflow, "a closed mesh that is kept full, from which more fluid flows");
+    verb.add_option("--inflow-velocity", a->inflow_velocity, "x,y,z: of what flows from --inflow")
+        ->delimiter(',')
+        ->expected(3);
     CLI::Option* const spacing =
         verb.add_option("--spacing", a->spacing,
                         "of the particles that fill a mesh; else such that about 20,000 fill its box");

@@ -17,9 +17,10 @@ namespace hedgerow::cli {
 /// The options of a run. Numbers below 0 are chosen by the scene.
 struct FlowArguments : Common {
     bool plane = false, resume = false, check = false, floor = false;
-    std::string walls, up = "auto", colour = "pressure", size = "auto", surface;
+    std::string walls, inflow, up = "auto", colour = "pressure", size = "auto", surface;
     double until = -1, every = -1;
     double spacing = -1, sound = -1, viscosity = -1, gravity = 9.81;
+    std::vector<double> inflow_velocity{0, 0, 0};
     unsigned threads = 0;
 };
 
@@ -35,6 +36,7 @@ struct FlowScene {
     /// The walls of a mesh, on whose other side no fluid should be.
     std::shared_ptr<const TriangleMesh<double>> mesh;
     bool fluid_inside = true;
+    std::vector<Vec<double, D>> inflow;  ///< places that are kept full
 
     /// How high the fluid stands at the start, above its lowest particle.
     double depth() const;

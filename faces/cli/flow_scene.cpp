@@ -146,6 +146,24 @@ void add_walls(const FlowArguments& a, FlowScene<3>& scene) {
         all.insert(all.end(), walls.places.begin(), walls.places.end());
     }
 }
+/// Fills the mesh of --inflow. Sound is at least ten times as fast as what flows in and falls.
+void add_inflow(const FlowArguments& a, FlowScene<3>& scene) {
+    const auto mesh = mesh_from(a, a.inflow);
+    const auto index = build(*mesh);
+    scene.inflow = of_file(a.inflow, [&] { return fill_mesh(index, scene.options.spacing, scene.tank.low); });
+    if (scene.inflow.empty())
+        throw InputError(fmt::format("{}: no particle fits into this source; they are {:.3g} apart", a.inflow,
+                                     scene.options.spacing));
+    const double fall = box_of(*mesh).high[scene.up] - scene.tank.low[scene.up],
+                 speed2 = std::pow(a.inflow_velocity[0], 2) + std::pow(a.inflow_velocity[1], 2) +
+                          std::pow(a.inflow_velocity[2], 2);
+    if (a.sound > 0) return;
+    const double sound =
+        std::max(scene.options.sound, 10 * std::sqrt(speed2 + 2 * a.gravity * std::max(0.0, fall)));
+    if (scene.options.sound > 0)
+        for (double& c : scene.start.compressions) c *= std::pow(scene.options.sound / sound, 2);
+    scene.options.sound = sound;
+}
 template <int D>
 void expect_room(const FlowArguments& a, const FlowScene<D>& scene) {
     if (scene.walls.places.empty()) return;
@@ -187,6 +205,12 @@ FlowScene<D> flow_scene(const FlowArguments& a) {
             add_walls(a, scene);
         else
             throw UsageError("--walls are meshes, in space: leave --plane out");
+    }
+    if (!a.inflow.empty()) {
+        if constexpr (D == 3)
+            add_inflow(a, scene);
+        else
+            throw UsageError("--inflow is a mesh, in space: leave --plane out");
     }
     expect_room(a, scene);
     if (a.sound > 0) scene.options.sound = a.sound;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include <hedgerow/ask/neighbours.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/parallel/blocks.h>
@@ -141,6 +142,8 @@ public:
     FluidWalls<D> walls;
     FluidOptions<D> options;
     std::vector<float> fills;  // of the last step, by the particles' numbers
+
+    Threads threads() const { return threads_; }
 
 private:
     using Order = detail::CellOrder<double, D>;
@@ -421,6 +424,29 @@ std::uint64_t FluidFlow<D>::advance(double until) {
     for (; state().time < until; ++steps) step_towards(until);
     return steps;
 }
+template <int D>
+std::size_t FluidFlow<D>::pour(const std::vector<V>& places, const V& velocity) {
+    FluidState<D>& state = steps_->state;
+    const double apart = 0.9 * options().spacing;
+    // A place is free if neither a particle nor a place before it is near.
+    NeighbourLists<double> near_fluid, near_places;
+    const NeighbourOptions<D> repeats{options().periods};
+    neighbours_within(state.places, places, apart, near_fluid, repeats, steps_->threads());
+    neighbours_within(places, apart, near_places, repeats, steps_->threads());
+    std::vector<bool> taken(places.size());
+    const std::size_t before = state.size();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        taken[i] = near_fluid.offsets[i + 1] == near_fluid.offsets[i];
+        for (std::size_t k = near_places.offsets[i]; k < near_places.offsets[i + 1]; ++k)
+            if (near_places.ids[k] < i && taken[near_places.ids[k]]) taken[i] = false;
+        if (taken[i]) state.places.push_back(places[i]);
+    }
+    state.resize(state.places.size());
+    for (std::size_t i = before; i < state.size(); ++i) state.velocities[i] = velocity;
+    steps_->fills.resize(state.size());
+    return state.size() - before;
+}
+
 template <int D>
 double FluidFlow<D>::longest_step() const {
     return steps_->longest_step();

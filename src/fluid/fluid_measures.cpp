@@ -37,13 +37,13 @@ FluidMeasures<D> measures(const FluidFlow<D>& flow, Threads threads) {
         std::array<double, 3 + D> share = {mass * length2(v) / 2,
                                            -mass * dot(flow.options().gravity, state.places[i]),
                                            std::abs(state.compressions[i])};
-        for (int k = 0; k < D; ++k) share[static_cast<std::size_t>(3 + k)] = mass * v[k];
+        for (int k = 0; k < D; ++k) share[3 + static_cast<std::size_t>(k)] = mass * v[k];
         return share;
     });
     FluidMeasures<D> m;
     m.kinetic = sums[0], m.potential = sums[1];
     m.mean_compression = n > 0 ? sums[2] / static_cast<double>(n) : 0;
-    for (int k = 0; k < D; ++k) m.momentum[k] = sums[static_cast<std::size_t>(3 + k)];
+    for (int k = 0; k < D; ++k) m.momentum[k] = sums[3 + static_cast<std::size_t>(k)];
     for (const auto& v : state.velocities) m.fastest = std::max(m.fastest, length(v));
     measure_compressions(flow, m);
     return m;

@@ -83,6 +83,12 @@ public:
     /// steps have become so short that the time no longer grows.
     void step_towards(double until);
 
+    /// Adds particles that are not compressed and have a velocity, at those of some places that are `spacing`
+    /// or more away from all others, but for a tenth. So a source keeps full: a tap is a lattice (fill_mesh)
+    /// whose places are poured before each step. Returns how many were added; their numbers follow the
+    /// others'. Throws InputError for a place whose coordinate is not finite. O(n).
+    std::size_t pour(const std::vector<V>& places, const V& velocity);
+
     /// The length that the next step may have: 0.35·h/(sound + the highest speed), or 0.1·h²/viscosity if
     /// that is less.
     double longest_step() const;
