@@ -79,7 +79,7 @@ int main() {
     const auto root = build_node(all);
     const auto index = build(mesh);
     constexpr int width = 160, height = 120;
-    const RayMaker make(automatic_camera(Box3f(Vec3f(root->bbox.low), Vec3f(root->bbox.high))), width,
+    const RayMaker make(automatic_camera(Box3f{Vec3f(root->bbox.low), Vec3f(root->bbox.high)}), width,
                         height);
     int hits = 0, wrong = 0;
     for (int i = 0; i < width * height; ++i) {
