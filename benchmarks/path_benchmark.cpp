@@ -171,7 +171,7 @@ int main(int count, char** arguments) try {
                 samples_a_pixel, rounds);
     Ratios product;
     for (const auto& name : names) product.multiply(measure_scene(name, size));
-    const auto mean = [&](double of_all) { return std::pow(of_all, 1 / double(names.size())); };
+    const auto mean = [scenes = double(names.size())](double of_all) { return std::pow(of_all, 1 / scenes); };
     std::printf("geometric means: one by one takes %.2f times as long, ", mean(product.one_by_one));
     if (product.embree > 0) std::printf("by the best of Embree's calls %.2f times, ", mean(product.embree));
     std::printf("two threads are %.2f times as fast\n", mean(product.threads));

@@ -205,11 +205,11 @@ void measure_cloud(const std::string& kind) {
                 static_cast<double>(index.bytes()) / static_cast<double>(cloud.size()));
     if (peer != nullptr)
         std::printf("    %.2f of the time of %s\n", times[0].median / times[1].median, peer->name().c_str());
-    for (const std::size_t k : {1, 8, 32})
+    for (const std::size_t k : {1u, 8u, 32u})
         measure_queries(index, peer.get(), "k = " + std::to_string(k), k, queries);
     measure_queries(index, peer.get(), "k = 8, queries along a curve", 8, in_order(queries, index.bounds()));
     const std::vector<Vec3f> some(queries.begin(), queries.begin() + query_count / 10);
-    for (const std::size_t many : {30, 1000}) measure_lists(index, peer.get(), many, some);
+    for (const std::size_t many : {30u, 1000u}) measure_lists(index, peer.get(), many, some);
 }
 
 /// Measures k nearest among a million points at one place, beside those of a million uniform ones.
@@ -220,7 +220,7 @@ void measure_crowd() {
     const auto among_uniform = build(uniform, serial_executor()), in_crowd = build(crowd, serial_executor());
     const auto queries = drawn("uniform", query_count / 10, 5);
     std::printf("\nk nearest, a million points at one place\n");
-    for (const std::size_t k : {1, 8, 32}) {
+    for (const std::size_t k : {1u, 8u, 32u}) {
         std::vector<Near<float, 3>> found;
         std::vector<PrimitiveId> ids(k * queries.size());
         Contest contest;
