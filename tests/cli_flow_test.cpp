@@ -8,7 +8,7 @@
 #include <hedgerow/io/mesh_file.h>
 #include <hedgerow/scenes/meshes.h>
 
-#include "tool.h"
+#include "run_tool.h"
 
 namespace {
 
@@ -16,28 +16,7 @@ using namespace hedgerow;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class FlowVerb : public ToolTest {
-protected:
-    std::vector<std::string> named(const std::string& run, const std::string& first) const {
-        std::vector<std::string> names;
-        for (const auto& entry : fs::directory_iterator(folder / run))
-            if (entry.path().filename().string().starts_with(first))
-                names.push_back(entry.path().filename().string());
-        std::sort(names.begin(), names.end());
-        return names;
-    }
-    std::string bytes_of(const fs::path& path) const {
-        std::ifstream in(folder / path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
-    /// The log without the times that steps took.
-    std::string log_of(const std::string& run) const {
-        std::ifstream log(folder / run / "log.csv");
-        std::string all, line;
-        while (std::getline(log, line)) all += line.substr(0, line.rfind(',')) + "\n";
-        return all;
-    }
-};
+class FlowVerb : public RunTest {};
 
 TEST_F(FlowVerb, ARunHasSnapshotsPicturesASheetAndALog) {
     const auto r = run("flow gen:dam:200 --plane --until 0.2 --every 0.1 --check --json -o " + file("dam"));
@@ -81,7 +60,7 @@ TEST_F(FlowVerb, ARunThatWasInterruptedGoesOnWithTheSameBits) {
         EXPECT_EQ(snapshots, named("part", "snapshot"));
         EXPECT_EQ(snapshots.size(), 4u);
         for (const auto& name : snapshots)
-            EXPECT_EQ(bytes_of(fs::path("whole") / name), bytes_of(fs::path("part") / name)) << name;
+            EXPECT_EQ(bytes_of(folder / "whole" / name), bytes_of(folder / "part" / name)) << name;
         EXPECT_EQ(log_of("whole"), log_of("part"));
         fs::remove_all(folder / "whole"), fs::remove_all(folder / "part");
     }
@@ -115,15 +94,15 @@ TEST_F(FlowVerb, ASourceFlowsAndGoesOn) {
     ASSERT_EQ(run(options + "--until 0.1 -o " + file("part")).code, 0);
     ASSERT_EQ(run("flow --resume --until 0.2 -o " + file("part")).code, 0);
     for (const auto& name : named("whole", "snapshot"))
-        EXPECT_EQ(bytes_of(fs::path("whole") / name), bytes_of(fs::path("part") / name)) << name;
+        EXPECT_EQ(bytes_of(folder / "whole" / name), bytes_of(folder / "part" / name)) << name;
 }
 TEST_F(FlowVerb, SurfacesHaveAFloorForPictures) {
     const auto r =
         run("flow gen:drop:300 --until 0.01 --every 0.01 --size 0x0 --surface obj --floor -o " + file("run"));
     ASSERT_EQ(r.code, 0) << r.output;
     const std::string surface = "run/" + named("run", "surface").back(), picture = file("water.png");
-    EXPECT_NE(bytes_of(surface).find("usemtl floor"), std::string::npos);
-    EXPECT_NE(bytes_of("run/water.mtl").find("newmtl floor"), std::string::npos);
+    EXPECT_NE(bytes_of(folder / surface).find("usemtl floor"), std::string::npos);
+    EXPECT_NE(bytes_of(folder / "run/water.mtl").find("newmtl floor"), std::string::npos);
     const auto made =
         run("render " + file(surface) + " --up z --shading path --spp 1 --size 32x24 -o " + picture);
     EXPECT_EQ(made.code, 0) << made.output;

@@ -12,7 +12,7 @@
 #include <hedgerow/nbody/motion.h>
 #include <hedgerow/scenes/particles.h>
 
-#include "tool.h"
+#include "run_tool.h"
 
 namespace {
 
@@ -20,25 +20,7 @@ using namespace hedgerow;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class Nbody : public ToolTest {
-protected:
-    /// The names in the folder of a run that begin so, sorted.
-    std::vector<std::string> named(const std::string& run, const std::string& first) const {
-        std::vector<std::string> names;
-        for (const auto& entry : fs::directory_iterator(folder / run))
-            if (entry.path().filename().string().starts_with(first))
-                names.push_back(entry.path().filename().string());
-        std::sort(names.begin(), names.end());
-        return names;
-    }
-    /// The log without the times that steps took.
-    std::string log_of(const std::string& run) const {
-        std::ifstream log(folder / run / "log.csv");
-        std::string all, line;
-        while (std::getline(log, line)) all += line.substr(0, line.rfind(',')) + "\n";
-        return all;
-    }
-};
+class Nbody : public RunTest {};
 
 /// In a cube that repeats, with snapshots in HDF5, from the last of which the run goes on.
 TEST_F(Nbody, RunsInAPeriodicCube) {

@@ -8,7 +8,7 @@
 #include <hedgerow/mesh_index.h>
 #include <hedgerow/scenes/meshes.h>
 
-#include "tool.h"
+#include "run_tool.h"
 
 namespace {
 
@@ -16,24 +16,7 @@ using namespace hedgerow;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class ParticlesVerb : public ToolTest {
-protected:
-    std::vector<std::string> named(const std::string& run, const std::string& first) const {
-        std::vector<std::string> names;
-        for (const auto& entry : fs::directory_iterator(folder / run))
-            if (entry.path().filename().string().starts_with(first))
-                names.push_back(entry.path().filename().string());
-        std::sort(names.begin(), names.end());
-        return names;
-    }
-    /// The log without the times that steps took.
-    std::string log_of(const std::string& run) const {
-        std::ifstream log(folder / run / "log.csv");
-        std::string all, line;
-        while (std::getline(log, line)) all += line.substr(0, line.rfind(',')) + "\n";
-        return all;
-    }
-};
+class ParticlesVerb : public RunTest {};
 
 TEST_F(ParticlesVerb, ARunHasSnapshotsPicturesAndALog) {
     const auto r =

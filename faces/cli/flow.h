@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <hedgerow/ask/insides.h>
 #include <hedgerow/fluid/fluid_flow.h>
 #include <hedgerow/io/image.h>
 #include <hedgerow/mesh_index.h>
@@ -24,6 +25,18 @@ struct FlowArguments : Common {
     unsigned threads = 0;
 };
 
+/// A mesh that holds a fluid, or stands in its way. Borrows from itself, so it stays where it is.
+struct MeshOfWalls {
+    explicit MeshOfWalls(TriangleMesh<double> triangles, Threads threads)
+        : mesh(std::move(triangles)), index(build(mesh, threads)), solid(index, {}, threads) {}
+    MeshOfWalls(const MeshOfWalls&) = delete;
+    MeshOfWalls& operator=(const MeshOfWalls&) = delete;
+
+    TriangleMesh<double> mesh;
+    MeshIndex<double> index;
+    Solid<MeshIndex<double>> solid;
+};
+
 /// A fluid that begins, what holds it, and what pictures show of it.
 template <int D>
 struct FlowScene {
@@ -34,7 +47,7 @@ struct FlowScene {
     int up = D - 1;    ///< the axis
     double until = 2;  ///< a time at which the most has happened
     /// The walls of a mesh, on whose other side no fluid should be.
-    std::shared_ptr<const TriangleMesh<double>> mesh;
+    std::shared_ptr<const MeshOfWalls> mesh;
     bool fluid_inside = true;
     std::vector<Vec<double, D>> inflow;  ///< places that are kept full
 

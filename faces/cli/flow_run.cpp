@@ -48,8 +48,8 @@ struct Derived {
         f("mass", mass), f("density", density), f("pressure", pressure), f("time", time);
     }
 };
-template <int D, class F>
-void each_column_with_derived(FluidState<D>& s, std::size_t i, Derived derived, F&& f) {
+template <int D, class State, class F>
+void each_column_with_derived(State& s, std::size_t i, Derived derived, F&& f) {
     each_column<D>(s, i, f);
     derived.each(f);
 }
@@ -58,18 +58,18 @@ ColumnList snapshot_columns() {
     ColumnList list;
     FluidState<D> one;
     one.resize(1);
-    each_column_with_derived(one, 0, {}, list);
+    each_column_with_derived<D>(one, 0, {}, list);
     return list;
 }
 template <int D>
 void save_snapshot(const std::filesystem::path& path, const FluidFlow<D>& flow) {
-    FluidState<D> state = flow.state();
+    const FluidState<D>& state = flow.state();
     const double density = flow.options().rest_density;
     save_snapshot_rows(path, snapshot_columns<D>(), state.size(), [&](std::size_t i, Record& record) {
         const Derived derived = {flow.mass(), density * (1 + state.compressions[i]), flow.pressure(i),
                                  state.time};
-        each_column_with_derived(state, i, derived,
-                                 [&](const char* name, double number) { record(name, number); });
+        each_column_with_derived<D>(state, i, derived,
+                                    [&](const char* name, double number) { record(name, number); });
     });
 }
 template <int D>
@@ -202,7 +202,8 @@ private:
     std::optional<std::pair<int, int>> size_;
 };
 
-/// The pressures of a fluid that has come to rest, beside those of its weight. Empty while it moves.
+/// The pressures of a fluid that has come to rest, beside those of its weight, in words; that it moves, while
+/// it does.
 template <int D>
 std::string hydrostatics(const FlowScene<D>& scene, const FluidFlow<D>& flow, bool& kept) {
     const FluidState<D>& state = flow.state();

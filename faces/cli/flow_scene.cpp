@@ -27,14 +27,14 @@ void expect_memory_of_particles(double particles) {
                   "ask for fewer, or give a longer --spacing");
 }
 
-std::shared_ptr<const TriangleMesh<double>> mesh_from(const FlowArguments& a, const std::string& file) {
+TriangleMesh<double> mesh_from(const FlowArguments& a, const std::string& file) {
     Common common = a;
     common.scene = file;
     auto scene = load<double>(common);
     auto* const mesh = std::get_if<TriangleMesh<double>>(&scene);
     if (mesh == nullptr || mesh->size() == 0)
         throw InputError(file + ": a fluid and its walls need a closed mesh of triangles");
-    return std::make_shared<const TriangleMesh<double>>(std::move(*mesh));
+    return std::move(*mesh);
 }
 Box3d box_of(const TriangleMesh<double>& mesh) {
     Box3d box;
@@ -81,10 +81,10 @@ FlowScene<D> generated(const FlowArguments& a) {
 
 /// A mesh that is full of fluid, above the floor of a tank that is twice as wide.
 FlowScene<3> from_mesh(const FlowArguments& a) {
-    const auto mesh = mesh_from(a, a.scene);
-    const Box3d box = box_of(*mesh);
+    const TriangleMesh<double> mesh = mesh_from(a, a.scene);
+    const Box3d box = box_of(mesh);
     FlowScene<3> scene;
-    scene.up = a.up != "auto" ? a.up[0] - 'x' : upright_of(a, mesh->view()).axis;
+    scene.up = a.up != "auto" ? a.up[0] - 'x' : upright_of(a, mesh.view()).axis;
     const Vec3d extent = box.extent();
     const double volume = extent[0] * extent[1] * extent[2];
     if (!(volume > 0)) throw InputError(a.scene + ": the mesh is flat, and has no room for a fluid");
@@ -96,7 +96,7 @@ FlowScene<3> from_mesh(const FlowArguments& a) {
     {
         ProgressLine line("filling " + a.scene, a.quiet);
         WatchedExecutor watched(default_executor(), line.progress());
-        const auto index = build(*mesh, watched);
+        const auto index = build(mesh, watched);
         scene.start.places = of_file(a.scene, [&] { return fill_mesh(index, spacing, box.low, watched); });
     }
     scene.start.resize(scene.start.places.size());
@@ -115,13 +115,12 @@ FlowScene<3> from_mesh(const FlowArguments& a) {
 
 /// Puts the fluid into a mesh, or the mesh into the fluid's tank.
 void add_walls(const FlowArguments& a, FlowScene<3>& scene) {
-    scene.mesh = mesh_from(a, a.walls);
+    TriangleMesh<double> mesh = mesh_from(a, a.walls);
     ProgressLine line("making walls of " + a.walls, a.quiet);
     WatchedExecutor watched(default_executor(), line.progress());
-    const auto index = build(*scene.mesh, watched);
-    const Solid solid(index, {}, watched);
+    scene.mesh = std::make_shared<const MeshOfWalls>(std::move(mesh), watched);
     std::vector<Side> side(scene.start.size());
-    sides(solid, Strided<Vec3d>(scene.start.places), side, watched);
+    sides(scene.mesh->solid, Strided<Vec3d>(scene.start.places), side, watched);
     const auto inside = static_cast<std::size_t>(std::count(side.begin(), side.end(), Side::inside));
     if (inside != 0 && inside != side.size())
         throw InputError(
@@ -131,7 +130,7 @@ void add_walls(const FlowArguments& a, FlowScene<3>& scene) {
     scene.fluid_inside = inside != 0;
     const FluidSide fluid = scene.fluid_inside ? FluidSide::inside : FluidSide::outside;
     FluidWalls<3> walls = of_file(a.walls, [&] {
-        return walls_behind(index, fluid, scene.options.spacing, scene.tank.low, 3, watched);
+        return walls_behind(scene.mesh->index, fluid, scene.options.spacing, scene.tank.low, 3, watched);
     });
     if (walls.places.empty())
         throw InputError(
@@ -139,7 +138,7 @@ void add_walls(const FlowArguments& a, FlowScene<3>& scene) {
                         "more particles",
                         a.walls, scene.options.spacing));
     if (scene.fluid_inside) {
-        scene.tank = box_of(*scene.mesh);
+        scene.tank = box_of(scene.mesh->mesh);
         scene.walls = std::move(walls);
     } else {
         auto& all = scene.walls.places;
@@ -148,13 +147,13 @@ void add_walls(const FlowArguments& a, FlowScene<3>& scene) {
 }
 /// Fills the mesh of --inflow. Sound is at least ten times as fast as what flows in and falls.
 void add_inflow(const FlowArguments& a, FlowScene<3>& scene) {
-    const auto mesh = mesh_from(a, a.inflow);
-    const auto index = build(*mesh);
+    const TriangleMesh<double> mesh = mesh_from(a, a.inflow);
+    const auto index = build(mesh);
     scene.inflow = of_file(a.inflow, [&] { return fill_mesh(index, scene.options.spacing, scene.tank.low); });
     if (scene.inflow.empty())
         throw InputError(fmt::format("{}: no particle fits into this source; they are {:.3g} apart", a.inflow,
                                      scene.options.spacing));
-    const double fall = box_of(*mesh).high[scene.up] - scene.tank.low[scene.up],
+    const double fall = box_of(mesh).high[scene.up] - scene.tank.low[scene.up],
                  speed2 = std::pow(a.inflow_velocity[0], 2) + std::pow(a.inflow_velocity[1], 2) +
                           std::pow(a.inflow_velocity[2], 2);
     if (a.sound > 0) return;
@@ -226,10 +225,8 @@ std::size_t leaks(const FlowScene<D>& scene, const FluidState<D>& state) {
     std::size_t count = 0;
     if constexpr (D == 3)
         if (scene.mesh != nullptr) {
-            const auto index = build(*scene.mesh);
-            const Solid solid(index);
             std::vector<double> distances(state.size());
-            signed_distances(solid, Strided<Vec3d>(state.places), distances);
+            signed_distances(scene.mesh->solid, Strided<Vec3d>(state.places), distances);
             for (const double d : distances) count += (scene.fluid_inside ? d : -d) > allowed;
             if (scene.fluid_inside) return count;
         }

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -11,7 +12,6 @@
 #include <hedgerow/ask/neighbours.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/box.h>
-#include <hedgerow/parallel/blocks.h>
 #include <hedgerow/parallel/ieee_executor.h>
 
 #include "flow_kernels.h"
@@ -167,18 +167,11 @@ private:
             expect_size("velocities of walls", walls.velocities, walls.places.size());
     }
 
-    /// Calls f(begin, end) for pieces of the particles.
-    template <class F>
-    static void for_pieces(std::size_t count, Executor& executor, F f) {
-        executor.for_each_piece(count, worth_a_task,
-                                [&](std::size_t begin, std::size_t end) { f(begin, end); });
-    }
-
     /// Finds the places of particles in the middle of the step. Throws InputError for one that is too far
     /// away.
     void go_half(double dt, Executor& executor) {
         middle_.resize(state.size());
-        for_pieces(state.size(), executor, [&](std::size_t begin, std::size_t end) {
+        executor.for_each_piece(state.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 middle_[i] = state.places[i] + state.velocities[i] * (dt / 2);
                 for (int k = 0; k < D; ++k)
@@ -284,7 +277,7 @@ private:
     void write_rows(const Order& fluid, Executor& executor) {
         rows_.resize(fluid.size());
         const double per_sound = 1 / options.sound;
-        for_pieces(fluid.size(), executor, [&](std::size_t begin, std::size_t end) {
+        executor.for_each_piece(fluid.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t id = fluid.order()[i];
                 write_places(middle_[id], rows_, i);
@@ -299,7 +292,7 @@ private:
     void write_wall_places(const Order& wall, Executor& executor) {
         wall_rows_.resize(wall.size());
         for (auto& row : wall_rows_.mirrored_velocity) row.resize(wall.size());
-        for_pieces(wall.size(), executor, [&](std::size_t begin, std::size_t end) {
+        executor.for_each_piece(wall.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 write_places(near_walls_[wall.order()[i]], wall_rows_, i);
         });
@@ -307,7 +300,7 @@ private:
     /// Writes the pressures and velocities of walls, of what they took from the fluid.
     void write_wall_rows(const Order& wall, Executor& executor) {
         const double per_sound = 1 / options.sound;
-        for_pieces(wall.size(), executor, [&](std::size_t begin, std::size_t end) {
+        executor.for_each_piece(wall.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 wall_rows_.compression[i] = std::max(0.0f, wall_sums_[D][i]);
                 const V own = walls.velocities.empty() ? V() : walls.velocities[wall_ids_[wall.order()[i]]];
@@ -350,7 +343,7 @@ private:
     }
     /// Throws InputError if a particle would move faster than sound, or nowhere.
     void check_speeds(double dt, Executor& executor) const {
-        for_pieces(order_.size(), executor, [&](std::size_t begin, std::size_t end) {
+        executor.for_each_piece(order_.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Next n = next(i, dt);
                 if (!(length2(n.velocity) <= options.sound * options.sound) || !std::isfinite(n.compression))
@@ -365,7 +358,7 @@ private:
     /// Moves the particles by what was found in the middle of the step.
     void go_on(double dt, Executor& executor) {
         fills.resize(state.size());
-        for_pieces(order_.size(), executor, [&](std::size_t begin, std::size_t end) {
+        executor.for_each_piece(order_.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t id = order_[i];
                 const Next n = next(i, dt);
