@@ -38,6 +38,7 @@
 #include <hedgerow/structures/kdtree/point_kdtree.h>
 
 #include "peers/hand_written.h"
+#include "sizes.h"
 
 using namespace hedgerow;
 using namespace hedgerow::measure;
@@ -206,15 +207,7 @@ int main(int count, char** arguments) try {
     std::printf("%s, %s, %s; one thread by its processor time; best of %d in turns (structures: %d)\n",
                 processor().c_str(), compiler().c_str(), std::string(name_of(instruction_set())).c_str(),
                 rounds, rounds_of_structures);
-    std::vector<std::size_t> sizes;
-    for (int i = 1; i < count; ++i) {
-        const double size = std::atof(arguments[i]);
-        if (!(size >= 1000 && size <= 1e8))
-            throw UsageError(std::string(arguments[i]) + " is not from 1000 to 1e8");
-        sizes.push_back(static_cast<std::size_t>(size));
-    }
-    if (sizes.empty()) sizes = {30'000};
-    for (const std::size_t n : sizes) measure_dam<3>(n), measure_dam<2>(n);
+    for (const std::size_t n : sizes_of(count, arguments, {30'000})) measure_dam<3>(n), measure_dam<2>(n);
 } catch (const std::exception& error) {
     std::fprintf(stderr, "fluid_benchmark: %s\n", error.what());
     return 3;

@@ -19,6 +19,7 @@
 #include <hedgerow/scenes/random.h>
 
 #include "peers/hand_written.h"
+#include "sizes.h"
 
 using namespace hedgerow;
 using namespace hedgerow::measure;
@@ -105,15 +106,7 @@ int main(int count, char** arguments) try {
     std::printf(
         "%s, %s, one thread, best of %d in turns; times the hand-written list's of the same vectors\n",
         processor().c_str(), compiler().c_str(), rounds);
-    std::vector<std::size_t> sizes;
-    for (int i = 1; i < count; ++i) {
-        const double size = std::atof(arguments[i]);
-        if (!(size >= 1000 && size <= 1e8))
-            throw UsageError(std::string(arguments[i]) + " is not from 1000 to 1e8");
-        sizes.push_back(static_cast<std::size_t>(size));
-    }
-    if (sizes.empty()) sizes = {100'000, 1'000'000};
-    for (const std::size_t n : sizes) {
+    for (const std::size_t n : sizes_of(count, arguments, {100'000, 1'000'000})) {
         measure_points<3>(n, 1.75f), measure_points<3>(n, 2.0f), measure_points<3>(n, 2.35f);
         measure_points<2>(n, 2.6f), measure_points<2>(n, 3.0f), measure_points<2>(n, 4.2f);
     }
