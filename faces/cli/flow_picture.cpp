@@ -19,6 +19,7 @@ namespace {
 /// What pictures show: the tank and some room around it, from the front.
 struct FlowFrame {
     int right, up, back;  // axes; in the plane `back` is `right`
+    double wide, high;    // what must be seen
     double left, top, scale;
 
     double x(double place) const { return (place - left) * scale; }
@@ -28,9 +29,9 @@ template <int D>
 FlowFrame flow_frame_of(const FlowScene<D>& scene, int width, int height) {
     FlowFrame f;
     f.up = scene.up, f.right = scene.up == 0 ? 1 : 0, f.back = D == 2 ? f.right : 3 - f.up - f.right;
-    const double margin = 4 * scene.options.spacing, wide = scene.tank.extent()[f.right] + 2 * margin,
-                 high = scene.tank.extent()[f.up] + 2 * margin;
-    f.scale = std::min(width / wide, height / high);
+    const double margin = 4 * scene.options.spacing;
+    f.wide = scene.tank.extent()[f.right] + 2 * margin, f.high = scene.tank.extent()[f.up] + 2 * margin;
+    f.scale = std::min(width / f.wide, height / f.high);
     f.left = scene.tank.center()[f.right] - width / f.scale / 2;
     f.top = scene.tank.center()[f.up] + height / f.scale / 2;
     return f;
@@ -73,9 +74,7 @@ std::optional<std::pair<int, int>> flow_picture_size(const FlowArguments& a, con
     if (a.size == no_pictures) return std::nullopt;
     if (a.size != "auto") return parse_size(a.size);
     const FlowFrame f = flow_frame_of(scene, 800, 800);
-    const double shape = (scene.tank.extent()[f.up] + 8 * scene.options.spacing) /
-                         (scene.tank.extent()[f.right] + 8 * scene.options.spacing);
-    return std::pair(800, std::clamp(static_cast<int>(800 * shape), 200, 1200));
+    return std::pair(800, std::clamp(static_cast<int>(800 * (f.high / f.wide)), 200, 1200));
 }
 
 template <int D>
