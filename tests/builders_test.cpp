@@ -23,6 +23,7 @@ SphereSet<double, 3> nested_balls(std::size_t n) {
 
 // ---- Sorting
 
+/// By any number of bits: none, one digit, and several, the last of which has fewer.
 TEST(RadixSort, IsStableAndSkipsDigitsThatAllShare) {
     struct Element {
         std::uint64_t key;
@@ -35,13 +36,17 @@ TEST(RadixSort, IsStableAndSkipsDigitsThatAllShare) {
             for (Executor* executor : std::initializer_list<Executor*>{&serial_executor(), &backwards}) {
                 BareVector<Element> sorted(n);
                 for (std::size_t i = 0; i < n; ++i) sorted[i] = {Random(1, i).bits() & mask, i};
-                auto expected = sorted;
-                const auto digits = [](const Element& e) { return e.key >> 9 & ((1u << 22) - 1); };
-                std::stable_sort(expected.begin(), expected.end(),
-                                 [&](const auto& a, const auto& b) { return digits(a) < digits(b); });
-                radix_sort(
-                    sorted, [](const Element& e) { return e.key; }, 9, 2, *executor);
-                EXPECT_EQ(sorted, expected) << n;
+                for (const int bits : {22, 0, 5, 14, 17, 29, 55}) {
+                    auto expected = sorted;
+                    const auto digits = [&](const Element& e) {
+                        return e.key >> 9 & ((std::uint64_t(1) << bits) - 1);
+                    };
+                    std::stable_sort(expected.begin(), expected.end(),
+                                     [&](const auto& a, const auto& b) { return digits(a) < digits(b); });
+                    radix_sort(
+                        sorted, [](const Element& e) { return e.key; }, 9, bits, *executor);
+                    EXPECT_EQ(sorted, expected) << n << " by " << bits;
+                }
             }
 }
 

@@ -285,6 +285,12 @@ TEST(NearOptions, ListsInColumns) {
     };
     const auto cloud = some_points<float, 3>(600);
     expect_lists_in_columns(cloud, questions_of(cloud), 0.5f);
+    // Without the question that is no number, cells answer: all questions, and those of the points
+    // themselves.
+    auto asked = questions_of(cloud);
+    asked.erase(asked.begin() + 7);
+    for (const float radius : {0.5f, 0.05f, 0.0f, -1.0f}) expect_lists_in_columns(cloud, asked, radius);
+    expect_lists_in_columns(cloud, cloud.points, 0.2f);
     const auto plane = some_points<double, 2>(60);
     expect_lists_in_columns(plane, questions_of(plane), 0.5);
     const auto triangles = soup<float>(200);
@@ -299,6 +305,7 @@ TEST(NearOptions, LongListsOfTies) {
                 for (int z = 0; z < 9; ++z) lattice.points.emplace_back(float(8 - x), float(y), float(z));
     expect_lists_in_columns(lattice, std::vector<Vec3f>{{4, 4, 4}, {0.5f, 4, 8}, {-1, -1, -1}, {20, 0, 0}},
                             6.0f);
+    expect_lists_in_columns(lattice, lattice.points, 2.0f);
 }
 
 }  // namespace

@@ -318,6 +318,28 @@ TYPED_TEST(Neighbours, RefuseWhatHasNoAnswer) {
     EXPECT_THROW(neighbours_within(points, points, T(0.1), lists, {.order = &order}), UsageError);
 }
 
+/// Cells are sorted for many questions that are near points, not for few, nor for those beside a clump, whose
+/// points would all be measured for each.
+TEST(NeighboursOfQuestions, AreListedByCellsWhereThatIsFast) {
+    Points<float, 3> points, near, beside;
+    for (std::uint64_t i = 0; i < 8000; ++i) {
+        Random random(17, i);
+        points.push_back(Vec3f(random.direction<3>() * 1e-3));
+        near.push_back(Vec3f(random.direction<3>()));
+        beside.push_back(Vec3f(random.direction<3>() * 1e-3) + Vec3f(0.6f, 0, 0));
+    }
+    using Cells = detail::CellNeighbours<float, 3>;
+    NeighbourLists<float> lists;
+    const auto listed = [&](const Points<float, 3>& asking) {
+        return Cells::within(points, asking, 0.25f, lists, {});
+    };
+    EXPECT_TRUE(listed(near));
+    EXPECT_EQ(lists.offsets, std::vector<std::size_t>(8001));
+    EXPECT_FALSE(listed(beside));
+    near.resize(400);
+    EXPECT_FALSE(listed(near));
+}
+
 /// A clump of points in one cell takes memory for its pairs alone.
 TEST(NeighboursOfClumps, AreListedInParts) {
     Points<float, 3> points;

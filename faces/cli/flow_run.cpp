@@ -104,12 +104,15 @@ constexpr std::string_view materials_of_surfaces =
 template <int D>
 class FlowRecorder {
 public:
-    FlowRecorder(const FlowArguments& a, const RunFolder& folder, const FlowScene<D>& scene)
-        : a_(a), folder_(folder), scene_(scene), log_(folder.log()), began_(now()) {
+    FlowRecorder(const FlowArguments& a, const RunFolder& folder, std::uint64_t step,
+                 const FlowScene<D>& scene)
+        : a_(a),
+          folder_(folder),
+          scene_(scene),
+          log_(folder.log(), columns_of_flow_log, a.resume ? std::optional(step) : std::nullopt),
+          began_(now()) {
         size_ = flow_picture_size(a, scene);
     }
-    void begin_log() { log_.begin(columns_of_flow_log); }
-    void go_on_with_log_after(std::uint64_t step) { log_.go_on_after(step, columns_of_flow_log); }
     /// Writes a line, and keeps the worst of all.
     FluidMeasures<D> line(std::uint64_t step, const FluidFlow<D>& flow) {
         const auto m = measures(flow);
@@ -201,6 +204,32 @@ private:
     double began_;
     std::optional<std::pair<int, int>> size_;
 };
+
+/// Goes on from a step, until the time is reached or the run is interrupted. Returns the last step, and adds
+/// up what was moved. Steps end at lines of the log, which have times of their own.
+template <int D>
+std::uint64_t move_fluid(const FlowArguments& a, const FlowScene<D>& scene, FluidFlow<D>& flow,
+                         FlowRecorder<D>& recorder, std::uint64_t step, std::uint64_t& moved) {
+    Vec<double, D> inflow_velocity;
+    for (int k = 0; k < D; ++k) inflow_velocity[k] = a.inflow_velocity[static_cast<std::size_t>(k)];
+    const double from = flow.state().time, of_line = a.every / log_lines_per_snapshot;
+    auto line = static_cast<std::uint64_t>(std::floor(from / of_line * (1 + 1e-12) + 1e-9)) + 1;
+    return go_on({.doing = "moving the fluid",
+                  .finished = [&] { return !(flow.state().time < a.until); },
+                  .step =
+                      [&](std::uint64_t number) {
+                          const double next = std::min(a.until, static_cast<double>(line) * of_line);
+                          if (!scene.inflow.empty()) flow.pour(scene.inflow, inflow_velocity);
+                          flow.step_towards(next);
+                          moved += flow.state().size();
+                          if (flow.state().time < next) return false;
+                          recorder.line(number, flow);
+                          return line++ % log_lines_per_snapshot == 0 || next == a.until;
+                      },
+                  .snapshot = [&](std::uint64_t number) { recorder.snapshot(number, flow); },
+                  .share = [&] { return (flow.state().time - from) / (a.until - from); }},
+                 step, a.quiet);
+}
 
 /// The pressures of a fluid that has come to rest, beside those of its weight, in words; that it moves, while
 /// it does.
@@ -308,21 +337,14 @@ int flow_run(FlowArguments a) {
     if (a.every < 0) a.every = a.until / 20;
     FluidState<D> start = a.resume ? load_snapshot<D>(folder.snapshot(step)) : scene.start;
     FluidFlow<D> flow(std::move(start), scene.walls, scene.options);
-    Vec<double, D> inflow_velocity;
-    for (int k = 0; k < D; ++k) inflow_velocity[k] = a.inflow_velocity[static_cast<std::size_t>(k)];
     const double steps_left = (a.until - flow.state().time) / flow.longest_step();
     if (!(steps_left < 1e9))
         throw UsageError(
             fmt::format("steps are {:.2g} long here, and {:.2g} of them would be needed; give a longer "
                         "spacing, or less --viscosity or --sound",
                         flow.longest_step(), steps_left));
-    FlowRecorder<D> recorder(a, folder, scene);
-    if (a.resume) {
-        recorder.go_on_with_log_after(step);
-    } else {
-        folder.make();
-        recorder.begin_log();
-    }
+    if (!a.resume) folder.make();
+    FlowRecorder<D> recorder(a, folder, step, scene);
     const FluidMeasures<D> first = a.resume ? measures(flow) : recorder.line(0, flow);
     if (!a.resume) {
         recorder.snapshot(0, flow);
@@ -330,29 +352,8 @@ int flow_run(FlowArguments a) {
         each_flow_option(a, [&](const char* name, const auto& value) { options[name] = value; });
         folder.save_options(options);
     }
-    // Step from one line of the log to the next, until the time is reached, or the run is interrupted.
     std::uint64_t moved = 0;
-    {
-        ProgressLine line("moving the fluid", a.quiet);
-        const Progress progress = line.progress();
-        const double from = flow.state().time, of_line = a.every / log_lines_per_snapshot;
-        auto number = static_cast<std::uint64_t>(std::floor(from / of_line * (1 + 1e-12) + 1e-9)) + 1;
-        bool saved = true;
-        while (flow.state().time < a.until && !interrupted) {
-            const double next = std::min(a.until, static_cast<double>(number) * of_line);
-            if (!scene.inflow.empty()) flow.pour(scene.inflow, inflow_velocity);
-            flow.step_towards(next);
-            ++step, moved += flow.state().size(), saved = false;
-            if (flow.state().time >= next) {
-                recorder.line(step, flow);
-                saved = number++ % log_lines_per_snapshot == 0 || next == a.until;
-                if (saved) recorder.snapshot(step, flow);
-            }
-            progress(static_cast<std::uint64_t>(1e6 * (flow.state().time - from) / (a.until - from)),
-                     1000000);
-        }
-        if (!saved) recorder.snapshot(step, flow);
-    }
+    step = move_fluid(a, scene, flow, recorder, step, moved);
     recorder.sheet();
     return report_of_flow(a, scene, flow, recorder, first, step, moved, now() - began);
 }

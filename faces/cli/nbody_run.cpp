@@ -65,18 +65,16 @@ void read_options(const RunFolder& folder, NbodyArguments& a, DensityFrame& fram
 
 class Recorder {
 public:
-    Recorder(const NbodyArguments& a, const RunFolder& folder, const DensityFrame& frame)
+    Recorder(const NbodyArguments& a, const RunFolder& folder, std::uint64_t step, const DensityFrame& frame)
         : folder_(folder),
           frame_(frame),
-          log_(folder.log()),
+          log_(folder.log(), log_columns, a.resume ? std::optional(step) : std::nullopt),
           period_(a.period),
           seed_(a.seed),
           began_(now()) {
         if (a.size != no_pictures) std::tie(width_, height_) = parse_size(a.size);
     }
 
-    void begin_log() { log_.begin(log_columns); }
-    void go_on_with_log_after(std::uint64_t step) { log_.go_on_after(step, log_columns); }
     void line(std::uint64_t step, const MotionState& state, std::uint64_t found) {
         const Conserved sums = conserved(state);
         log_.line(fmt::format("{},{},{},{},{},{},{},{},{},{:.3f}", step, state.time, sums.kinetic,
@@ -180,34 +178,27 @@ int nbody_run(NbodyArguments a) {
             frame = DensityFrame::around(motion.state().particles, width, height, a.period);
         }
     }
-    Recorder recorder(a, folder, frame);
-    if (!first) {
-        recorder.go_on_with_log_after(step);
-    } else {
-        recorder.begin_log();
+    Recorder recorder(a, folder, step, frame);
+    if (first) {
         recorder.line(0, motion.state(), motion.state().particles.size());
         recorder.snapshot(0, motion.state());
         folder.save_options(options_of(a, frame));
     }
-    // Step until the time is reached, or the run is interrupted.
+    Stepper stepper(a, motion);
     std::uint64_t found = 0;
-    {
-        ProgressLine line("moving particles", a.quiet);
-        const Progress progress = line.progress();
-        const double from = motion.state().time;
-        Stepper stepper(a, motion);
-        bool saved = true;
-        while (!stepper.finished() && !interrupted) {
-            const std::uint64_t of_step = stepper.step(++step);
-            found += of_step;
-            recorder.line(step, motion.state(), of_step);
-            saved = stepper.wants_snapshot();
-            if (saved) recorder.snapshot(step, motion.state());
-            progress(static_cast<std::uint64_t>(1e6 * (motion.state().time - from) / (a.until - from)),
-                     1000000);
-        }
-        if (!saved) recorder.snapshot(step, motion.state());
-    }
+    const double from = motion.state().time;
+    step = go_on({.doing = "moving particles",
+                  .finished = [&] { return stepper.finished(); },
+                  .step =
+                      [&](std::uint64_t number) {
+                          const std::uint64_t of_step = stepper.step(number);
+                          found += of_step;
+                          recorder.line(number, motion.state(), of_step);
+                          return stepper.wants_snapshot();
+                      },
+                  .snapshot = [&](std::uint64_t number) { recorder.snapshot(number, motion.state()); },
+                  .share = [&] { return (motion.state().time - from) / (a.until - from); }},
+                 step, a.quiet);
     return print_summary(a, before, motion.state(), step, found, now() - began);
 }
 

@@ -85,12 +85,14 @@ double mean_speed(const ParticleState& state) {
 /// The files that a run writes as it goes on.
 class ParticlesRecorder {
 public:
-    ParticlesRecorder(const ParticlesArguments& a, const RunFolder& folder, const ParticlesScene& scene)
-        : folder_(folder), log_(folder.log()), seed_(a.seed), began_(now()) {
+    ParticlesRecorder(const ParticlesArguments& a, const RunFolder& folder, std::uint64_t step,
+                      const ParticlesScene& scene)
+        : folder_(folder),
+          log_(folder.log(), columns_of_particles_log, a.resume ? std::optional(step) : std::nullopt),
+          seed_(a.seed),
+          began_(now()) {
         if (a.view.size != no_pictures) picture_.emplace(a, scene);
     }
-    void begin_log() { log_.begin(columns_of_particles_log); }
-    void go_on_with_log_after(std::uint64_t step) { log_.go_on_after(step, columns_of_particles_log); }
     void line(std::uint64_t step, const ParticleSystem& system) {
         const ParticleState& state = system.state();
         log_.line(fmt::format("{},{},{},{},{},{:.3f}", step, state.time, state.size(), system.emitted(),
@@ -148,35 +150,29 @@ int particles_run(ParticlesArguments a) {
     const auto last = static_cast<std::uint64_t>(std::ceil(std::min(a.until / a.dt, 1e15) - 1e-6));
     ParticleSystem system(scene.options, &scene.index,
                           a.resume ? load_snapshot(folder.snapshot(step), time_of(step)) : ParticleState());
-    ParticlesRecorder recorder(a, folder, scene);
-    if (a.resume) {
-        recorder.go_on_with_log_after(step);
-    } else {
-        folder.make();
-        recorder.begin_log();
+    if (!a.resume) folder.make();
+    ParticlesRecorder recorder(a, folder, step, scene);
+    if (!a.resume) {
         recorder.line(0, system);
         recorder.snapshot(0, system.state());
         nlohmann::ordered_json options;
         each_option(a, [&](const char* name, const auto& value) { options[name] = value; });
         folder.save_options(options);
     }
-    // Step until the time is reached, or the run is interrupted.
     std::uint64_t moved = 0;
-    {
-        ProgressLine line("moving particles", a.quiet);
-        const Progress progress = line.progress();
-        const std::uint64_t first = step;
-        bool saved = true;
-        while (step < last && !interrupted) {
-            system.step_until(time_of(++step));
-            moved += system.state().size();
-            recorder.line(step, system);
-            saved = step % steps_between == 0;
-            if (saved) recorder.snapshot(step, system.state());
-            progress(step - first, last - first);
-        }
-        if (!saved) recorder.snapshot(step, system.state());
-    }
+    const double from = system.state().time;
+    step = go_on({.doing = "moving particles",
+                  .finished = [&] { return !(system.state().time < time_of(last)); },
+                  .step =
+                      [&](std::uint64_t number) {
+                          system.step_until(time_of(number));
+                          moved += system.state().size();
+                          recorder.line(number, system);
+                          return number % steps_between == 0;
+                      },
+                  .snapshot = [&](std::uint64_t number) { recorder.snapshot(number, system.state()); },
+                  .share = [&] { return (system.state().time - from) / (time_of(last) - from); }},
+                 step, a.quiet);
     const ParticleState& state = system.state();
     const double seconds = now() - began;
     if (a.json)

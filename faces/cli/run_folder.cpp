@@ -11,6 +11,8 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/io/text_file.h>
 
+#include "common.h"
+
 namespace hedgerow::cli {
 
 namespace fs = std::filesystem;
@@ -64,27 +66,39 @@ void RunFolder::read_options(const std::function<void(const nlohmann::ordered_js
     }
 }
 
-void RunLog::begin(std::string_view names) {
-    open(std::string(names) + "\n");
-}
-void RunLog::go_on_after(std::uint64_t step, std::string_view names) {
+RunLog::RunLog(const fs::path& path, std::string_view names, std::optional<std::uint64_t> after)
+    : path_(path) {
     std::string kept, line;
-    std::ifstream old(path_);
-    while (std::getline(old, line)) {
-        const bool head = line == names;
-        // A last line without its end was cut off when the run was killed.
-        if (head || (!old.eof() && std::strtoull(line.c_str(), nullptr, 10) <= step)) kept += line + "\n";
+    if (after) {
+        std::ifstream old(path_);
+        while (std::getline(old, line)) {
+            const bool head = line == names;
+            // A last line without its end was cut off when the run was killed.
+            if (head || (!old.eof() && std::strtoull(line.c_str(), nullptr, 10) <= *after))
+                kept += line + "\n";
+        }
     }
-    open(kept.empty() ? std::string(names) + "\n" : kept);
-}
-void RunLog::open(const std::string& kept) {
-    save_text(path_, kept);
+    save_text(path_, kept.empty() ? std::string(names) + "\n" : kept);
     file_.open(path_, std::ios::app);
 }
 void RunLog::line(std::string_view text) {
     file_ << text << '\n';
     file_.flush();
     if (!file_) throw OutputError(path_.string() + " cannot be written");
+}
+
+std::uint64_t go_on(const RunSteps& run, std::uint64_t step, bool quiet) {
+    ProgressLine line(run.doing, quiet);
+    const Progress progress = line.progress();
+    bool saved = true;
+    while (!run.finished() && !interrupted) {
+        saved = run.step(++step);
+        if (saved) run.snapshot(step);
+        constexpr std::uint64_t whole = 1000000;
+        progress(static_cast<std::uint64_t>(run.share() * whole), whole);
+    }
+    if (!saved) run.snapshot(step);
+    return step;
 }
 
 }  // namespace hedgerow::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,19 +56,28 @@ private:
 /// step's number.
 class RunLog {
 public:
-    explicit RunLog(const std::filesystem::path& path) : path_(path) {}
-    /// Begins a log in place of an earlier one. Throws OutputError.
-    void begin(std::string_view names);
-    /// Goes on with a log after the line of a step. Later lines are removed. Throws OutputError.
-    void go_on_after(std::uint64_t step, std::string_view names);
+    /// Goes on after the line of a step, and removes later lines. Without a step it begins anew. Throws
+    /// OutputError.
+    RunLog(const std::filesystem::path& path, std::string_view names, std::optional<std::uint64_t> after);
     /// Appends a line of a step. Throws OutputError.
     void line(std::string_view text);
 
 private:
-    void open(const std::string& kept);
-
     std::filesystem::path path_;
     std::ofstream file_;
 };
+
+/// How a run steps.
+struct RunSteps {
+    const char* doing;  ///< in words, for the line of progress
+    std::function<bool()> finished;
+    /// Makes the step of a number, with its line of the log. Returns whether a snapshot is due.
+    std::function<bool(std::uint64_t)> step;
+    std::function<void(std::uint64_t)> snapshot;
+    std::function<double()> share;  ///< of the way from where it began to its end, 0 to 1
+};
+/// Goes on from a step until the run is finished or interrupted. The last step has a snapshot. Returns its
+/// number.
+std::uint64_t go_on(const RunSteps& run, std::uint64_t step, bool quiet);
 
 }  // namespace hedgerow::cli

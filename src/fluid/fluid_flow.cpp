@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/parallel/ieee_executor.h>
+#include <hedgerow/parallel/select.h>
 
 #include "flow_kernels.h"
 #include "neighbours/cell_lists.h"
@@ -120,8 +122,15 @@ public:
 
     double longest_step() const {
         double fastest2 = 0;
+        std::mutex joining;
         for (const auto* const all : {&state.velocities, &walls.velocities})
-            for (const V& v : *all) fastest2 = std::max(fastest2, length2(v));
+            threads_.over(all->size())
+                .for_each_piece(all->size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
+                    double here = 0;
+                    for (std::size_t i = begin; i < end; ++i) here = std::max(here, length2((*all)[i]));
+                    const std::lock_guard lock(joining);
+                    fastest2 = std::max(fastest2, here);
+                });
         const double of_sound = 0.35 * h_ / (options.sound + std::sqrt(fastest2));
         return viscous() ? std::min(of_sound, 0.1 * h_ * h_ / options.viscosity) : of_sound;
     }
@@ -167,26 +176,31 @@ private:
             expect_size("velocities of walls", walls.velocities, walls.places.size());
     }
 
-    /// Finds the places of particles in the middle of the step. Throws InputError for one that is too far
-    /// away.
+    /// Finds the places of particles in the middle of the step, and their box. Throws InputError for one that
+    /// is too far away.
     void go_half(double dt, Executor& executor) {
-        middle_.resize(state.size());
+        middle_.resize(state.size()), box_ = {};
+        std::mutex joining;
         executor.for_each_piece(state.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
+            Box<double, D> here;
             for (std::size_t i = begin; i < end; ++i) {
                 middle_[i] = state.places[i] + state.velocities[i] * (dt / 2);
+                here.expand(middle_[i]);
                 for (int k = 0; k < D; ++k)
                     if (!axes_[static_cast<std::size_t>(k)].holds(middle_[i][k]))
                         throw InputError("particle " + std::to_string(i) +
                                          " has a coordinate that is NaN, infinite or farther from 0 than "
                                          "2^28 smoothing lengths");
             }
+            const std::lock_guard lock(joining);
+            box_.expand(here);
         });
         half_ = dt / 2;
     }
 
     /// Finds accelerations and rates of compression in the middle of the step, in the order of cells.
     void find_rates(Executor& executor) {
-        choose_walls();
+        choose_walls(executor);
         const std::array<Strided<V>, 2> sets = {Strided<V>(middle_), Strided<V>(near_walls_)};
         const detail::CellAxes<double, D> cells(std::span(sets.data(), near_walls_.empty() ? 1 : 2), reach(),
                                                 options.periods, executor);
@@ -256,19 +270,19 @@ private:
     }
 
     /// Chooses the walls that the fluid may reach.
-    void choose_walls() {
-        Box<double, D> box;
-        for (const V& p : middle_) box.expand(p);
-        near_walls_.clear(), wall_ids_.clear();
-        for (std::size_t i = 0; i < walls.places.size(); ++i) {
+    void choose_walls(Executor& executor) {
+        select_numbers(walls.places.size(), wall_ids_, executor, [&](std::size_t i) {
             bool near = true;
             for (int k = 0; k < D; ++k) {
                 const double x = walls.places[i][k];
-                near &= options.periods[k] > 0 || (x >= box.low[k] - reach() && x <= box.high[k] + reach());
+                near &= options.periods[k] > 0 || (x >= box_.low[k] - reach() && x <= box_.high[k] + reach());
             }
-            if (near)
-                near_walls_.push_back(walls.places[i]), wall_ids_.push_back(static_cast<std::uint32_t>(i));
-        }
+            return near;
+        });
+        near_walls_.resize(wall_ids_.size());
+        executor.for_each_piece(wall_ids_.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) near_walls_[i] = walls.places[wall_ids_[i]];
+        });
     }
 
     void write_places(const V& place, Rows& rows, std::size_t i) const {
@@ -376,9 +390,10 @@ private:
     double h_ = 0, half_ = 0;
     detail::FlowScales<D> scales_ = {};
     std::array<FixedAxis, D> axes_;
-    // Of a step: places in its middle, and the walls that the fluid may reach.
+    // Of a step: places in its middle and their box, and the walls that the fluid may reach.
     std::vector<V> middle_, near_walls_;
-    std::vector<std::uint32_t> wall_ids_, order_;
+    Box<double, D> box_;
+    BareVector<std::uint32_t> wall_ids_, order_;
     Rows rows_, wall_rows_;
     Sums sums_, wall_sums_;
     BareVector<float> wall_fills_;

@@ -7,6 +7,7 @@
 
 #include <hedgerow/base/bare_vector.h>
 #include <hedgerow/parallel/radix_sort.h>
+#include <hedgerow/parallel/select.h>
 #include <hedgerow/primitives/concepts.h>
 
 #include "cell_axes.h"
@@ -65,7 +66,7 @@ public:
     /// Whether coordinates were wrapped into the period, and so rounded.
     bool wrapped() const { return wrapped_; }
     /// The cells and the rows, ascending, and one more that ends the last.
-    const std::vector<Cell>& cells() const { return cells_; }
+    const BareVector<Cell>& cells() const { return cells_; }
     const std::vector<Row>& rows() const { return rows_; }
 
 private:
@@ -83,20 +84,30 @@ private:
                 for (std::size_t i = begin; i < end; ++i) elements[i] = make(key_of_point(points_[i]), i);
             });
         });
-        radix_sort(elements, key_of, 0, (axes_.key_bits() + 10) / 11, executor);
-        std::uint64_t before = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            order_[i] = id_of(elements[i]);
-            const std::uint64_t key = key_of(elements[i]);
-            if (i > 0 && key == before) continue;
-            before = key;
-            const std::uint64_t row = axes_.row(key);
-            if (rows_.empty() || rows_.back().number != row)
-                rows_.push_back({row, static_cast<std::uint32_t>(cells_.size())});
-            cells_.push_back({static_cast<std::uint32_t>(i), axes_.number_in_row(key)});
-        }
-        rows_.push_back({~std::uint64_t(0), static_cast<std::uint32_t>(cells_.size())});
-        cells_.push_back({static_cast<std::uint32_t>(n), 0});
+        radix_sort(elements, key_of, 0, axes_.key_bits(), executor);
+        executor.for_each_piece(n, worth_a_task, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) order_[i] = id_of(elements[i]);
+        });
+        find_cells([&](std::size_t i) { return key_of(elements[i]); }, executor);
+    }
+    /// Finds the cells and the rows of sorted points with these keys.
+    template <class KeyOf>
+    void find_cells(KeyOf key_of, Executor& executor) {
+        BareVector<std::uint32_t> firsts, first_cells;
+        select_numbers(size(), firsts, executor,
+                       [&](std::size_t i) { return i == 0 || key_of(i) != key_of(i - 1); });
+        cells_.resize(firsts.size() + 1);
+        cells_.back() = {static_cast<std::uint32_t>(size()), 0};
+        const auto row_of = [&](std::size_t cell) { return axes_.row(key_of(firsts[cell])); };
+        executor.for_each_piece(firsts.size(), worth_a_task, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t c = begin; c < end; ++c)
+                cells_[c] = {firsts[c], axes_.number_in_row(key_of(firsts[c]))};
+        });
+        select_numbers(firsts.size(), first_cells, executor,
+                       [&](std::size_t c) { return c == 0 || row_of(c) != row_of(c - 1); });
+        rows_.clear();
+        for (const std::uint32_t c : first_cells) rows_.push_back({row_of(c), c});
+        rows_.push_back({~std::uint64_t(0), static_cast<std::uint32_t>(firsts.size())});
     }
     void copy_coordinates(Executor& executor) {
         const std::size_t n = points_.size();
@@ -129,7 +140,7 @@ private:
     bool wrapped_ = false;
     BareVector<PrimitiveId> order_;
     std::array<BareVector<T>, D> at_;
-    std::vector<Cell> cells_;
+    BareVector<Cell> cells_;
     std::vector<Row> rows_;
 };
 

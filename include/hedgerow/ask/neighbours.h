@@ -2,6 +2,7 @@
 /// points ask at each step.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <vector>
 
@@ -38,11 +39,13 @@ struct NeighbourOptions {
 };
 
 namespace detail {
-/// What this header's functions and `pairs_within` do, compiled in the library `core`: T is float or double,
-/// D 2 or 3.
+/// What this header's functions, `pairs_within` and batches of `within` do, compiled in the library `core`:
+/// T is float or double, D 2 or 3.
 template <std::floating_point T, int D>
 struct CellNeighbours {
     using Points = Strided<Vec<T, D>>;
+    static constexpr bool compiled =
+        (D == 2 || D == 3) && (std::same_as<T, float> || std::same_as<T, double>);
     static std::size_t list(const Points& points, T radius, NeighbourLists<T>& lists,
                             const NeighbourOptions<D>& options, Threads threads);
     static std::size_t list(const Points& points, const Points& asking, T radius, NeighbourLists<T>& lists,
@@ -52,7 +55,22 @@ struct CellNeighbours {
                              Threads threads);
     static std::size_t pairs(const Points& a, const Points& b, T max_distance2,
                              std::vector<PairWithin<T>>& found, Threads threads);
+    /// Lists all `points` within a squared distance of each of `asking`, in the order of (distance², id).
+    /// Returns false, and lists nothing, where a tree may be faster: for few that ask, for cells that hold
+    /// far more points than are near, and for coordinates that no cell has.
+    static bool within(const Points& points, const Points& asking, T max_distance2, NeighbourLists<T>& lists,
+                       Threads threads);
 };
+/// The points of a set in an array: its own, or copied to `copies`.
+template <PointSet P, class V>
+Strided<V> points_of(const P& set, std::vector<V>& copies) {
+    if constexpr (requires { set.points(); }) {
+        return set.points();
+    } else {
+        for (std::size_t i = 0; i < set.size(); ++i) copies.push_back(set.point(i));
+        return copies;
+    }
+}
 }  // namespace detail
 
 /// Lists for each point the others within a radius: those whose distance, in double and rounded once to T, is

@@ -156,19 +156,6 @@ bool any_self_intersection(const Index<S, P>& index) {
     });
 }
 
-namespace detail {
-/// The points of a set in an array: its own, or copied to `copies`.
-template <PointSet P, class V>
-Strided<V> points_of(const P& set, std::vector<V>& copies) {
-    if constexpr (requires { set.points(); }) {
-        return set.points();
-    } else {
-        for (std::size_t i = 0; i < set.size(); ++i) copies.push_back(set.point(i));
-        return copies;
-    }
-}
-}  // namespace detail
-
 /// Writes all pairs (i, j), i < j, of points of one set that are within the options' distance of each other
 /// to `found`, each once and ascending, with the squared distance: what `within` finds for each point, so
 /// `pairs_within(index, {.radius = 0.5f}, found)`. None if the radius is negative or NaN. Returns how many

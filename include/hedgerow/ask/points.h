@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/ask/neighbours.h>
 #include <hedgerow/probes/point_batch.h>
 #include <hedgerow/queries/closest_point.h>
 #include <hedgerow/queries/nearest.h>
@@ -139,13 +140,40 @@ struct ListColumns {
         distances2.insert(distances2.end(), more.distances2.begin(), more.distances2.end());
     }
 };
+
+namespace detail {
+/// Lists the points of a set within the options' distance of each of `points`, in the order of (distance²,
+/// element), by cells that are sorted for it. Returns false, and lists nothing, where a walk may be faster.
+template <PointSet P, class T>
+bool listed_by_cells(const P& set, const Strided<Vec<T, P::dimension>>& points, const NearOptions<T>& options,
+                     NeighbourLists<T>& lists, Threads threads) {
+    if constexpr (CellNeighbours<T, P::dimension>::compiled) {
+        std::vector<Vec<T, P::dimension>> copies;
+        return CellNeighbours<T, P::dimension>::within(points_of(set, copies), points,
+                                                       options.max_distance2(), lists, threads);
+    } else {
+        return false;
+    }
+}
+}  // namespace detail
+
 /// Writes all primitives within the options' distance of each of `points` to columns. Returns how many there
 /// are in all. Over several threads the call needs the memory of the answers twice while it runs.
+///
+/// Many questions among points are answered by cells that are sorted for them (ask/neighbours.h) where these
+/// are faster than the index; the answers are the same.
 template <class S, class P>
 std::size_t within(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
                    const NearOptions<typename P::Scalar>& options, ListColumns<P>& columns,
                    Threads threads = {}) {
     using Part = PointBatch<typename P::Scalar, P::dimension>;
+    if constexpr (PointSet<P>) {
+        NeighbourLists<typename P::Scalar> lists{std::move(columns.offsets), std::move(columns.ids),
+                                                 std::move(columns.distances2)};
+        const bool listed = detail::listed_by_cells(index.primitives(), points, options, lists, threads);
+        columns = {std::move(lists.offsets), std::move(lists.ids), std::move(lists.distances2)};
+        if (listed) return columns.ids.size();
+    }
     const auto answer = [&](const Part& part, ListColumns<P>& to) {
         to.clear();
         if (detail::answered_by_kernel<Within<P>, Index<S, P>>([&](const auto& kernel) {
@@ -187,6 +215,19 @@ AnswerLists<Near<typename P::Scalar, P::dimension>> nearest(
 template <class I>
 AnswerLists<NearOf<I>> within(const I& index, const Strided<PointOf<I>>& points,
                               const NearOptionsOf<I>& options, Threads threads = {}) {
+    if constexpr (requires { index.primitives(); }) {
+        const auto& set = index.primitives();
+        NeighbourLists<typename I::Scalar> lists;
+        if constexpr (PointSet<std::decay_t<decltype(set)>>)
+            if (detail::listed_by_cells(set, points, options, lists, threads))
+                return answer_lists<NearOf<I>>(
+                    points.size(), threads.over(points.size()), [&](std::size_t i, auto& found) {
+                        found.clear();
+                        for (std::size_t k = lists.offsets[i]; k < lists.offsets[i + 1]; ++k)
+                            found.push_back({lists.distances2[k], reported_id(set, lists.ids[k], 0),
+                                             lists.ids[k], set.point(lists.ids[k])});
+                    });
+    }
     return answer_lists<NearOf<I>>(
         points.size(), threads.over(points.size()),
         [&](std::size_t i, auto& found) { within(index, points[i], options, found); });

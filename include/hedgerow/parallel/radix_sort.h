@@ -1,7 +1,7 @@
 /// Stable sorting by integer keys, one digit at a time from the least significant (LSD radix sort).
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -11,37 +11,49 @@
 
 namespace hedgerow {
 
-/// Sorts by `digits` digits of 11 bits of key(element); the least significant one begins at bit `low`. Takes
-/// O(n) time for each digit, and a second array. A digit that all elements share costs one read. Blocks count
-/// and place their elements independently. A stable sort has only one result, so every executor gives the
-/// same.
+/// Sorts by `bits` bits of key(element), the least significant of which is bit `low`: by digits of up to 11
+/// bits, or by a single one of up to 16, if it has no more values than there are elements. Takes O(n) time
+/// for each digit, and a second array. A digit that all elements share costs one read. Blocks count and place
+/// their elements independently. A stable sort has only one result, so every executor gives the same.
 template <class E, class Key>
-void radix_sort(BareVector<E>& elements, Key key, int low, int digits, Executor& executor) {
-    constexpr std::size_t values = 1 << 11;
-    using Histogram = std::array<std::uint32_t, values>;
+void radix_sort(BareVector<E>& elements, Key key, int low, int bits, Executor& executor) {
     const std::size_t count = elements.size();
-    const Blocks blocks{count, std::size_t(1) << 17};
+    const int digits = bits <= 16 && count >> bits > 0 ? std::min(bits, 1) : (bits + 10) / 11;
+    if (digits == 0) return;
+    const int width = (bits + digits - 1) / digits;
+    const std::size_t values = std::size_t(1) << width;
+    // Blocks for a dozen threads and more, each of far more elements than a digit has values.
+    const Blocks blocks{
+        count, std::max(4 * values, std::clamp(count / 16, std::size_t(1) << 15, std::size_t(1) << 17))};
     BareVector<E> other(count);
-    BareVector<Histogram> places(blocks.number());
-    for (int shift = low; shift < low + 11 * digits; shift += 11) {
-        const auto digit = [&](const E& e) { return std::size_t(key(e) >> shift) & (values - 1); };
+    BareVector<std::uint32_t> places(blocks.number() * values);
+    for (int shift = low; shift < low + bits; shift += width) {
+        const std::size_t mask = (std::size_t(1) << std::min(width, low + bits - shift)) - 1;
+        // Each block copies it, for else its loops would read shift and mask anew after every write.
+        const auto digit_of = [key, shift, mask](const E& e) { return std::size_t(key(e) >> shift) & mask; };
+        const auto places_of = [&](std::size_t b) { return places.data() + b * values; };
         // Count the values of the digit in each block.
         blocks.each(executor, [&](std::size_t b, std::size_t begin, std::size_t end) {
-            places[b].fill(0);
-            for (std::size_t i = begin; i < end; ++i) ++places[b][digit(elements[i])];
+            const auto digit = digit_of;
+            std::uint32_t* const counts = places_of(b);
+            std::fill_n(counts, values, 0);
+            for (std::size_t i = begin; i < end; ++i) ++counts[digit(elements[i])];
         });
         // Turn counts into places: by value, and within a value by block.
         std::uint32_t before = 0, most = 0;
         for (std::size_t v = 0; v < values; ++v) {
             const std::uint32_t first = before;
-            for (std::size_t b = 0; b < blocks.number(); ++b) before += std::exchange(places[b][v], before);
+            for (std::size_t b = 0; b < blocks.number(); ++b)
+                before += std::exchange(places_of(b)[v], before);
             most = std::max(most, before - first);
         }
         // Skip a digit that all elements share.
         if (most == count) continue;
         // Move each element to its place.
         blocks.each(executor, [&](std::size_t b, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) other[places[b][digit(elements[i])]++] = elements[i];
+            const auto digit = digit_of;
+            std::uint32_t* const next = places_of(b);
+            for (std::size_t i = begin; i < end; ++i) other[next[digit(elements[i])]++] = elements[i];
         });
         elements.swap(other);
     }
@@ -63,7 +75,7 @@ void sort_by_first_bits(BareVector<std::uint64_t>& keys, Executor& executor, Sor
     constexpr int sorted_from = 31;  // the lowest bit that the radix sort orders
     if (keys.size() <= few) return sort_run(std::size_t(0), keys.size());
     radix_sort(
-        keys, [](std::uint64_t key) { return key; }, sorted_from, 3, executor);
+        keys, [](std::uint64_t key) { return key; }, sorted_from, 33, executor);
     // Each block sorts the runs that begin in it. The first run of each block is found before any run is
     // sorted, so that no block reads keys that another one moves.
     const Blocks blocks{keys.size(), 16384};

@@ -97,7 +97,7 @@ void for_each_place(std::size_t elements, std::uint32_t locals, Executor& execut
             }
     });
     radix_sort(
-        all, [](const Hashed& h) { return h.hash; }, 0, 4, executor);
+        all, [](const Hashed& h) { return h.hash; }, 0, 44, executor);
     std::vector<Found> alike;
     for (std::size_t i = 0; i < all.size();) {
         alike.clear();

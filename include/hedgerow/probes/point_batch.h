@@ -92,7 +92,7 @@ void for_each_part(const Strided<Vec<T, D>>& points, const Box<T, D>& box, std::
             for (std::size_t i = begin; i < end; ++i) keys[i] = curve.code(points[first + i]) << 32 | i;
         });
         radix_sort(
-            keys, [](std::uint64_t key) { return key; }, 31, 3, executor);
+            keys, [](std::uint64_t key) { return key; }, 31, 33, executor);
         const PointBatch<T, D> ordered(points, keys.data(), first, count);
         executor.for_each_piece(count, piece, [&](std::size_t begin, std::size_t end) {
             answer(ordered.part(begin, end - begin));

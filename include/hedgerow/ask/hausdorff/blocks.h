@@ -24,7 +24,7 @@ void sort_along_curve(const A& set, const Box<typename A::Scalar, A::dimension>&
     });
     radix_sort(
         keys, [](std::uint64_t key) { return key; }, elements.size() > std::size_t(1) << 18 ? 31 : 42,
-        elements.size() > std::size_t(1) << 18 ? 3 : 2, executor);
+        elements.size() > std::size_t(1) << 18 ? 33 : 22, executor);
     for (std::size_t i = 0; i < keys.size(); ++i) elements[i] = static_cast<PrimitiveId>(keys[i]);
 }
 

@@ -25,8 +25,8 @@ struct HashGridOptions {
 /// Points by the cell that contains them. A hash table leads from a cell to its points (Teschner,
 /// Heidelberger, Müller, Pomeranets and Gross, Optimized spatial hashing for collision detection of
 /// deformable objects, VMV 2003). Cells are stored with their coordinates, so that cells of equal hash are
-/// not confused. Made for the neighbours of particles: it is built in O(n) without a sort, and is equally
-/// fast however far the particles spread.
+/// not confused. It is built in O(n) without a sort, and is equally fast however far the particles spread.
+/// For the neighbours of all particles at once, `neighbours_within` is many times faster (ask/neighbours.h).
 ///
 /// Point and box queries look up the lattice's cells around them, within the extent of the occupied cells. A
 /// search that has looked up as many cells as are occupied continues with the list of the occupied cells
