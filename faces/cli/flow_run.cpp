@@ -109,10 +109,9 @@ public:
         : a_(a),
           folder_(folder),
           scene_(scene),
-          log_(folder.log(), columns_of_flow_log, a.resume ? std::optional(step) : std::nullopt),
-          began_(now()) {
-        size_ = flow_picture_size(a, scene);
-    }
+          size_(flow_picture_size(a, scene)),
+          log_(folder, columns_of_flow_log, a.resume ? std::optional(step) : std::nullopt),
+          began_(now()) {}
     /// Writes a line, and keeps the worst of all.
     FluidMeasures<D> line(std::uint64_t step, const FluidFlow<D>& flow) {
         const auto m = measures(flow);
@@ -200,9 +199,9 @@ private:
     const FlowArguments& a_;
     const RunFolder& folder_;
     const FlowScene<D>& scene_;
+    std::optional<std::pair<int, int>> size_;
     RunLog log_;
     double began_;
-    std::optional<std::pair<int, int>> size_;
 };
 
 /// Goes on from a step, until the time is reached or the run is interrupted. Returns the last step, and adds
@@ -343,7 +342,6 @@ int flow_run(FlowArguments a) {
             fmt::format("steps are {:.2g} long here, and {:.2g} of them would be needed; give a longer "
                         "spacing, or less --viscosity or --sound",
                         flow.longest_step(), steps_left));
-    if (!a.resume) folder.make();
     FlowRecorder<D> recorder(a, folder, step, scene);
     const FluidMeasures<D> first = a.resume ? measures(flow) : recorder.line(0, flow);
     if (!a.resume) {

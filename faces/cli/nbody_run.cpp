@@ -68,7 +68,7 @@ public:
     Recorder(const NbodyArguments& a, const RunFolder& folder, std::uint64_t step, const DensityFrame& frame)
         : folder_(folder),
           frame_(frame),
-          log_(folder.log(), log_columns, a.resume ? std::optional(step) : std::nullopt),
+          log_(folder, log_columns, a.resume ? std::optional(step) : std::nullopt),
           period_(a.period),
           seed_(a.seed),
           began_(now()) {

@@ -88,11 +88,10 @@ public:
     ParticlesRecorder(const ParticlesArguments& a, const RunFolder& folder, std::uint64_t step,
                       const ParticlesScene& scene)
         : folder_(folder),
-          log_(folder.log(), columns_of_particles_log, a.resume ? std::optional(step) : std::nullopt),
+          picture_(picture_of(a, scene)),
+          log_(folder, columns_of_particles_log, a.resume ? std::optional(step) : std::nullopt),
           seed_(a.seed),
-          began_(now()) {
-        if (a.view.size != no_pictures) picture_.emplace(a, scene);
-    }
+          began_(now()) {}
     void line(std::uint64_t step, const ParticleSystem& system) {
         const ParticleState& state = system.state();
         log_.line(fmt::format("{},{},{},{},{},{:.3f}", step, state.time, state.size(), system.emitted(),
@@ -104,11 +103,18 @@ public:
     }
 
 private:
+    static std::optional<ParticlesPicture> picture_of(const ParticlesArguments& a,
+                                                      const ParticlesScene& scene) {
+        std::optional<ParticlesPicture> picture;
+        if (a.view.size != no_pictures) picture.emplace(a, scene);
+        return picture;
+    }
+
     const RunFolder& folder_;
+    std::optional<ParticlesPicture> picture_;
     RunLog log_;
     std::uint64_t seed_;
     double began_;
-    std::optional<ParticlesPicture> picture_;
 };
 
 void expect_numbers(const CLI::App& verb) {
@@ -150,7 +156,6 @@ int particles_run(ParticlesArguments a) {
     const auto last = static_cast<std::uint64_t>(std::ceil(std::min(a.until / a.dt, 1e15) - 1e-6));
     ParticleSystem system(scene.options, &scene.index,
                           a.resume ? load_snapshot(folder.snapshot(step), time_of(step)) : ParticleState());
-    if (!a.resume) folder.make();
     ParticlesRecorder recorder(a, folder, step, scene);
     if (!a.resume) {
         recorder.line(0, system);

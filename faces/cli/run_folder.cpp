@@ -66,10 +66,12 @@ void RunFolder::read_options(const std::function<void(const nlohmann::ordered_js
     }
 }
 
-RunLog::RunLog(const fs::path& path, std::string_view names, std::optional<std::uint64_t> after)
-    : path_(path) {
+RunLog::RunLog(const RunFolder& folder, std::string_view names, std::optional<std::uint64_t> after)
+    : path_(folder.log()) {
     std::string kept, line;
-    if (after) {
+    if (!after) {
+        folder.make();
+    } else {
         std::ifstream old(path_);
         while (std::getline(old, line)) {
             const bool head = line == names;

@@ -56,9 +56,9 @@ private:
 /// step's number.
 class RunLog {
 public:
-    /// Goes on after the line of a step, and removes later lines. Without a step it begins anew. Throws
-    /// OutputError.
-    RunLog(const std::filesystem::path& path, std::string_view names, std::optional<std::uint64_t> after);
+    /// Goes on after the line of a step, and removes later lines. Without a step it makes the folder, and
+    /// begins anew. Throws OutputError.
+    RunLog(const RunFolder& folder, std::string_view names, std::optional<std::uint64_t> after);
     /// Appends a line of a step. Throws OutputError.
     void line(std::string_view text);
 

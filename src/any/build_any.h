@@ -310,7 +310,7 @@ std::unique_ptr<AnyIndex<T, D>> any_index(Index<WideBvh<T, D>, PointCloudView<T,
     return std::make_unique<detail::Holder<WideBvh<T, D>, PointCloudView<T, D>>>("wide", std::move(index));
 }
 
-/// Instantiates everything for one scalar.
+// Instantiates everything for one scalar. NOLINTBEGIN(bugprone-macro-parentheses)
 #define HEDGEROW_BUILD_ANY(T)                                                                                \
     template std::unique_ptr<AnyIndex<T, 3>> any_index(Index<WideBvh<T, 3>, TriangleMeshView<T>>);           \
     template std::unique_ptr<AnyIndex<T, 2>> any_index(Index<WideBvh<T, 2>, PointCloudView<T, 2>>);          \
@@ -325,5 +325,5 @@ std::unique_ptr<AnyIndex<T, D>> any_index(Index<WideBvh<T, D>, PointCloudView<T,
                                                                     const PointCloudView<T, 2>&, Executor&); \
     template std::unique_ptr<AnyIndex<T, 2>> detail::build_any_over(std::string_view,                        \
                                                                     const SegmentSetView<T>&, Executor&);
-
+// NOLINTEND(bugprone-macro-parentheses)
 }  // namespace hedgerow

@@ -34,7 +34,7 @@ GltfNumbers::Type number_type(const GltfFile& file, const GltfFile::Json& where)
 template <class F>
 auto with_number(GltfNumbers::Type type, F f) {
     switch (type) {
-        case GltfNumbers::Type::i1:
+        case GltfNumbers::Type::i1:  // NOLINT(bugprone-branch-clone): each calls another f
             return f(std::int8_t());
         case GltfNumbers::Type::u1:
             return f(std::uint8_t());

@@ -96,7 +96,9 @@ private:
     static float* weights_at(std::vector<float>& weights, std::size_t half, int neighbour) {
         return &weights[(static_cast<std::size_t>(neighbour) * 2 + half) * tile_width * tile_height];
     }
-    static std::size_t in_tile(int x, int y) { return static_cast<std::size_t>(y * tile_width + x); }
+    static std::size_t in_tile(int x, int y) {
+        return static_cast<std::size_t>(y) * tile_width + static_cast<std::size_t>(x);
+    }
 
     /// The largest step of all features to a neighbour, squared.
     TileNumbers feature_distances(const Tile& tile, int dx, int dy) const {

@@ -85,7 +85,7 @@ inline Plane box_mean(const Plane& plane, int radius, Executor& executor) {
                 for (int x = 0; x < width; x += 4) {
                     auto sum = Lanes<float>::all(0);
                     for (int dx = 0; dx < side; ++dx)
-                        sum = sum + Lanes<float>::load(&columns[static_cast<std::size_t>(x + dx)]);
+                        sum = sum + Lanes<float>::load(&columns[std::size_t(x) + std::size_t(dx)]);
                     (sum * share).store(mean.at(x, y));
                 }
             }
