@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 #include <hedgerow/base/error.h>
@@ -283,16 +284,24 @@ void sort_by_distance(NeighbourLists<T>& lists, Executor& executor) {
     });
 }
 
-/// Finds the neighbours of points among others.
+/// Finds the neighbours of points among others. Returns false, and finds none, if more than `most_measured`
+/// distances, where that is given, would be measured for each point that asks.
 template <class T, int D, class Taker>
-void list_among(const Strided<Vec<T, D>>& points, const Strided<Vec<T, D>>& asking, T max_distance2,
-                const Periods<D>& periods, Taker taker, Threads threads) {
-    if (points.empty() || asking.empty()) return taker.start(std::vector<std::size_t>(asking.size() + 1));
+bool list_among(const Strided<Vec<T, D>>& points, const Strided<Vec<T, D>>& asking, T max_distance2,
+                const Periods<D>& periods, Taker taker, Threads threads,
+                std::optional<std::uint64_t> most_measured = {}) {
+    if (points.empty() || asking.empty()) {
+        taker.start(std::vector<std::size_t>(asking.size() + 1));
+        return true;
+    }
     IeeeExecutor executor(threads.over(points.size() + asking.size()));
     const std::array sets = {points, asking};
     const detail::CellAxes<T, D> axes(sets, detail::farthest_within(max_distance2), periods, executor);
     const detail::CellOrder<T, D> order(points, axes, executor), of_asking(asking, axes, executor);
+    if (most_measured && pairs_in_touching_cells(of_asking, order, executor) / *most_measured > asking.size())
+        return false;
     list_renumbered(of_asking, order, max_distance2, detail::Listed::all, taker, executor);
+    return true;
 }
 
 }  // namespace
@@ -348,13 +357,10 @@ bool detail::CellNeighbours<T, D>::within(const Points& points, const Points& as
         for (int k = 0; k < D; ++k)
             if (!(std::abs(asking[i][k]) <= largest_coordinate<T>)) return false;
     return in_ieee_mode([&] {
-        IeeeExecutor executor(threads.over(points.size() + asking.size()));
-        const std::array sets = {points, asking};
-        const CellAxes<T, D> axes(sets, farthest_within(max_distance2), {}, executor);
-        const CellOrder<T, D> order(points, axes, executor), of_asking(asking, axes, executor);
-        if (pairs_in_touching_cells(of_asking, order, executor) / most_measured_for_each > asking.size())
+        if (!list_among(points, asking, max_distance2, {}, ListsOf<T>{lists, true}, threads,
+                        most_measured_for_each))
             return false;
-        list_renumbered(of_asking, order, max_distance2, Listed::all, ListsOf<T>{lists, true}, executor);
+        IeeeExecutor executor(threads.over(points.size() + asking.size()));
         sort_by_distance(lists, executor);
         return true;
     });
