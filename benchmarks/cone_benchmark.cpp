@@ -105,12 +105,13 @@ void compare(const I& index, const char* what, const Trial& trial) {
         return fragments;
     });
     contest.add("rays", [&] {
-        any_hits(index, trial.rays, std::span<bool>(blocked.get(), trial.rays.size()), serial_executor());
+        any_hits(index, trial.rays, std::span<bool>(blocked.get(), trial.rays.size()),
+                 {.threads = serial_executor()});
         return n;
     });
     std::vector<Hit<float>> hits(trial.rays.size());
     contest.add("closest", [&] {
-        closest_hits(index, trial.rays, std::span(hits), serial_executor());
+        closest_hits(index, trial.rays, std::span(hits), {.threads = serial_executor()});
         return n;
     });
     const auto times =
@@ -147,7 +148,7 @@ int main(int count, char** arguments) try {
         const PictureSamples<float> samples(camera, size, size);
         const auto index = build<WideBvh>(mesh, {}, serial_executor());
         std::vector<Hit<float>> hits(samples.size());
-        closest_hits(index, samples.rays(), std::span(hits), serial_executor());
+        closest_hits(index, samples.rays(), std::span(hits), {.threads = serial_executor()});
         std::printf("%s, %zu triangles\n", kind.c_str(), mesh.size());
         compare(index, "pixels", pixels(camera, samples, on_edges(samples, hits)));
         compare(index, "shadows", shadows(mesh, samples, hits, PlainShading(camera, 0).to_light()));

@@ -53,9 +53,9 @@ std::vector<Ray3f> hitting_rays(const MeshIndexOf& index) {
 /// The list of all hits, in pieces. Returns its length.
 std::size_t in_pieces(const MeshIndexOf& index, const Ray3f& ray, std::span<Hit<float>> piece) {
     std::size_t all = 0, n = 0;
-    AfterHit<float> after;
+    AfterHit after;
     do {
-        all += n = first_hits(index, ray, piece, after);
+        all += n = first_hits(index, ray, piece, {.after = after});
         if (n > 0) after = piece[n - 1];
     } while (n == piece.size());
     return all;

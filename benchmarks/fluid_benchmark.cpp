@@ -86,7 +86,7 @@ Contender lists_by(const std::vector<Vec<float, D>>& points, float radius,
     return [&points, radius, options, found = std::vector<Near<float, D>>()]() mutable {
         const auto index = build<S>(PointCloudView<float, D>(points), options, serial_executor());
         std::size_t all = 0;
-        for (const auto& p : points) all += within(index, p, {.radius = radius}, found) - 1;
+        for (const auto& p : points) all += within(index, p, radius, found) - 1;
         return all;
     };
 }
@@ -99,11 +99,11 @@ public:
           places_(flow_.state().places),
           radius_(2 * flow_.options().smoothing * flow_.options().spacing) {
         for (const auto& p : places_) floats_.push_back(Vec<float, D>(p));
-        const std::size_t neighbours =
-            neighbours_within(places_, radius_, lists_, {.order = &order_}, serial_executor());
+        neighbours_within(places_, radius_, lists_, {.order = &order_, .threads = serial_executor()});
         std::printf("%zu particles in %s, %.1f neighbours, %zu particles of walls, after %d steps\n",
                     places_.size(), D == 2 ? "the plane" : "space",
-                    double(neighbours) / double(places_.size()), flow_.walls().places.size(), steps_before);
+                    double(lists_.count()) / double(places_.size()), flow_.walls().places.size(),
+                    steps_before);
     }
 
     void measure_steps() {
@@ -180,7 +180,9 @@ private:
     }
     Contender own_search() {
         return [this] {
-            return neighbours_within(places_, radius_, lists_, {.order = &order_}, serial_executor());
+            return neighbours_within(places_, radius_, lists_,
+                                     {.order = &order_, .threads = serial_executor()}),
+                   lists_.count();
         };
     }
     double speed(double seconds) const { return double(places_.size()) / seconds * 1e-6; }
@@ -189,7 +191,7 @@ private:
     std::vector<Vec<double, D>> places_;
     double radius_;
     std::vector<Vec<float, D>> floats_;
-    NeighbourLists<double> lists_;
+    NearLists<double> lists_;
     std::vector<PrimitiveId> order_;
     double other_work_ = 0;  // seconds of a step that are not search
 };

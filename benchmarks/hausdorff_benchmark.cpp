@@ -29,8 +29,9 @@ void measure_pair(const char* what, const TriangleMesh<float>& a, const Triangle
             WideOptions options;
             options.builder = builder;
             const auto to = build<WideBvh>(b, options, serial_executor());
-            const auto found = directed_hausdorff_distance(build<BruteForce>(a, {}, serial_executor()), to,
-                                                           {error, 0}, serial_executor());
+            const auto found =
+                directed_hausdorff_distance(build<BruteForce>(a, {}, serial_executor()), to,
+                                            {.absolute = error, .relative = 0, .threads = serial_executor()});
             return static_cast<std::size_t>(static_cast<double>(found.upper) / error * 1e6);
         };
     };

@@ -52,29 +52,31 @@ void measure_queries(const char* kind, const Solid<MeshIndex<float>>& solid,
     };
     Contest contest;
     if (peer != nullptr) contest.add(peer->name(), [&] { return peer->sides(points, theirs); });
-    contest.add("side", each([&](const Vec3f& p) { return solid.side(p) == Side::inside; }));
-    contest.add("sides",
-                [&] { return sides(solid, all, std::span(ours), serial_executor()), points.size(); });
-    contest.add("side, holes", each([&](const Vec3f& p) { return open.side(p) == Side::inside; }));
+    contest.add("side", each([&](const Vec3f& p) { return side(solid, p) == Side::inside; }));
+    contest.add("sides", [&] {
+        return sides(solid, all, std::span(ours), {.threads = serial_executor()}), points.size();
+    });
+    contest.add("side, holes", each([&](const Vec3f& p) { return side(open, p) == Side::inside; }));
     contest.add("closest_point",
                 each([&](const Vec3f& p) { return closest_point(solid.index(), p).distance2 > 1; }));
-    contest.add("signed_distance",
-                each([&](const Vec3f& p) { return solid.signed_distance(p).distance < 0; }));
-    contest.add("by pseudonormals",
-                each([&](const Vec3f& p) { return by_normals.signed_distance(p).distance < 0; }));
+    contest.add("signed_distance", each([&](const Vec3f& p) { return signed_distance(solid, p) < 0; }));
+    contest.add("by pseudonormals", each([&](const Vec3f& p) { return signed_distance(by_normals, p) < 0; }));
     contest.add("closest_points", [&] {
-        return closest_points(solid.index(), all, std::span(near), serial_executor()), points.size();
+        return closest_points(solid.index(), all, std::span(near), {.threads = serial_executor()}),
+               points.size();
     });
     contest.add("signed_distances", [&] {
-        return signed_distances(solid, all, std::span(distances), serial_executor()), points.size();
+        return signed_distances(solid, all, std::span(distances), {.threads = serial_executor()}),
+               points.size();
     });
     contest.add("by pseudonormals", [&] {
-        return signed_distances(by_normals, all, std::span(distances), serial_executor()), points.size();
+        return signed_distances(by_normals, all, std::span(distances), {.threads = serial_executor()}),
+               points.size();
     });
     const auto times =
         measured_in_turn(rounds, contest, Clock::thread, [](const std::string&) { return true; });
     Visits visits;
-    for (const Vec3f& p : points) solid.side(p, visits);
+    for (const Vec3f& p : points) side(solid, p, {}, visits);
     const double n = static_cast<double>(points.size());
     std::printf("%s: %.1f nodes, %.1f leaves a side\n", kind, double(visits.nodes) / n,
                 double(visits.leaves) / n);
@@ -135,7 +137,7 @@ void measure_expansions(const char* kind, const TriangleMesh<float>& mesh, const
         const double time = median_seconds(
             rounds,
             [&] {
-                for (std::size_t i = 0; i < points.size(); ++i) found[i] = solid.winding_number(points[i]);
+                for (std::size_t i = 0; i < points.size(); ++i) found[i] = winding_number(solid, points[i]);
             },
             Clock::thread);
         double worst = 0;

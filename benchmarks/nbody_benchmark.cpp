@@ -55,7 +55,7 @@ void add_direct_sums(Contest& contest, const char* scalar, const PointCloud<T, 3
             const std::vector<T> charges(cloud.size(), T(1));
             std::vector<PotentialAt<T>> found(targets);
             direct_sum<T>({cloud.points, charges}, std::span(cloud.points).first(targets), found,
-                          serial_executor());
+                          {.threads = serial_executor()});
             return static_cast<std::size_t>(found[0].potential);
         });
     }
@@ -107,12 +107,14 @@ int main(int argc, char** argv) {
             for (const double accuracy : {1e-2, 1e-3, 1e-4, 3e-5, 1e-6, 1e-7})
                 methods.add(std::string(set) + format(", within %.0e", accuracy), [&, set, accuracy] {
                     use_instruction_set(set);
-                    forces<double>({places, charges}, found, {.accuracy = accuracy}, serial_executor());
+                    forces<double>({places, charges}, found,
+                                   {.accuracy = accuracy, .threads = serial_executor()});
                     return static_cast<std::size_t>(found[0].potential);
                 });
             methods.add(std::string(set) + ", barnes_hut, angle 0.55", [&, set] {
                 use_instruction_set(set);
-                barnes_hut<double>({places, charges}, found, {.opening_angle = 0.55}, serial_executor());
+                barnes_hut<double>({places, charges}, found,
+                                   {.opening_angle = 0.55, .threads = serial_executor()});
                 return static_cast<std::size_t>(found[0].potential);
             });
         }

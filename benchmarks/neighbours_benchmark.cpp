@@ -50,7 +50,7 @@ std::vector<Vec<T, D>> jittered(std::size_t count) {
 template <int D>
 void measure_points(std::size_t count, float radius) {
     auto floats = jittered<float, D>(count);
-    NeighbourLists<float> lists;
+    NearLists<float> lists;
     std::vector<PrimitiveId> order;
     neighbours_within(floats, radius, lists, {.order = &order});
     auto sorted = floats;
@@ -65,25 +65,31 @@ void measure_points(std::size_t count, float radius) {
         use_instruction_set(set);
         by_hand::HandWritten<D> cells(lists.ids.size());
         const by_hand::List list = by_hand::list_for<D>(set);
-        NeighbourLists<double> of_doubles;
+        NearLists<double> of_doubles;
         Contest contest;
         contest.add("by hand", [&] { return cells.run(sorted, radius, list); });
         contest.add("float", [&] {
-            return neighbours_within(sorted, radius, lists, {.order = &order}, serial_executor());
+            return neighbours_within(sorted, radius, lists, {.order = &order, .threads = serial_executor()}),
+                   lists.count();
         });
         contest.add("double", [&] {
-            return neighbours_within(doubles, double(radius), of_doubles, {.order = &order},
-                                     serial_executor());
+            return neighbours_within(doubles, double(radius), of_doubles,
+                                     {.order = &order, .threads = serial_executor()}),
+                   of_doubles.count();
         });
         contest.add("period", [&] {
-            return neighbours_within(sorted, radius, lists, {.periods = periods, .order = &order},
-                                     serial_executor());
+            return neighbours_within(
+                       sorted, radius, lists,
+                       {.periods = periods_in_space(periods), .order = &order, .threads = serial_executor()}),
+                   lists.count();
         });
         contest.add("shuffled", [&] {
-            return neighbours_within(floats, radius, lists, {.order = &order}, serial_executor());
+            return neighbours_within(floats, radius, lists, {.order = &order, .threads = serial_executor()}),
+                   lists.count();
         });
-        contest.add("shuffled, caller's numbers",
-                    [&] { return neighbours_within(floats, radius, lists, {}, serial_executor()); });
+        contest.add("shuffled, caller's numbers", [&] {
+            return neighbours_within(floats, radius, lists, {.threads = serial_executor()}), lists.count();
+        });
         for (const auto& run : contest.contenders) run();
         const auto seconds =
             seconds_in_turn(rounds, contest, Clock::thread, [](const std::string&) { return true; });

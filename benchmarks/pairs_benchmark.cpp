@@ -42,13 +42,13 @@ auto built(const TriangleMesh<float>& mesh) {
 template <template <class, int> class S>
 Contender self_intersections_of(const TriangleMesh<float>& mesh) {
     return [&mesh, found = std::vector<ElementPair>()]() mutable {
-        return self_intersections(built<S>(mesh), found, serial_executor());
+        return self_intersections(built<S>(mesh), found, {.threads = serial_executor()});
     };
 }
 template <template <class, int> class S>
 Contender crossings_of(const TriangleMesh<float>& a, const TriangleMesh<float>& b) {
     return [&a, &b, found = std::vector<ElementPair>()]() mutable {
-        return crossing_pairs(built<S>(a), built<S>(b), found, serial_executor());
+        return crossing_pairs(built<S>(a), built<S>(b), found, {.threads = serial_executor()});
     };
 }
 
@@ -67,8 +67,8 @@ void print(const char* question, const Contest& contest) {
 void measure_radius(const PointCloud<float, 3>& cloud, float radius) {
     const auto by_pairs = [&cloud, radius]<template <class, int> class S>() -> Contender {
         return [&cloud, radius, found = std::vector<PairWithin<float>>()]() mutable {
-            return pairs_within(build<S>(cloud, {}, serial_executor()), {.radius = radius}, found,
-                                serial_executor());
+            return pairs_within(build<S>(cloud, {}, serial_executor()), radius, found,
+                                {.threads = serial_executor()});
         };
     };
     Contest contest;
@@ -81,7 +81,7 @@ void measure_radius(const PointCloud<float, 3>& cloud, float radius) {
         std::vector<Near<float, 3>> found;
         std::size_t pairs = 0;
         for (PrimitiveId i = 0; i < cloud.size(); ++i) {
-            within(index, cloud.points[i], {.radius = radius}, found);
+            within(index, cloud.points[i], radius, found);
             for (const auto& near : found) pairs += near.element > i;
         }
         return pairs;

@@ -46,8 +46,8 @@ public:
         for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = cast.any_hit(rays[i]);
         return {rays.size(), 0, 0};
     }
-    void first_hits(const RayArray<float, 3>&, std::size_t, const FirstHitsColumns<float>&,
-                    std::span<const AfterHit<float>>, const Filter&) const override {
+    void first_hits(const RayArray<float, 3>&, std::size_t, HitLists<float>&, const AfterHits&,
+                    const Filter&) const override {
         throw std::logic_error("paths have no first hits");
     }
 

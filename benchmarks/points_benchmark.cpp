@@ -55,8 +55,8 @@ void measure_queries(const I& index, const PointPeer* peer, const std::string& k
     contest.add("walk", [&] {
         visits = {};
         return each([&](const Vec3f& p) {
-            if (k == 1) return closest_point(index, p, {}, visits).distance2;
-            nearest(index, p, k, found, {}, visits);
+            if (k == 1) return closest_point(index, p, {}, KeepAll(), visits).distance2;
+            nearest(index, p, k, found, {}, KeepAll(), visits);
             return found.back().distance2;
         });
     });
@@ -69,7 +69,7 @@ void measure_queries(const I& index, const PointPeer* peer, const std::string& k
     });
     if (k == 1)
         contest.add("batch", [&] {
-            closest_points(index, Strided<Vec3f>(points), std::span(all), serial_executor());
+            closest_points(index, Strided<Vec3f>(points), std::span(all), {.threads = serial_executor()});
             return points.size();
         });
     std::vector<Vec3d> points_in_double;
@@ -82,14 +82,13 @@ void measure_queries(const I& index, const PointPeer* peer, const std::string& k
             return points.size();
         });
         contest.add("same, batch", [&] {
-            closest_points(*doubles, points_in_double, found_in_double, serial_executor());
+            closest_points(*doubles, points_in_double, found_in_double, {.threads = serial_executor()});
             return points.size();
         });
     }
-    std::vector<PrimitiveId> ids(k * points.size());
-    std::vector<float> distances2(k * points.size());
+    NearListsOf<I> lists;
     contest.add("columns", [&] {
-        nearest(index, points, k, {ids, distances2}, serial_executor());
+        nearest(index, points, k, lists, {.threads = serial_executor()});
         return points.size();
     });
     const auto times =
@@ -164,21 +163,22 @@ void measure_lists(const I& index, const PointPeer* peer, std::size_t many,
         contest.add(peer->name(), [&] { return theirs = *peer->within(points, radius), points.size(); });
     contest.add("one by one", [&] {
         ours = 0;
-        for (const Vec3f& p : points) ours += within(index, p, {.radius = radius}, found);
+        for (const Vec3f& p : points) ours += within(index, p, radius, found);
         return points.size();
     });
     contest.add("batch", [&] {
-        ours = within(index, points, {.radius = radius}, serial_executor()).all().size();
+        ours = within(index, points, radius, {.threads = serial_executor()}).count();
         return points.size();
     });
-    ListColumns<typename I::Primitives> columns;
+    NearListsOf<I> columns;
     contest.add("columns", [&] {
-        ours = within(index, points, {.radius = radius}, columns, serial_executor());
+        within(index, points, radius, columns, {.threads = serial_executor()});
+        ours = columns.count();
         return points.size();
     });
     contest.add("counts", [&] {
         std::size_t all = 0;
-        for (const Vec3f& p : points) all += count_overlapping(index, Sphere<float, 3>{p, radius});
+        for (const Vec3f& p : points) all += overlap_count(index, Sphere<float, 3>{p, radius});
         return all > 0 ? points.size() : 0;
     });
     const auto times =
@@ -222,7 +222,7 @@ void measure_crowd() {
     std::printf("\nk nearest, a million points at one place\n");
     for (const std::size_t k : {1u, 8u, 32u}) {
         std::vector<Near<float, 3>> found;
-        std::vector<PrimitiveId> ids(k * queries.size());
+        NearLists<float> lists;
         Contest contest;
         for (const auto& [name, index] :
              {std::pair("uniform", &among_uniform), std::pair("crowd", &in_crowd)}) {
@@ -231,7 +231,7 @@ void measure_crowd() {
                 return queries.size();
             });
             contest.add(std::string(name) + ", columns", [&, index = index] {
-                nearest(*index, queries, k, {ids, {}}, serial_executor());
+                nearest(*index, queries, k, lists, {.threads = serial_executor()});
                 return queries.size();
             });
         }

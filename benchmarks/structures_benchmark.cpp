@@ -87,7 +87,7 @@ void traces(const TriangleMesh<float>& mesh, const std::vector<Built>& all) {
         std::vector<std::function<std::size_t()>> contenders;
         for (const auto& index : all)
             contenders.emplace_back([&] {
-                index->closest_hits(set.rays, hits);
+                closest_hits(*index, set.rays, hits, {.threads = serial_executor()});
                 return static_cast<std::size_t>(
                     std::ranges::count_if(hits, [](const auto& h) { return bool(h); }));
             });
@@ -96,7 +96,7 @@ void traces(const TriangleMesh<float>& mesh, const std::vector<Built>& all) {
         for (std::size_t c = 0; c < all.size(); ++c) {
             // Count what the rays visit.
             std::vector<Visits> visits(n);
-            all[c]->closest_hits(set.rays, hits, visits);
+            closest_hits(*all[c], set.rays, hits, {.threads = serial_executor()}, KeepAll(), visits);
             Visits sum;
             for (const auto& v : visits) sum += v;
             const double rays = static_cast<double>(n), nodes = static_cast<double>(sum.nodes) / rays;

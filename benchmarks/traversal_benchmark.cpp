@@ -23,11 +23,12 @@ void variant(const char* spec, const TriangleMesh<float>& mesh, const RaySet& se
     std::vector<Hit<float>> hits(set.rays.size());
     std::vector<Visits> visits(set.rays.size());
     // Count what the rays visit.
-    index->closest_hits(set.rays, hits, visits);
+    closest_hits(*index, set.rays, hits, {.threads = serial_executor()}, KeepAll(), visits);
     Visits all;
     for (const auto& v : visits) all += v;
     // Time the queries without counts.
-    const double time = median_seconds(repeats, [&] { index->closest_hits(set.rays, hits); });
+    const double time = median_seconds(
+        repeats, [&] { closest_hits(*index, set.rays, hits, {.threads = serial_executor()}); });
     const double n = double(set.rays.size());
     std::printf("| %-28s | %-8s | %8.2f | %8.2f | %8.2f | %9.0f |\n", spec, set.name.c_str(),
                 double(all.nodes) / n, double(all.leaves) / n, double(all.primitives) / n, time / n * 1e9);
@@ -60,9 +61,10 @@ double counted_cost(const SahOptions& unit, const AnyIndex<float, 3>& index, con
         ++met;
         Hit<float> hit;
         if (all)
-            index.all_hits(ray, hits, &visits);
+            all_hits(index, ray, hits, KeepAll(), visits);
         else
-            index.closest_hits({&ray, 1}, {&hit, 1}, {&visits, 1});
+            closest_hits(index, {&ray, 1}, {&hit, 1}, {.threads = serial_executor()}, KeepAll(),
+                         std::span(&visits, 1));
     }
     return (unit.traversal_cost * double(visits.nodes) + unit.intersection_cost * double(visits.primitives)) /
            met;

@@ -112,7 +112,7 @@ void measure_mirror(const MeshIndex<float>& index, const PictureSamples<float>& 
     const BeamOptions options{.wanted = {wanted.get(), samples.size()}};
     Contest contest;
     contest.add("rays", [&] {
-        closest_hits(index, rays, std::span(cast), serial_executor());
+        closest_hits(index, rays, std::span(cast), {.threads = serial_executor()});
         return rays.size();
     });
     contest.add("beams",
@@ -142,7 +142,7 @@ Ratios measure_scene(const std::string& name, int size) {
     std::vector<Visible> visible(rays.size());
     Contest contest;
     contest.add("cast", [&] {
-        closest_hits(index, rays, std::span(cast), serial_executor());
+        closest_hits(index, rays, std::span(cast), {.threads = serial_executor()});
         return rays.size();
     });
     contest.add("visible",
@@ -154,7 +154,8 @@ Ratios measure_scene(const std::string& name, int size) {
     contest.add("hits", [&] { return rasteriser.draw(mesh.view(), drawn, serial_executor()).triangles; });
     contest.add("beams", [&] { return beam_hits(index, samples, beamed, serial_executor()).beams; });
     contest.add("build and cast", [&] {
-        closest_hits(build<WideBvh>(mesh, {}, serial_executor()), rays, std::span(cast), serial_executor());
+        closest_hits(build<WideBvh>(mesh, {}, serial_executor()), rays, std::span(cast),
+                     {.threads = serial_executor()});
         return rays.size();
     });
     const auto peer = osmesa(mesh, camera, size, size);

@@ -57,7 +57,7 @@ int ask_rays(const TriangleMesh<float>& mesh) {
     // Find the closest hits of many rays in one call.
     const std::vector<Ray3f> rays = rays_into(index.bounds(), 100000);
     std::vector<Hit<float>> hits(rays.size());
-    closest_hits(index, rays, hits, threads);
+    closest_hits(index, rays, hits, {.threads = threads});
     const auto found = std::count_if(hits.begin(), hits.end(), [](const auto& hit) { return bool(hit); });
 
     // Repeat the queries with a count for each ray. Any query takes one; without it counting costs nothing.

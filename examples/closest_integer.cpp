@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
     hedgerow::Visits visits;
     const Integers by_tree = report("kd-tree", building, questions, [&](long k) {
         const hedgerow::Vec<double, 1> at(static_cast<double>(k));
-        return static_cast<long>(hedgerow::closest_point(tree, at, {}, visits).point[0]);
+        return static_cast<long>(hedgerow::closest_point(tree, at, {}, hedgerow::KeepAll(), visits).point[0]);
     });
     std::printf("looked at: %zu by scan, %.1f by kd-tree\n", n,
                 static_cast<double>(visits.primitives) / static_cast<double>(questions.size()));

@@ -362,7 +362,7 @@ TEST(BadIndexFile, OfPointsCraftedInThousandsDoesNoHarm) {
             EXPECT_EQ(index.validate(), "");
             for (int k = 0; k < 20; ++k)
                 EXPECT_LT(closest_point(index, Vec3f::all(static_cast<float>(k))).element, index.size());
-            EXPECT_EQ(count_overlapping(index, index.bounds()), index.size());
+            EXPECT_EQ(overlap_count(index, index.bounds()), index.size());
             index.refit();
             ++sound;
         } catch (const InputError&) {

@@ -193,9 +193,9 @@ public:
                        const Filter& filter) const override {
         return sound_.any_hits(rays, hits, visits, filter);
     }
-    void first_hits(const RayArray<float, 3>& rays, std::size_t k, const FirstHitsColumns<float>& columns,
-                    std::span<const AfterHit<float>> after, const Filter& filter) const override {
-        sound_.first_hits(rays, k, columns, after, filter);
+    void first_hits(const RayArray<float, 3>& rays, std::size_t k, HitLists<float>& lists,
+                    const AfterHits& after, const Filter& filter) const override {
+        sound_.first_hits(rays, k, lists, after, filter);
     }
 
 private:

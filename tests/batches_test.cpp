@@ -5,15 +5,11 @@
 
 #include "backwards.h"
 #include "contract.h"
+#include "lists.h"
 
 using namespace hedgerow;
 
 namespace {
-
-template <class T>
-bool same(std::span<const T> a, const std::vector<T>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end());
-}
 
 template <class I>
 void expect_same_as_alone(const I& index, Executor& executor) {
@@ -24,27 +20,27 @@ void expect_same_as_alone(const I& index, Executor& executor) {
 
     // Query in batches.
     std::vector<Near<T, D>> found(questions.points.size());
-    closest_points(index, questions.points, found, executor);
-    const auto hits = all_hits(index, questions.rays, executor);
-    const auto near = nearest(index, questions.points, 5, executor);
-    const auto overlaps = overlapping(index, questions.boxes, executor);
+    closest_points(index, questions.points, found, {.threads = executor});
+    const auto hits = all_hits(index, questions.rays, {.threads = executor});
+    const auto near = nearest(index, questions.points, 5, {.threads = executor});
+    const auto overlaps = overlapping(index, questions.boxes, {.threads = executor});
     ASSERT_EQ(hits.size(), questions.rays.size());
     ASSERT_EQ(near.size(), questions.points.size());
     ASSERT_EQ(overlaps.size(), questions.boxes.size());
     // Compare each answer with that of a single call.
     std::size_t answers = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        ASSERT_TRUE(same(hits[i], alone.all[i])) << "ray " << i;
+        ASSERT_TRUE(same_list(hits[i], alone.all[i])) << "ray " << i;
         answers += hits[i].size();
     }
-    EXPECT_EQ(hits.all().size(), answers);
+    EXPECT_EQ(hits.count(), answers);
     EXPECT_GT(answers, 100u);
     for (std::size_t i = 0; i < found.size(); ++i) {
         ASSERT_EQ(found[i], alone.near[i]) << "point " << i;
-        ASSERT_TRUE(same(near[i], alone.nearest[i])) << "point " << i;
-        ASSERT_TRUE(same(overlaps[i], alone.overlapping[i])) << "box " << i;
+        ASSERT_TRUE(same_list(near[i], alone.nearest[i])) << "point " << i;
+        ASSERT_TRUE(same_list(overlaps[i], alone.overlapping[i])) << "box " << i;
     }
-    EXPECT_GT(overlaps.all().size(), 100u);
+    EXPECT_GT(overlaps.count(), 100u);
 }
 
 TEST(Batches, GiveWhatSingleCallsDo) {
@@ -73,10 +69,15 @@ public:
 };
 TEST(Batches, MayBeCutIntoEmptyPieces) {
     EmptyPieces executor;
-    const auto lists = answer_lists<int>(
-        5, executor, [](std::size_t i, std::vector<int>& list) { list.assign(i, static_cast<int>(i)); });
-    ASSERT_EQ(lists.size(), 5u);
-    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(lists[i].size(), i);
+    for (const std::size_t count : {0u, 5u, 1000u}) {
+        IdLists<> lists;
+        detail::list_one_by_one(count, executor, lists, &IdLists<>::ids, [](std::size_t i, auto& list) {
+            list.assign(i % 7, static_cast<PrimitiveId>(i));
+        });
+        ASSERT_EQ(lists.size(), count);
+        for (std::size_t i = 0; i < count; ++i)
+            EXPECT_TRUE(same_list(lists[i], std::vector<PrimitiveId>(i % 7, static_cast<PrimitiveId>(i))));
+    }
 }
 
 TEST(Batches, OfInstancesNameThem) {
@@ -102,7 +103,7 @@ TEST(Batches, NeedNoExecutorForAFilter) {
         const std::size_t n = questions.rays.size();
         std::vector<Hit<float>> want(n), got(n);
         const std::unique_ptr<bool[]> any(new bool[n]);
-        closest_hits(index, questions.rays, want, serial_executor(), filter);
+        closest_hits(index, questions.rays, want, {.threads = serial_executor()}, filter);
         closest_hits(index, questions.rays, got, filter);
         any_hits(index, questions.rays, {any.get(), n}, filter);
         const auto all = all_hits(index, questions.rays, filter);
@@ -114,7 +115,7 @@ TEST(Batches, NeedNoExecutorForAFilter) {
             kept += bool(want[i]);
         }
         EXPECT_GT(kept, n / 10);
-        EXPECT_LT(kept, all_hits(index, questions.rays).all().size());
+        EXPECT_LT(kept, all_hits(index, questions.rays).count());
     };
     expect_same(odd);
     expect_same(of_even_rays);
@@ -126,10 +127,10 @@ TEST(Batches, KeepToTheDistanceAndTheRoom) {
     const auto index = build<PointKdTree>(cloud);
     const std::vector<Vec3d> at = {{0.5, 0.5, 0.5}, {9, 9, 9}};
     std::vector<Near<double, 3>> found(2);
-    closest_points(index, at, found, serial_executor(), {.radius = 1});
+    closest_points(index, at, found, {.radius = 1, .threads = serial_executor()});
     EXPECT_EQ(found[0], closest_point(index, at[0]));
     EXPECT_EQ(found[1], (Near<double, 3>()));
-    const auto near = nearest(index, at, 4, default_executor(), {.radius2 = 1});
+    const auto near = nearest(index, at, 4, {.radius2 = 1, .threads = default_executor()});
     EXPECT_EQ(near[0].size(), 4u);
     EXPECT_TRUE(near[1].empty());
     found.pop_back();

@@ -249,10 +249,10 @@ void expect_insides(const std::string& scene, const fs::path& folder) {
                     continue;
                 }
                 const auto& p = asked.points[i];
-                ASSERT_EQ(sides[i], T(static_cast<int>(solid.side(p)) - 1)) << rest << ", row " << i;
-                ASSERT_EQ(distances[i], solid.signed_distance(p).distance) << rest << ", row " << i;
+                ASSERT_EQ(sides[i], T(static_cast<int>(side(solid, p)) - 1)) << rest << ", row " << i;
+                ASSERT_EQ(distances[i], signed_distance(solid, p)) << rest << ", row " << i;
                 if (!windings.empty()) {
-                    ASSERT_EQ(windings[i], solid.winding_number(p)) << rest << ", row " << i;
+                    ASSERT_EQ(windings[i], winding_number(solid, p)) << rest << ", row " << i;
                 }
                 inside += sides[i] > 0;
             }
@@ -377,7 +377,7 @@ TEST_F(Query, RadiiAndFactorsAreThoseOfTheLibrary) {
     const std::string from = query + " --from " + file("p.npy") + " -o " + file("a.npy");
     std::size_t beyond = 0;
     for (const auto& [given, options] :
-         {std::pair<std::string, NearOptions<float>>{" --radius 0.3", {.radius = 0.3f}},
+         {std::pair<std::string, PointOptions>{" --radius 0.3", {.radius = 0.3f}},
           {" --factor 1.5", {.factor = 1.5f}},
           {" --radius 0.3 --factor 2", {.radius = 0.3f, .factor = 2}}}) {
         std::vector<double> want, lists;
@@ -520,12 +520,12 @@ TEST_F(Query, PairsWithinARadiusAnswerAsTheLibraryDoes) {
             EXPECT_EQ(rows_of(file(name), {"a", "b", "distance"}), want) << name;
         }
     };
-    pairs_within(build(a), {.radius = 0.25}, pairs);
+    pairs_within(build(a), 0.25, pairs);
     expect_pairs("gen:points:500");
-    pairs_within(build(a), build(b), {.radius = 0.25}, pairs);
+    pairs_within(build(a), build(b), 0.25, pairs);
     expect_pairs("gen:points:500 --with gen:points:200");
     // The neighbours of each, also where space repeats.
-    NeighbourLists<double> lists;
+    NearLists<double> lists;
     for (const bool periodic : {false, true}) {
         const Periods<3> periods(periodic ? 1 : 0, periodic ? 1.5 : 0, 0);
         neighbours_within(a.points, 0.25, lists, {.periods = periods, .distances = true});

@@ -38,7 +38,7 @@ template <class T, int D>
 struct Answers {
     std::vector<Hit<T>> closest;
     std::vector<std::vector<Hit<T>>> all;
-    std::vector<std::size_t> counts;  // 2 · hit count + any hit; any hit alone for an AnyIndex
+    std::vector<std::size_t> counts;  // 2 · hit count + any hit
     std::vector<Near<T, D>> near;
     std::vector<std::vector<Near<T, D>>> nearest;
     std::vector<std::vector<PrimitiveId>> overlapping;
@@ -59,25 +59,6 @@ Answers<T, D> answers(const I& index, const Questions<T, D>& questions) {
         nearest(index, p, 5, said.nearest.emplace_back());
     }
     for (const auto& box : questions.boxes) overlapping(index, box, said.overlapping.emplace_back());
-    return said;
-}
-
-/// The answers of an index whose structure is chosen by its name. Such an index does not count hits.
-template <class T, int D>
-Answers<T, D> answers(const AnyIndex<T, D>& index, const Questions<T, D>& questions) {
-    Answers<T, D> said;
-    for (const auto& ray : questions.rays) {
-        bool any = false;
-        index.closest_hits({&ray, 1}, {&said.closest.emplace_back(), 1});
-        index.any_hits({&ray, 1}, {&any, 1});
-        said.counts.push_back(any);
-        index.all_hits(ray, said.all.emplace_back());
-    }
-    for (const auto& p : questions.points) {
-        index.closest_points({&p, 1}, {&said.near.emplace_back(), 1});
-        index.nearest(p, 5, said.nearest.emplace_back());
-    }
-    for (const auto& box : questions.boxes) index.overlapping(box, said.overlapping.emplace_back());
     return said;
 }
 

@@ -31,7 +31,7 @@ struct Interleaved {
         for (std::size_t i = 0; i < size; ++i)
             std::memcpy(bytes.data() + first + i * stride, &elements[i], sizeof(E));
     }
-    Strided<E> view() const { return Strided<E>(bytes.data() + first, size, stride); }
+    Strided<E> view() const { return Strided<E>::in_bytes(bytes.data() + first, size, stride); }
 };
 
 /// Expects the same answers from `set` and `scattered`, a view of equal elements in another layout.
@@ -292,7 +292,7 @@ TYPED_TEST(Contract, TheCallersFloatingPointModeChangesNothing) {
             InModeExecutor threads(mode);
             const auto index = build(mesh, threads);
             std::vector<Hit<T>> hits(questions.rays.size());
-            closest_hits(index, questions.rays, hits, threads);
+            closest_hits(index, questions.rays, hits, {.threads = threads});
             for (std::size_t i = 0; i < hits.size(); ++i)
                 EXPECT_EQ(hits[i], closest_hit(index, questions.rays[i]))
                     << "asked by threads in mode " << mode;

@@ -172,7 +172,7 @@ double tests_a_ray(const AnyIndex<float, 3>& index) {
     }
     std::vector<Hit<float>> hits(rays.size());
     std::vector<Visits> visits(rays.size());
-    index.closest_hits(rays, hits, visits);
+    closest_hits(index, rays, hits, {}, KeepAll(), visits);
     double tests = 0;
     for (const Visits& v : visits) tests += static_cast<double>(v.primitives);
     return tests / static_cast<double>(rays.size());

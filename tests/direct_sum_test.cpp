@@ -33,7 +33,7 @@ template <class T>
 std::vector<PotentialAt<T>> sums_of(const Scene<T>& scene, const std::vector<Vec<T, 3>>& targets,
                                     Threads threads = {}) {
     std::vector<PotentialAt<T>> found(targets.size());
-    direct_sum<T>(scene.view(), targets, found, threads);
+    direct_sum<T>(scene.view(), targets, found, {.threads = threads});
     return found;
 }
 

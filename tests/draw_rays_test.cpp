@@ -26,7 +26,7 @@ std::vector<Hit<float>> hits_of_fan(const SegmentSet<float>& set, const Vec2f& o
         rays.push_back({origin, Vec2f(Vec2d(std::cos(turn), std::sin(turn)))});
     }
     std::vector<Hit<float>> hits(rays.size());
-    build_any("brute-force", set)->closest_hits(rays, hits);
+    closest_hits(*build_any("brute-force", set), rays, hits);
     return hits;
 }
 SegmentSet<float> segments(const std::string& spec) {

@@ -121,7 +121,7 @@ void expect_same_structure(const P& set, const typename S<typename P::Scalar, 3>
         EXPECT_EQ(index.structure().depth(), serial.structure().depth());
         EXPECT_EQ(answers(index, questions), expected);
         std::vector<HitOf<decltype(index)>> hits(questions.rays.size());
-        closest_hits(index, questions.rays, hits, *executor);
+        closest_hits(index, questions.rays, hits, {.threads = *executor});
         for (std::size_t i = 0; i < hits.size(); ++i) EXPECT_EQ(hits[i], expected.closest[i]);
     }
 }
@@ -186,10 +186,10 @@ TEST(Exceptions, PassThroughEveryExecutor) {
         // Exceptions of primitives, in a build and in a batch.
         EXPECT_THROW(build<Bvh>(Touchy{balls.view(), 40000}, {}, *executor), Refusal);
         const auto index = build<Bvh>(Touchy{balls.view(), Hit<float>::none, 7}, {}, *executor);
-        EXPECT_THROW(closest_hits(index, questions.rays, hits, *executor), Refusal);
+        EXPECT_THROW(closest_hits(index, questions.rays, hits, {.threads = *executor}), Refusal);
         // The exception leaves nothing behind.
         const auto good = build<Bvh>(Touchy{balls.view()}, {}, *executor);
-        EXPECT_NO_THROW(closest_hits(good, questions.rays, hits, *executor));
+        EXPECT_NO_THROW(closest_hits(good, questions.rays, hits, {.threads = *executor}));
 
         // An error message names the first bad primitive, whichever piece found one first.
         auto bad = balls;

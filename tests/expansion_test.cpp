@@ -186,7 +186,7 @@ TEST(Expansions, HaveTheSameBitsWithEveryInstructionSet) {
             for (const double error : {1e-1, 1e-3, 1e-6, 1e-9}) {
                 const Solid solid(index, {.by = SideBy::expansion, .error = error});
                 expect_bits_of_the_walk(points_around(mesh, 60), [&](const Vec3f& p, auto& count) {
-                    return solid.winding_number(p, count);
+                    return winding_number(solid, p, {}, count);
                 });
             }
         }
@@ -203,7 +203,7 @@ TEST(Expansions, OfScaledMeshesAreTheSame) {
         const auto scaled_index = build(scaled);
         const Solid of_scaled(scaled_index, {.by = SideBy::expansion});
         for (std::size_t i = 0; i + 1 < points.size(); ++i)
-            EXPECT_EQ(solid.winding_number(points[i]), of_scaled.winding_number(points[i] * scale));
+            EXPECT_EQ(winding_number(solid, points[i]), winding_number(of_scaled, points[i] * scale));
     }
 }
 
@@ -259,35 +259,35 @@ TYPED_TEST(OrientedPointsOf, KeepTheirPromises) {
         std::vector<double> numbers(points.size());
         winding_numbers(surface, Strided<Vec<T, 3>>(points), std::span(numbers));
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const double found = surface.winding_number(points[i]);
+            const double found = winding_number(surface, points[i]);
             ASSERT_NEAR(found, static_cast<double>(s.sum(points[i])), error);
             EXPECT_EQ(found, numbers[i]);
-            EXPECT_EQ(found, of_tree.winding_number(points[i]));
-            EXPECT_EQ(surface.side(points[i]), found >= 0.5 ? Side::inside : Side::outside);
+            EXPECT_EQ(found, winding_number(of_tree, points[i]));
+            EXPECT_EQ(side(surface, points[i]), found >= 0.5 ? Side::inside : Side::outside);
         }
     }
     const OrientedPoints surface(index, s.normals);
-    EXPECT_EQ(surface.side({0, 0, 0}), Side::inside);
-    EXPECT_EQ(surface.side({2, 0, 0}), Side::outside);
-    EXPECT_TRUE(std::isnan(surface.winding_number({0, std::numeric_limits<T>::infinity(), 0})));
+    EXPECT_EQ(side(surface, {0, 0, 0}), Side::inside);
+    EXPECT_EQ(side(surface, {2, 0, 0}), Side::outside);
+    EXPECT_TRUE(std::isnan(winding_number(surface, {0, std::numeric_limits<T>::infinity(), 0})));
     if constexpr (std::is_same_v<T, float>)
         expect_bits_of_the_walk(
-            points, [&](const Vec3f& p, auto& count) { return surface.winding_number(p, count); });
+            points, [&](const Vec3f& p, auto& count) { return winding_number(surface, p, {}, count); });
 }
 TYPED_TEST(OrientedPointsOf, MayBeFewOrInOnePlace) {
     using T = TypeParam;
     const PointCloud<T, 3> none;
     const std::vector<Vec<T, 3>> nothing;
     const auto empty = build(none);
-    EXPECT_EQ(OrientedPoints(empty, nothing).winding_number({1, 2, 3}), 0);
+    EXPECT_EQ(winding_number(OrientedPoints(empty, nothing), {1, 2, 3}), 0);
     for (const std::size_t count : {std::size_t(1), std::size_t(20)}) {
         PointCloud<T, 3> cloud;
         cloud.points.assign(count, Vec<T, 3>(1, 2, 3));
         const std::vector<Vec<T, 3>> normals(count, Vec<T, 3>(0, 0, -2));
         const auto index = build(cloud);
         const OrientedPoints surface(index, normals);
-        EXPECT_EQ(surface.winding_number({1, 2, 3}), 0);
-        EXPECT_NEAR(surface.winding_number({1, 2, 5}), static_cast<double>(count) / (8 * std::numbers::pi),
+        EXPECT_EQ(winding_number(surface, {1, 2, 3}), 0);
+        EXPECT_NEAR(winding_number(surface, {1, 2, 5}), static_cast<double>(count) / (8 * std::numbers::pi),
                     1e-3);
     }
 }

@@ -179,7 +179,7 @@ void expect_what_rays_see(const Read& read, const AnyIndex<T, 3>& index, const T
     for (std::size_t i = 0; i < rays.size(); ++i) {
         Hit<T> hit;
         Visits visits;
-        index.closest_hits({&rays[i], 1}, {&hit, 1}, {&visits, 1});
+        closest_hits(index, {&rays[i], 1}, {&hit, 1}, {}, KeepAll(), std::span(&visits, 1));
         ASSERT_EQ(read.value("depth.Z", i), static_cast<float>(hit.t)) << i;
         ASSERT_EQ(read.id(i), hit.primitive) << i;
         const Vec3f normal = read.vector("normal.X", "normal.Y", "normal.Z", i);

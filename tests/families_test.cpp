@@ -54,7 +54,7 @@ std::string wrong(const Index& index, const Rays& rays, const std::vector<Ray<T,
     if (found.empty()) return "";
     const T limit = found[found.size() / 2].depth;
     std::vector<FamilyCandidate<T>> near;
-    candidates(index, rays, near, limit);
+    candidates(index, rays, near, {.limit = limit});
     for (const auto& c : near)
         if (c.depth > limit || std::find(found.begin(), found.end(), c) == found.end())
             return "has other candidates within a limit";

@@ -53,8 +53,8 @@ void expect_filtered(const char* name, const Index& index, const Expected<T>& ex
     std::vector<Hit<T>> batch(count);
     const std::unique_ptr<bool[]> any(new bool[count]);
     const Watched<T, Filter> watched{expected, filter};
-    closest_hits(index, expected.rays, batch, serial_executor(), watched);
-    any_hits(index, expected.rays, {any.get(), count}, serial_executor(), watched);
+    closest_hits(index, expected.rays, batch, {.threads = serial_executor()}, watched);
+    any_hits(index, expected.rays, {any.get(), count}, {.threads = serial_executor()}, watched);
     for (std::size_t i = 0; i < count; ++i) {
         const Hit<T> want = expected.closest(i, by_hits);
         ASSERT_EQ(want, batch[i]) << "in a batch, ray " << i;

@@ -41,7 +41,7 @@ void expect_by_every_kernel(const TriangleMesh<float>& mesh) {
         expect_all_filters(index, separate);
         expect_all_filters(index, coherent);
         std::vector<Hit<float>> hits(coherent.rays.size());
-        const auto use = closest_hits(index, coherent.rays, hits, serial_executor(),
+        const auto use = closest_hits(index, coherent.rays, hits, {.threads = serial_executor()},
                                       [](const Hit<float>&) { return false; });
         EXPECT_EQ(use.packets > 0, set != "plain");
     });
@@ -87,9 +87,9 @@ TEST(Filters, AreAskedByAllThreads) {
         const auto even = [](std::size_t i, const Hit<float>&) { return i % 2 == 0; };
         for (const auto set : instruction_sets()) {
             const Using use(set);
-            const KernelUse by = closest_hits(index, rays, hits, default_executor(), even);
+            const KernelUse by = closest_hits(index, rays, hits, {.threads = default_executor()}, even);
             EXPECT_EQ(by.single, set == "plain" ? rays.size() : 0u);
-            any_hits(index, rays, {any.get(), rays.size()}, default_executor(), even);
+            any_hits(index, rays, {any.get(), rays.size()}, {.threads = default_executor()}, even);
             for (std::size_t i = 0; i < rays.size(); ++i) {
                 ASSERT_EQ(i % 2 == 0 ? plain[i] : Hit<float>(), hits[i]) << set << ", ray " << i;
                 ASSERT_EQ(i % 2 == 0 && plain[i], any[i]) << set << ", ray " << i;
@@ -118,9 +118,11 @@ TEST(Filters, MayThrow) {
         for (const auto set : instruction_sets()) {
             SCOPED_TRACE(set);
             const Using use(set);
-            EXPECT_THROW(closest_hits(index, rays, hits, serial_executor(), throws_once), Refusal);
-            EXPECT_THROW(any_hits(index, rays, {any.get(), rays.size()}, default_executor(), throws_once),
+            EXPECT_THROW(closest_hits(index, rays, hits, {.threads = serial_executor()}, throws_once),
                          Refusal);
+            EXPECT_THROW(
+                any_hits(index, rays, {any.get(), rays.size()}, {.threads = default_executor()}, throws_once),
+                Refusal);
             EXPECT_THROW(closest_hit(index, rays[last], throws), Refusal);
             EXPECT_THROW(any_hit(index, rays[last], throws), Refusal);
             closest_hits(index, rays, hits);

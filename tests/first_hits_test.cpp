@@ -8,6 +8,7 @@
 #include "crowded.h"
 #include "engine.h"
 #include "layers.h"
+#include "lists.h"
 #include "placements.h"
 
 using namespace hedgerow;
@@ -18,9 +19,9 @@ namespace {
 template <class I, class Filter = KeepAll, class T = typename I::Scalar>
 std::vector<Hit<T>> joined(const I& index, const RayOf<I>& ray, std::size_t k, const Filter& filter = {}) {
     std::vector<Hit<T>> all, piece(k);
-    AfterHit<T> after;
+    AfterHit after;
     while (true) {
-        const std::size_t n = first_hits(index, ray, piece, after, filter);
+        const std::size_t n = first_hits(index, ray, piece, {.after = after}, filter);
         all.insert(all.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(n));
         if (n < k) return all;
         after = piece.back();
@@ -60,7 +61,7 @@ void expect_every_structure(const P& set, const RaysOf<P>& rays, std::size_t mos
         const auto index = build_any(matrix::named_for<P>(spec), set);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             SCOPED_TRACE("ray " + std::to_string(i));
-            longest = std::max(longest, oracle->all_hits(rays[i], all));
+            longest = std::max(longest, all_hits(*oracle, rays[i], all));
             expect_joined(*index, rays[i], all);
             if (testing::Test::HasFatalFailure()) return;
         }
@@ -125,13 +126,13 @@ TEST(FirstHits, BeginWhereTheyGoOn) {
     Visits begin, middle;
     std::array<Hit<double>, 4> some;
     ASSERT_EQ(first_hits(index, ray, some, {}, KeepAll{}, begin), 4u);
-    ASSERT_EQ(first_hits(index, ray, some, {500.5, 0, 0}, KeepAll{}, middle), 4u);
+    ASSERT_EQ(first_hits(index, ray, some, {.after = AfterHit(500.5, 0, 0)}, KeepAll{}, middle), 4u);
     EXPECT_EQ(some[0].t, 501);
     EXPECT_LT(middle.leaves, 2 * begin.leaves + 8);
     const SphereSet<double, 3> ball{{{{0, 0, 0}, 1}, {{4, 0, 0}, 1}}};
     const auto balls = build<Bvh>(ball);
     const Ray3d through{{-3, 0, 0}, {1, 0, 0}};
-    ASSERT_EQ(first_hits(balls, through, some, {2, 0, 0}), 1u);
+    ASSERT_EQ(first_hits(balls, through, some, {.after = AfterHit(2, 0, 0)}), 1u);
     EXPECT_EQ(some[0].element, 1u);
     EXPECT_EQ(some[0].t, 6);
 }
@@ -141,7 +142,9 @@ TEST(FirstHits, PlacesToGoOnFrom) {
     const auto index = build_any("wide", mesh);
     const Ray3f ray{{0.25f, 0.5f, -1}, {0, 0, 1}};
     std::array<Hit<float>, 8> hits;
-    const auto count = [&](const AfterHit<float>& after) { return index->first_hits(ray, hits, after); };
+    const auto count = [&](const AfterHit& after) {
+        return first_hits(*index, ray, std::span(hits), {.after = after});
+    };
     ASSERT_EQ(count({}), 4u);
     const Hit<float> second = hits[1], last = hits[3];
     EXPECT_EQ(count(second), 2u);
@@ -156,7 +159,7 @@ TEST(FirstHits, PlacesToGoOnFrom) {
     EXPECT_EQ(count(Hit<float>()), 0u);
     EXPECT_EQ(count({std::numeric_limits<float>::quiet_NaN(), 0, 0}), 0u);
     // No room.
-    EXPECT_EQ(index->first_hits(ray, {}), 0u);
+    EXPECT_EQ(first_hits(*index, ray, {}), 0u);
 }
 
 /// Kernels of every instruction set and width, with filters, which they call with hits alone.
@@ -234,26 +237,26 @@ TEST(FirstHits, InBatchesOfAnyThreads) {
     Backwards backwards;
     for (Executor* const threads :
          std::initializer_list<Executor*>{&serial_executor(), &default_executor(), &backwards}) {
-        std::vector<Hit<float>> hits(k * rays.size()), others(hits.size()), kept(hits.size());
-        std::vector<std::uint32_t> counts(rays.size()), kept_counts(rays.size());
-        std::vector<AfterHit<float>> after(rays.size());
+        HitLists<float> hits, others, kept;
+        std::vector<AfterHit> after(rays.size());
         // Take batches until no ray has more hits, and compare each with single calls.
         std::size_t found = 1, batches = 0;
         for (; found > 0; ++batches) {
             found = 0;
-            first_hits(index, rays, k, {hits, counts}, after, *threads);
-            first_hits(*any, rays, k, {others}, after, *threads);
-            first_hits(index, rays, k, {kept, kept_counts}, after, *threads, own);
+            const HitsOptions options{.after = after, .threads = *threads};
+            first_hits(index, rays, k, hits, options);
+            first_hits(*any, rays, k, others, options);
+            first_hits(index, rays, k, kept, options, own);
             EXPECT_EQ(hits, others);
             for (std::size_t i = 0; i < rays.size(); ++i) {
                 std::vector<Hit<float>> one(k), filtered(k);
-                ASSERT_EQ(counts[i], first_hits(index, rays[i], one, after[i]));
-                ASSERT_TRUE(std::equal(one.begin(), one.end(), &hits[k * i]));
-                ASSERT_EQ(kept_counts[i],
-                          first_hits(index, rays[i], filtered, after[i], filter_of_ray(own, i)));
-                ASSERT_TRUE(std::equal(filtered.begin(), filtered.end(), &kept[k * i]));
-                found += counts[i];
-                after[i] = hits[k * i + k - 1];  // after the last place, if it is no hit, there are none
+                one.resize(first_hits(index, rays[i], one, {.after = after[i]}));
+                ASSERT_TRUE(same_list(hits[i], one));
+                filtered.resize(
+                    first_hits(index, rays[i], filtered, {.after = after[i]}, filter_of_ray(own, i)));
+                ASSERT_TRUE(same_list(kept[i], filtered));
+                found += one.size();
+                after[i] = one.size() == k ? one.back() : Hit<float>();  // after no hit there are none
             }
         }
         EXPECT_GT(batches, 2u);
@@ -264,33 +267,43 @@ TEST(FirstHits, NeedNoExecutorForAFilter) {
     const auto mesh = stack<float>(6);
     const auto index = build(mesh);
     const std::vector<Ray3f> rays(3, Ray3f{{0.25f, 0.5f, -1}, {0, 0, 1}});
-    std::vector<Hit<float>> hits(2 * rays.size());
-    std::vector<std::uint32_t> counts(rays.size());
+    HitLists<float> hits;
     // Ray i sees what lies beyond t = 2 i + 1.5.
-    first_hits(index, rays, 2, {hits, counts},
+    first_hits(index, rays, 2, hits,
                [](std::size_t i, const Hit<float>& hit) { return hit.t > 1.5f + 2 * float(i); });
-    EXPECT_EQ(counts, (std::vector<std::uint32_t>{2, 2, 1}));
-    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(hits[2 * i].t, 2 + 2 * float(i));
-    EXPECT_FALSE(bool(hits[5]));
+    EXPECT_EQ(hits.count(), 5u);
+    EXPECT_EQ(hits[2].size(), 1u);
+    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(hits[i][0].t, 2 + 2 * float(i));
 }
 
 TEST(FirstHits, RefuseArraysThatAreTooShort) {
     const auto mesh = teapot<float>(50);
     const auto index = build(mesh);
     const auto rays = rays_at(mesh, matrix::targets_of(mesh), 10);
-    std::vector<Hit<float>> hits(19);
-    std::vector<std::uint32_t> counts(9);
-    const std::vector<AfterHit<float>> after(9);
-    EXPECT_THROW(first_hits(index, rays, 2, {hits}), InputError);
-    EXPECT_THROW(first_hits(index, rays, std::size_t(1) << 62, {hits}), InputError);
-    hits.resize(20);
-    EXPECT_NO_THROW(first_hits(index, rays, 2, {hits}));
-    EXPECT_THROW(first_hits(index, rays, 2, {hits, counts}), InputError);
-    EXPECT_THROW(first_hits(index, rays, 2, {hits}, after), InputError);
+    const std::vector<AfterHit> after(9);
+    HitLists<float> lists;
+    EXPECT_THROW(first_hits(index, rays, 2, lists, {.after = after}), InputError);
+    first_hits(index, rays, std::size_t(1) << 62, lists);
+    EXPECT_EQ(lists, all_hits(index, rays));
+    // In arrays of the caller's.
+    first_hits(index, rays, 2, lists);
+    std::vector<Hit<float>> hits(lists.count() - 1);
+    std::vector<std::size_t> offsets(11);
+    auto in_mine = lists_in(std::span(offsets), std::span(hits));
+    EXPECT_THROW(first_hits(index, rays, 2, in_mine), InputError);
+    EXPECT_EQ(offsets.back(), lists.count());
+    hits.resize(lists.count());
+    in_mine = lists_in(std::span(offsets), std::span(hits));
+    first_hits(index, rays, 2, in_mine);
+    EXPECT_EQ(in_mine, lists);
+    EXPECT_EQ(hits.back(), lists.hits.back());
+    offsets.pop_back();
+    in_mine = lists_in(std::span(offsets), std::span(hits));
+    EXPECT_THROW(first_hits(index, rays, 2, in_mine), InputError);
     // No room is wanted for no hits.
-    counts.resize(10, 7u);
-    first_hits(index, rays, 0, {{}, counts});
-    EXPECT_EQ(counts, std::vector<std::uint32_t>(10, 0u));
+    first_hits(index, rays, 0, lists);
+    EXPECT_EQ(lists.size(), 10u);
+    EXPECT_EQ(lists.count(), 0u);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
         }
         found.resize(charges + places.size());
         forces<double>(all.view(), Targets<double>(places), std::span(found).subspan(charges),
-                       {.accuracy = q.accuracy}, serial_executor());
+                       {.accuracy = q.accuracy, .threads = serial_executor()});
         for (const Vec3d& place : places) all.add(place, 0);
         if (!all.lengths.empty()) all.lengths.resize(all.size());
         Arrangement with_lengths = all;  // targets of no length leave it to the charges
@@ -73,7 +73,7 @@ inline double excess(const ForceQuestion& q, std::uint64_t& questions) {
         questions += places.size();
         return share(ForceOracle(with_lengths, numbers).errors_of(found));
     }
-    forces<double>(all.view(), found, {.accuracy = q.accuracy}, serial_executor());
+    forces<double>(all.view(), found, {.accuracy = q.accuracy, .threads = serial_executor()});
     questions += charges;
     const ForceOracle some(all, all.period > 0 ? 40 : 100);
     return share(errors_at_some_or_many(some, all, found, q.accuracy));

@@ -58,7 +58,7 @@ Scene unlike_clusters(std::size_t n, double size) {
 
 std::vector<PotentialAt<double>> forces_of(const Scene& scene, double accuracy, Threads threads = {}) {
     std::vector<PotentialAt<double>> found(scene.places.size());
-    forces<double>(scene.view(), found, {.accuracy = accuracy}, threads);
+    forces<double>(scene.view(), found, {.accuracy = accuracy, .threads = threads});
     return found;
 }
 double error_of(const Scene& scene, const std::vector<PotentialAt<double>>& found) {

@@ -23,7 +23,7 @@ TEST(Found, RaysFromFarAwayVisitACellOfAGridOnce) {
         const auto grid = build_any(spec, set);
         Hit<float> hit;
         Visits visits;
-        grid->closest_hits({&ray, 1}, {&hit, 1}, {&visits, 1});
+        closest_hits(*grid, {&ray, 1}, {&hit, 1}, {}, KeepAll(), std::span(&visits, 1));
         EXPECT_LE(visits.nodes, 20u * 20 * 20) << spec;
         EXPECT_GE(visits.nodes, 8u) << spec;
     }

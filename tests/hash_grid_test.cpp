@@ -56,11 +56,11 @@ TEST(HashGrid, SearchesEndHoweverFarPointsSpread) {
                            Vec3f(-1e13f, 1e13f, 1e13f), Vec3f(1e12f, -1e12f, 3)})
         for (const float radius : {0.0f, 0.05f, 0.3f, 5.0f, 1e11f, 1e14f}) {
             Visits count;
-            within(index, p, {.radius = radius}, found, count);
-            within(oracle, p, {.radius2 = radius * radius}, expected);
+            within(index, p, radius, found, {}, KeepAll(), count);
+            within(oracle, p, PointOptions::anywhere, expected, {.radius2 = radius * radius});
             EXPECT_EQ(found, expected) << p[0] << " within " << radius;
             EXPECT_LE(count.nodes, 2 * index.structure().leaf_count() + 1);
-            nearest(index, p, 5, found, {}, count);
+            nearest(index, p, 5, found, {}, KeepAll(), count);
             nearest(oracle, p, 5, expected);
             EXPECT_EQ(found, expected);
         }
@@ -68,7 +68,7 @@ TEST(HashGrid, SearchesEndHoweverFarPointsSpread) {
     std::vector<PrimitiveId> in_region, of_oracle;
     const auto expect_same = [&](const auto& region) {
         Visits count;
-        overlapping(index, region, in_region, count);
+        overlapping(index, region, in_region, {}, count);
         overlapping(oracle, region, of_oracle);
         EXPECT_EQ(in_region, of_oracle);
         EXPECT_LE(count.nodes, 2 * index.structure().leaf_count() + 1);
@@ -102,8 +102,8 @@ TEST(HashGrid, PointsInOnePlaceShareACell) {
     const auto index = build<HashGrid>(cloud);
     EXPECT_EQ(index.structure().leaf_count(), 1u);
     std::vector<Near<float, 2>> found;
-    EXPECT_EQ(within(index, Vec2f(0, 0), {.radius = 5}, found), 1000u);
-    EXPECT_EQ(within(index, Vec2f(0, 0), {.radius2 = 24.99f}, found), 0u);
+    EXPECT_EQ(within(index, Vec2f(0, 0), 5, found), 1000u);
+    EXPECT_EQ(within(index, Vec2f(0, 0), PointOptions::anywhere, found, {.radius2 = 24.99f}), 0u);
 }
 
 TEST(HashGrid, RefusesCellsThatAreNoLength) {
@@ -139,9 +139,12 @@ TEST(HashGrid, DeclinesRaysByAConceptAndWithASentence) {
     };
     const std::string sentence =
         "structure 'hash-grid' cannot answer rays: ask it for neighbours, or take another structure";
-    EXPECT_EQ(message([&] { index->closest_hits({&ray, 1}, {&hit, 1}); }), sentence);
-    EXPECT_EQ(message([&] { index->closest_hits({&ray, 1}, {&hit, 1}, {&visits, 1}); }), sentence);
-    EXPECT_EQ(message([&] { index->all_hits(ray, hits); }), sentence);
+    EXPECT_EQ(message([&] { closest_hits(*index, {&ray, 1}, {&hit, 1}); }), sentence);
+    EXPECT_EQ(message([&] {
+                  closest_hits(*index, {&ray, 1}, {&hit, 1}, {}, KeepAll(), std::span(&visits, 1));
+              }),
+              sentence);
+    EXPECT_EQ(message([&] { all_hits(*index, ray, hits); }), sentence);
     EXPECT_EQ(message([&] { index->trace(ray); }), sentence);
 }
 

@@ -411,8 +411,8 @@ TYPED_TEST(HausdorffOf, ACloudAndAMesh) {
 TYPED_TEST(HausdorffOf, StructuresAndThreadsAgree) {
     using T = TypeParam;
     const auto a = soup<T>(400), b = soup<T>(300, 1);
-    const HausdorffOptions options{0, 1e-2};
-    const auto want = directed_hausdorff_distance(build(a), build(b), options, serial_executor());
+    const HausdorffOptions options{.absolute = 0, .relative = 1e-2, .threads = serial_executor()};
+    const auto want = directed_hausdorff_distance(build(a), build(b), options);
     for_each_index(b, [&](const char* name, const auto& index) {
         // Only ties of distances may differ, between elements that share corners; the soup has none.
         EXPECT_EQ(directed_hausdorff_distance(build<BruteForce>(a), index, options), want) << name;
@@ -420,8 +420,8 @@ TYPED_TEST(HausdorffOf, StructuresAndThreadsAgree) {
     const ThreadLimit limit(2);
     const auto large = boulder<T>(20000), other = boulder<T>(10000);
     const auto from = build(large), to = build(other);
-    EXPECT_EQ(hausdorff_distance(from, to, {}, serial_executor()),
-              hausdorff_distance(from, to, {}, default_executor()));
+    EXPECT_EQ(hausdorff_distance(from, to, {.threads = serial_executor()}),
+              hausdorff_distance(from, to, {.threads = default_executor()}));
     const auto on_all = hausdorff_distance(from, to, {0, 1e-4});
     for (const auto name : instruction_sets()) {
         const Using use(name);

@@ -106,8 +106,8 @@ void expect_equal_of_every_structure(const P& set) {
         const auto index = build_any(named_for<P>(name), set);
         std::vector<Hit<T>> hits(rays.size());
         const std::unique_ptr<bool[]> any(new bool[rays.size()]);
-        index->closest_hits(rays, hits);
-        index->any_hits(rays, {any.get(), rays.size()});
+        closest_hits(*index, rays, hits);
+        any_hits(*index, rays, {any.get(), rays.size()});
         for (std::size_t i = 0; i < rays.size(); ++i) {
             ASSERT_EQ(want[i], hits[i]) << "ray " << i;
             ASSERT_EQ(bool(want[i]), any[i]) << "any, ray " << i;

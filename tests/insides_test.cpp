@@ -192,9 +192,9 @@ void expect_insides(const char* scene, const P& set, std::size_t count = 300) {
             std::vector<Side> found(points.size());
             std::vector<double> numbers(points.size());
             std::vector<T> distances(points.size());
-            solid.sides(points, found, visits);
-            solid.winding_numbers(points, numbers, visits);
-            solid.signed_distances(points, distances, visits);
+            sides(solid, points, found, {}, visits);
+            winding_numbers(solid, points, numbers, {}, visits);
+            signed_distances(solid, points, distances, {}, visits);
             ASSERT_EQ(found, want_sides) << name;
             ASSERT_EQ(numbers, want_numbers) << name;
             ASSERT_EQ(distances, want_distances) << name;
@@ -205,9 +205,9 @@ void expect_insides(const char* scene, const P& set, std::size_t count = 300) {
         for_each_kernel(set, [&](const auto& index, std::string_view) {
             const Solid solid(index);
             for (std::size_t i = 0; i < points.size(); ++i) {
-                ASSERT_EQ(solid.side(points[i]), want_sides[i]) << "point " << i;
-                ASSERT_EQ(solid.winding_number(points[i]), want_numbers[i]) << "point " << i;
-                const SignedDistance<T, D> d = solid.signed_distance(points[i]);
+                ASSERT_EQ(side(solid, points[i]), want_sides[i]) << "point " << i;
+                ASSERT_EQ(winding_number(solid, points[i]), want_numbers[i]) << "point " << i;
+                const SignedDistance<T, D> d = closest_side(solid, points[i]);
                 ASSERT_EQ(d.distance, want_distances[i]) << "point " << i;
                 ASSERT_EQ(d.near, closest_point(oracle, points[i])) << "point " << i;
             }
@@ -255,17 +255,17 @@ TYPED_TEST(Insides, OfManyPointsLevelWithVertices) {
     std::size_t on = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const auto p = exact::integers<T, 3>(random, 20) * T(0.5);
-        const Side side = solid.side(p);
-        if (side == Side::on) {
+        const Side where = side(solid, p);
+        if (where == Side::on) {
             ASSERT_LT(closest_point(index, p).distance2, T(1e-12));
             ++on;
             continue;
         }
         ASSERT_GT(closest_point(index, p).distance2, T(1e-12));
         const double sum = static_cast<double>(sum_of_turns(mesh, p));
-        ASSERT_EQ(solid.winding_number(p), std::round(sum)) << i;
+        ASSERT_EQ(winding_number(solid, p), std::round(sum)) << i;
         ASSERT_NEAR(sum, std::round(sum), 1e-9) << i;
-        ASSERT_EQ(side == Side::inside, std::round(sum) != 0) << i;
+        ASSERT_EQ(where == Side::inside, std::round(sum) != 0) << i;
     }
     EXPECT_GT(on, count / 200);
 }
@@ -326,14 +326,14 @@ void expect_equal_methods(const P& set, const P& turned_some) {
     const Solid by_parity(other, {.by = SideBy::parity});
     EXPECT_EQ(by_crossings.by(), SideBy::crossings);
     for (const auto& p : queries_around(set, 2000, 2)) {
-        const auto want = by_crossings.signed_distance(p);
-        const auto by_normal = by_normals.signed_distance(p);
+        const auto want = closest_side(by_crossings, p);
+        const auto by_normal = closest_side(by_normals, p);
         EXPECT_EQ(by_normal.by, SideBy::pseudonormal);
         // Where the distance is but roundings, only crossings are exact.
         if (want.near.distance2 < typename P::Scalar(1e-12)) continue;
         ASSERT_EQ(by_normal.distance, want.distance);
         ASSERT_EQ(by_normal.side, want.side);
-        ASSERT_EQ(by_parity.side(p), want.side);
+        ASSERT_EQ(side(by_parity, p), want.side);
     }
 }
 TYPED_TEST(Insides, AreTheSameByParityAndPseudonormals) {
@@ -400,11 +400,11 @@ void expect_exact_sides(const char* scene, const TriangleMesh<T>& mesh) {
         if (i % 4 == 3) p = matrix::point_in(index.bounds(), 0.2, random);
         const Side want = exact_side(mesh, p);
         ++sides_found[want];
-        const auto found = by_normals.signed_distance(p);
+        const auto found = closest_side(by_normals, p);
         ASSERT_EQ(found.side, want) << i;
-        ASSERT_EQ(of_other.signed_distance(p), found) << i;
+        ASSERT_EQ(closest_side(of_other, p), found) << i;
         for (const auto* solid : {&by_crossings, &by_normals, &by_parity})
-            ASSERT_EQ(solid->side(p), want) << i;
+            ASSERT_EQ(side(*solid, p), want) << i;
         ASSERT_TRUE(want == Side::on ? found.distance == 0
                                      : (found.distance < 0) == (want == Side::inside) || found.distance == 0)
             << i;
@@ -445,8 +445,8 @@ TYPED_TEST(Insides, AreExactByEveryWay) {
     const auto cube = cube_at<T>(V(-1, -1, -1), 2);
     const auto index = build(cube);
     const Solid solid(index, {.by = SideBy::pseudonormal});
-    EXPECT_GT(solid.signed_distance(V(0, T(63103085), T(77575773))).distance, 0);
-    EXPECT_EQ(solid.side(V(T(0.25), T(0.125), -1)), Side::on);
+    EXPECT_GT(signed_distance(solid, V(0, T(63103085), T(77575773))), 0);
+    EXPECT_EQ(side(solid, V(T(0.25), T(0.125), -1)), Side::on);
 }
 
 /// Open surfaces: by pseudonormals the sides of what is closest, as far as rounded distances tell that.
@@ -466,7 +466,7 @@ TYPED_TEST(Insides, OfOpenSurfacesByPseudonormals) {
     signed_distances(solid, points, std::span(distances));
     int behind = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto found = solid.signed_distance(points[i]);
+        const auto found = closest_side(solid, points[i]);
         ASSERT_EQ(found.distance, distances[i]);
         // Where the closest point is on a face, the face tells.
         if (feature(index, points[i], found.near).feature != Feature::face) continue;
@@ -483,9 +483,9 @@ TYPED_TEST(Insides, OfOpenSurfacesByPseudonormals) {
     const auto of_square = build(square);
     const Solid flat(of_square, {.by = SideBy::pseudonormal});
     for (const V& p : {V(0, 0, 0), V(3, T(1.5), 1), V(T(1.5), T(1.5), T(0.5)), V(T(1.5), T(0.75), T(0.5))})
-        EXPECT_EQ(flat.side(p), Side::on);
-    EXPECT_EQ(flat.side(V(1, 1, 2)), Side::outside);
-    EXPECT_EQ(flat.side(V(1, 1, -2)), Side::inside);
+        EXPECT_EQ(side(flat, p), Side::on);
+    EXPECT_EQ(side(flat, V(1, 1, 2)), Side::outside);
+    EXPECT_EQ(side(flat, V(1, 1, -2)), Side::inside);
 }
 
 /// Compares expansions with the sums, by every structure.
@@ -497,17 +497,17 @@ void expect_promises(const char* scene, const TriangleMesh<T>& mesh, std::size_t
     for (const double error : {1e-1, 1e-2, 1e-3, 1e-4, 1e-7}) {
         const Solid solid(index, {.by = SideBy::expansion, .error = error});
         for (const auto& p : queries_around(mesh, count, 3)) {
-            if (by_crossings.side(p) == Side::on) continue;
-            const double sum = static_cast<double>(sum_of_turns(mesh, p)), found = solid.winding_number(p);
+            if (side(by_crossings, p) == Side::on) continue;
+            const double sum = static_cast<double>(sum_of_turns(mesh, p)), found = winding_number(solid, p);
             ASSERT_NEAR(found, sum, error);
-            ASSERT_EQ(solid.side(p), found >= 0.5 ? Side::inside : Side::outside);
+            ASSERT_EQ(side(solid, p), found >= 0.5 ? Side::inside : Side::outside);
         }
     }
     const auto grid = build<Grid>(mesh);
     const Solid of_wide(index, {.by = SideBy::expansion});
     const Solid of_grid(grid, {.by = SideBy::expansion});
     for (const auto& p : queries_around(mesh, count, 4))
-        ASSERT_EQ(of_wide.winding_number(p), of_grid.winding_number(p));
+        ASSERT_EQ(winding_number(of_wide, p), winding_number(of_grid, p));
 }
 TYPED_TEST(Insides, ExpansionsKeepTheirPromises) {
     using T = TypeParam;
@@ -534,14 +534,14 @@ void expect_right_of_any() {
         const Solid solid(brute);
         const Solid of_wide(wide);
         const Solid of_cut(cut);
-        RC_ASSERT(of_wide.side(p) == solid.side(p));
-        RC_ASSERT(of_cut.side(p) == solid.side(p));
-        RC_ASSERT(of_wide.winding_number(p) == solid.winding_number(p));
-        RC_ASSERT(of_cut.winding_number(p) == solid.winding_number(p));
-        RC_ASSERT(of_cut.signed_distance(p) == solid.signed_distance(p));
-        RC_ASSERT(!std::isnan(solid.signed_distance(p).distance));
-        if (solid.side(p) != Side::on && !any.wild)
-            RC_ASSERT(std::abs(solid.winding_number(p) - static_cast<double>(sum_of_turns(any.set, p))) <
+        RC_ASSERT(side(of_wide, p) == side(solid, p));
+        RC_ASSERT(side(of_cut, p) == side(solid, p));
+        RC_ASSERT(winding_number(of_wide, p) == winding_number(solid, p));
+        RC_ASSERT(winding_number(of_cut, p) == winding_number(solid, p));
+        RC_ASSERT(closest_side(of_cut, p) == closest_side(solid, p));
+        RC_ASSERT(!std::isnan(signed_distance(solid, p)));
+        if (side(solid, p) != Side::on && !any.wild)
+            RC_ASSERT(std::abs(winding_number(solid, p) - static_cast<double>(sum_of_turns(any.set, p))) <
                       1e-9);
     });
 }
@@ -556,10 +556,10 @@ TYPED_TEST(Insides, OfNothing) {
         const Solid solid(index, options);
         using Point = typename std::remove_cvref_t<decltype(solid)>::Point;
         EXPECT_TRUE(solid.closed());
-        EXPECT_EQ(solid.side(Point()), Side::outside);
-        EXPECT_EQ(solid.winding_number(Point()), 0);
-        EXPECT_FALSE(solid.signed_distance(Point()));
-        EXPECT_EQ(solid.signed_distance(Point()).distance, std::numeric_limits<T>::infinity());
+        EXPECT_EQ(side(solid, Point()), Side::outside);
+        EXPECT_EQ(winding_number(solid, Point()), 0);
+        EXPECT_FALSE(closest_side(solid, Point()));
+        EXPECT_EQ(signed_distance(solid, Point()), std::numeric_limits<T>::infinity());
     };
     const TriangleMesh<T> none;
     const SegmentSet<T> no_segments;
@@ -582,10 +582,10 @@ TYPED_TEST(Insides, OfPointsThatAreNotFinite) {
                 for (int k = 0; k < 3; ++k) {
                     Vec<T, 3> p(1, 1, 1);
                     p[k] = bad;
-                    EXPECT_EQ(solid.side(p), Side::outside);
-                    EXPECT_TRUE(std::isnan(solid.winding_number(p)));
-                    EXPECT_FALSE(solid.signed_distance(p));
-                    EXPECT_EQ(solid.signed_distance(p).distance, infinity);
+                    EXPECT_EQ(side(solid, p), Side::outside);
+                    EXPECT_TRUE(std::isnan(winding_number(solid, p)));
+                    EXPECT_FALSE(closest_side(solid, p));
+                    EXPECT_EQ(signed_distance(solid, p), infinity);
                     T distance = 0;
                     signed_distances(solid, std::span<const Vec<T, 3>>(&p, 1), std::span(&distance, 1));
                     EXPECT_EQ(distance, infinity);
@@ -594,9 +594,9 @@ TYPED_TEST(Insides, OfPointsThatAreNotFinite) {
             const T most = std::numeric_limits<T>::max();
             for (const auto& p :
                  {Vec<T, 3>(most, most, most), Vec<T, 3>(-most, 0, most), Vec<T, 3>(1, 1, -most)}) {
-                EXPECT_EQ(solid.side(p), Side::outside);
-                EXPECT_NEAR(solid.winding_number(p), 0, 1e-3);
-                EXPECT_FALSE(std::isnan(solid.signed_distance(p).distance));
+                EXPECT_EQ(side(solid, p), Side::outside);
+                EXPECT_NEAR(winding_number(solid, p), 0, 1e-3);
+                EXPECT_FALSE(std::isnan(signed_distance(solid, p)));
             }
         }
 }
@@ -632,11 +632,11 @@ TYPED_TEST(Insides, AreTheSameForAnyNumberOfThreads) {
         const auto points = queries_around(mesh, 3000, 6);
         std::vector<double> numbers(points.size()), more_numbers(points.size());
         std::vector<T> distances(points.size()), more_distances(points.size());
-        winding_numbers(one, points, std::span(numbers), serial_executor());
-        winding_numbers(many, points, std::span(more_numbers), default_executor());
+        winding_numbers(one, points, std::span(numbers), {.threads = serial_executor()});
+        winding_numbers(many, points, std::span(more_numbers), {.threads = default_executor()});
         EXPECT_EQ(numbers, more_numbers);
-        signed_distances(one, points, std::span(distances), serial_executor());
-        signed_distances(many, points, std::span(more_distances), default_executor());
+        signed_distances(one, points, std::span(distances), {.threads = serial_executor()});
+        signed_distances(many, points, std::span(more_distances), {.threads = default_executor()});
         EXPECT_EQ(distances, more_distances);
     }
 }

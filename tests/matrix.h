@@ -171,7 +171,7 @@ std::vector<HitsAlong<T, D>> hits_along(const AnyIndex<T, D>& index, const std::
     std::vector<Hit<T>> hits;
     for (std::size_t i = 0; i < rays.size(); ++i) {
         HitsAlong<T, D> given{rays[i], counts[i % std::size(counts)]};
-        index.all_hits(rays[i], hits);
+        all_hits(index, rays[i], hits);
         if (i % 4 != 0 && !hits.empty()) {
             given.after = hits[i % hits.size()];
             given.after.element += i % 4 == 1 ? 1u : 0u;

@@ -91,7 +91,7 @@ TYPED_TEST(Matrix, UnusableRaysHitNothing) {
         const auto index = build_any(spec, mesh);
         for (const auto& ray : rays) {
             Hit<T> hit;
-            index->closest_hits({&ray, 1}, {&hit, 1});
+            closest_hits(*index, {&ray, 1}, {&hit, 1});
             EXPECT_FALSE(hit) << spec;
         }
     }

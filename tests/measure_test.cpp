@@ -234,7 +234,7 @@ TEST(AnyIndexChanges, AreOfferedWhereTheStructureHasThem) {
     EXPECT_TRUE(tree->insert(7));
     const Vec3f p(0.5f, 0.5f, 0.5f);
     Near<float, 3> near;
-    tree->closest_points({&p, 1}, {&near, 1});
+    closest_points(*tree, {&p, 1}, {&near, 1});
     EXPECT_EQ(near.element, 7u);
     EXPECT_THROW(tree->refit(), InputError);
 
@@ -245,7 +245,7 @@ TEST(AnyIndexChanges, AreOfferedWhereTheStructureHasThem) {
     EXPECT_GT(bvh->refit(), 0);
     EXPECT_EQ(bvh->validate(), "");
     const Vec3f q(2, 2, 2);
-    bvh->closest_points({&q, 1}, {&near, 1});
+    closest_points(*bvh, {&q, 1}, {&near, 1});
     EXPECT_EQ(near.element, 9u);
 
     // A solid is made again of what has changed.
@@ -253,9 +253,9 @@ TEST(AnyIndexChanges, AreOfferedWhereTheStructureHasThem) {
     const auto solid = build_any("octree", mesh), oracle = build_any("brute-force", mesh);
     const std::vector<Vec3f> places(64, oracle->bounds().center());
     std::vector<double> want(places.size()), got(places.size());
-    oracle->solid().winding_numbers(places, want);
+    winding_numbers(oracle->solid(), places, want);
     for (int round = 0; round < 3; ++round) {
-        solid->solid().winding_numbers(places, got);
+        winding_numbers(solid->solid(), places, got);
         EXPECT_EQ(got, want);
         for (PrimitiveId id = 0; id < mesh.size(); id += 2) EXPECT_TRUE(solid->erase(id));
         EXPECT_THROW(solid->solid(), InputError) << "half of the surface is missing";

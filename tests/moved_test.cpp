@@ -52,9 +52,9 @@ void expect_empty(const I& index, const Questions& questions) {
         std::vector<Near<T, I::dimension>> near(questions.points.size());
         closest_points(index, questions.points, near);
         for (const auto& found : near) EXPECT_EQ(found, (Near<T, I::dimension>()));
-        EXPECT_TRUE(all_hits(index, questions.rays).all().empty());
-        EXPECT_TRUE(nearest(index, questions.points, 3).all().empty());
-        EXPECT_TRUE(overlapping(index, questions.boxes).all().empty());
+        EXPECT_EQ(all_hits(index, questions.rays).count(), 0u);
+        EXPECT_EQ(nearest(index, questions.points, 3).count(), 0u);
+        EXPECT_EQ(overlapping(index, questions.boxes).count(), 0u);
     }
     // Counted queries and traces find nothing.
     Visits visits;

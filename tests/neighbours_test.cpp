@@ -36,10 +36,10 @@ TYPED_TEST_SUITE(Neighbours, Spaces);
 /// The lists of `asking` among `points` by the rule, every pair measured; of one set without the point
 /// itself.
 template <class T, int D>
-NeighbourLists<T> all_pairs(const Points<T, D>& points, const Points<T, D>& asking, T radius,
-                            const Periods<D>& periods, bool once = false) {
+NearLists<T> all_pairs(const Points<T, D>& points, const Points<T, D>& asking, T radius,
+                       const Periods<D>& periods, bool once = false) {
     const bool one = &points == &asking;
-    NeighbourLists<T> lists;
+    NearLists<T> lists;
     lists.offsets.push_back(0);
     for (std::size_t i = 0; i < asking.size(); ++i) {
         for (std::size_t j = once ? i + 1 : 0; j < points.size(); ++j) {
@@ -52,11 +52,10 @@ NeighbourLists<T> all_pairs(const Points<T, D>& points, const Points<T, D>& aski
     return lists;
 }
 template <class T>
-void expect_equal(const NeighbourLists<T>& lists, const NeighbourLists<T>& want, bool distances,
-                  const char* what) {
+void expect_equal(const NearLists<T>& lists, const NearLists<T>& want, bool distances, const char* what) {
     EXPECT_EQ(lists.offsets, want.offsets) << what;
     EXPECT_EQ(lists.ids, want.ids) << what;
-    EXPECT_EQ(lists.distances2, distances ? want.distances2 : std::vector<T>()) << what;
+    EXPECT_EQ(lists.distances2, distances ? want.distances2 : Buffer<T>()) << what;
 }
 /// Compares all kinds of lists, by every instruction set, with those of all pairs.
 template <class T, int D>
@@ -71,15 +70,15 @@ void expect_neighbours(const std::string& scene, const Points<T, D>& points, T r
     for (const auto set : instruction_sets()) {
         SCOPED_TRACE(set);
         const Using use(set);
-        NeighbourLists<T> lists;
+        NearLists<T> lists;
         for (const bool distances : {false, true}) {
-            NeighbourOptions<D> options{.periods = periods, .distances = distances};
-            EXPECT_EQ(neighbours_within(points, radius, lists, options), both.ids.size());
+            NeighbourOptions options{.periods = periods_in_space(periods), .distances = distances};
+            neighbours_within(points, radius, lists, options);
             expect_equal(lists, both, distances, "both sides");
             neighbours_within(points, asking, radius, lists, options);
             expect_equal(lists, of_asking, distances, "of others");
             options.once = true;
-            EXPECT_EQ(neighbours_within(points, radius, lists, options), once.ids.size());
+            neighbours_within(points, radius, lists, options);
             expect_equal(lists, once, distances, "once");
             // In the order of cells: lists of the points in that order.
             std::vector<PrimitiveId> order;
@@ -225,8 +224,8 @@ TYPED_TEST(Neighbours, AgreeWithExactFractions) {
     constexpr int D = TypeParam::D;
     for_each_arrangement<T, D>(70, 2, [](const auto& name, const auto& points, double of_period) {
         const T radius = distance_to(points, 3, 6, Periods<D>::all(of_period));
-        NeighbourLists<T> lists;
-        neighbours_within(points, radius, lists, {.periods = Periods<D>::all(of_period)});
+        NearLists<T> lists;
+        neighbours_within(points, radius, lists, {.periods = periods_in_space(Periods<D>::all(of_period))});
         const mpq_class r2 = mpq_class(static_cast<double>(radius)) * mpq_class(static_cast<double>(radius)),
                         slack = r2 * mpq_class(4 * static_cast<double>(std::numeric_limits<T>::epsilon())) +
                                 mpq_class(2 * static_cast<double>(std::numeric_limits<T>::denorm_min()));
@@ -268,21 +267,22 @@ TYPED_TEST(Neighbours, TheSameForAnyThreadsAndOrder) {
         points.push_back(i % 10 == 0 ? p * T(0.01) : p);
     }
     const T radius = D == 2 ? T(0.006) : T(0.03);
-    NeighbourLists<T> want, in_order;
-    neighbours_within(points, radius, want, {.distances = true}, serial_executor());
+    NearLists<T> want, in_order;
+    neighbours_within(points, radius, want, {.distances = true, .threads = serial_executor()});
     std::vector<PrimitiveId> order;
-    neighbours_within(points, radius, in_order, {.distances = true, .order = &order}, serial_executor());
+    neighbours_within(points, radius, in_order,
+                      {.distances = true, .order = &order, .threads = serial_executor()});
     EXPECT_GT(want.ids.size(), 10 * points.size());
     Points<T, D> sorted;
     for (const PrimitiveId i : order) sorted.push_back(points[i]);
     for (const auto set : instruction_sets()) {
         const Using use(set);
-        NeighbourLists<T> lists;
-        neighbours_within(points, radius, lists, {.distances = true}, default_executor());
+        NearLists<T> lists;
+        neighbours_within(points, radius, lists, {.distances = true, .threads = default_executor()});
         expect_equal(lists, want, true, "as they are");
-        neighbours_within(sorted, radius, lists, {.distances = true}, default_executor());
+        neighbours_within(sorted, radius, lists, {.distances = true, .threads = default_executor()});
         expect_equal(lists, in_order, true, "sorted");
-        neighbours_within(sorted, radius, lists, {.distances = true}, serial_executor());
+        neighbours_within(sorted, radius, lists, {.distances = true, .threads = serial_executor()});
         expect_equal(lists, in_order, true, "sorted, one thread");
     }
     // The renumbered lists are those of the order of cells.
@@ -296,7 +296,7 @@ TYPED_TEST(Neighbours, RefuseWhatHasNoAnswer) {
     using T = typename TypeParam::T;
     constexpr int D = TypeParam::D;
     Points<T, D> points(9000, Vec<T, D>::all(T(1)));
-    NeighbourLists<T> lists;
+    NearLists<T> lists;
     for (const T bad : {std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(),
                         std::nextafter(largest_coordinate<T>, std::numeric_limits<T>::max())}) {
         points[8123][D - 1] = bad;
@@ -311,7 +311,8 @@ TYPED_TEST(Neighbours, RefuseWhatHasNoAnswer) {
     for (const double bad : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
         Periods<D> periods = {};
         periods[1] = bad;
-        EXPECT_THROW(neighbours_within(points, T(0.1), lists, {.periods = periods}), UsageError);
+        EXPECT_THROW(neighbours_within(points, T(0.1), lists, {.periods = periods_in_space(periods)}),
+                     UsageError);
     }
     std::vector<PrimitiveId> order;
     EXPECT_THROW(neighbours_within(points, points, T(0.1), lists, {.once = true}), UsageError);
@@ -329,12 +330,13 @@ TEST(NeighboursOfQuestions, AreListedByCellsWhereThatIsFast) {
         beside.push_back(Vec3f(random.direction<3>() * 1e-3) + Vec3f(0.6f, 0, 0));
     }
     using Cells = detail::CellNeighbours<float, 3>;
-    NeighbourLists<float> lists;
+    NearLists<float> lists;
     const auto listed = [&](const Points<float, 3>& asking) {
         return Cells::within(points, asking, 0.25f, lists, {});
     };
     EXPECT_TRUE(listed(near));
-    EXPECT_EQ(lists.offsets, std::vector<std::size_t>(8001));
+    EXPECT_EQ(lists.size(), 8000u);
+    EXPECT_EQ(lists.count(), 0u);
     EXPECT_FALSE(listed(beside));
     near.resize(400);
     EXPECT_FALSE(listed(near));
@@ -348,8 +350,9 @@ TEST(NeighboursOfClumps, AreListedInParts) {
         points.push_back(Vec3f(random.direction<3>() * 1e-3));
     }
     points.push_back({1, 1, 1}), points.push_back({1.5f, 1, 1});
-    NeighbourLists<float> lists;
-    EXPECT_EQ(neighbours_within(points, 0.5f, lists), 4000u * 3999 + 2);
+    NearLists<float> lists;
+    neighbours_within(points, 0.5f, lists);
+    EXPECT_EQ(lists.count(), 4000u * 3999 + 2);
     EXPECT_EQ(lists.ids.back(), 4000u);
 }
 

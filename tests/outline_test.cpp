@@ -158,8 +158,8 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
                 // Query the index with counts, and brute force.
                 Hit<T> hit, best;
                 Visits visits;
-                index->closest_hits({&ray, 1}, {&hit, 1}, {&visits, 1});
-                oracle->closest_hits({&ray, 1}, {&best, 1});
+                closest_hits(*index, {&ray, 1}, {&hit, 1}, {}, KeepAll(), std::span(&visits, 1));
+                closest_hits(*oracle, {&ray, 1}, {&best, 1});
                 const auto trace = index->trace(ray);
                 EXPECT_EQ(trace.visits, visits);
                 EXPECT_EQ(trace.hit, best);

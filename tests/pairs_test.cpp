@@ -141,11 +141,11 @@ TYPED_TEST(Pairs, AreTheSameForAnyNumberOfThreads) {
     const auto a = build(mesh), b = build(moved);
     PairList serial, parallel;
     const ThreadLimit limit(2);
-    self_intersections(a, serial, serial_executor());
-    self_intersections(a, parallel, default_executor());
+    self_intersections(a, serial, {.threads = serial_executor()});
+    self_intersections(a, parallel, {.threads = default_executor()});
     EXPECT_EQ(serial, parallel);
     EXPECT_FALSE(serial.empty());
-    crossing_pairs(a, b, serial, serial_executor());
+    crossing_pairs(a, b, serial, {.threads = serial_executor()});
     crossing_pairs(a, b, parallel);
     EXPECT_EQ(serial, parallel);
     EXPECT_FALSE(serial.empty());

@@ -17,12 +17,12 @@ using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(PairsWithinRadius, Scalars);
 
 template <class Cloud>
-auto all_pairs(const Cloud& a, const Cloud& b, typename Cloud::Scalar radius2, bool one) {
+auto all_pairs(const Cloud& a, const Cloud& b, typename Cloud::Scalar radius, bool one) {
     std::vector<PairWithin<typename Cloud::Scalar>> found;
     for (PrimitiveId i = 0; i < a.size(); ++i)
         for (PrimitiveId j = one ? i + 1 : 0; j < b.size(); ++j) {
             const auto d2 = closest_point(a.points[i], b.points[j]).distance2;
-            if (d2 <= radius2) found.push_back({i, j, d2});
+            if (within_radius(d2, radius)) found.push_back({i, j, d2});
         }
     return found;
 }
@@ -31,20 +31,19 @@ auto all_pairs(const Cloud& a, const Cloud& b, typename Cloud::Scalar radius2, b
 template <class Cloud>
 void expect_pairs(const char* scene, const Cloud& a, const Cloud& b, typename Cloud::Scalar radius) {
     SCOPED_TRACE(scene);
-    const auto radius2 = radius * radius;
-    const auto alone = all_pairs(a, a, radius2, true), with = all_pairs(a, b, radius2, false);
+    const auto alone = all_pairs(a, a, radius, true), with = all_pairs(a, b, radius, false);
     const auto other = build(b);
     for_each_index(a, [&](const char* name, const auto& index) {
         std::vector<PairWithin<typename Cloud::Scalar>> found;
-        EXPECT_EQ(pairs_within(index, {.radius2 = radius2}, found), alone.size()) << name;
+        EXPECT_EQ(pairs_within(index, radius, found), alone.size()) << name;
         EXPECT_EQ(found, alone) << name;
-        EXPECT_EQ(pairs_within(index, other, {.radius2 = radius2}, found), with.size()) << name;
+        EXPECT_EQ(pairs_within(index, other, radius, found), with.size()) << name;
         EXPECT_EQ(found, with) << name;
         // What `within` finds for each point: the same primitives and distances.
         std::vector<Near<typename Cloud::Scalar, Cloud::dimension>> near;
         std::size_t pairs = 0;
         for (PrimitiveId i = 0; i < a.size(); ++i)
-            for (const auto& n : (within(other, a.points[i], {.radius2 = radius2}, near), near)) {
+            for (const auto& n : (within(other, a.points[i], radius, near), near)) {
                 ++pairs;
                 EXPECT_TRUE(std::binary_search(found.begin(), found.end(),
                                                PairWithin<typename Cloud::Scalar>{i, n.element, n.distance2}))
@@ -94,37 +93,36 @@ TYPED_TEST(PairsWithinRadius, RadiusAndRadius2) {
     PointCloud<T, 3> cloud;
     for (int i = 0; i < 8; ++i) cloud.points.emplace_back(T(i) * T(0.1), T(0), T(0));
     const auto index = build(cloud);
-    std::vector<PairWithin<T>> found, squared;
-    EXPECT_EQ(pairs_within(index, {.radius = T(0.25)}, found), 7u + 6u);
-    EXPECT_EQ(pairs_within(index, {.radius2 = T(0.0625)}, squared), found.size());
-    EXPECT_EQ(found, squared);
-    EXPECT_EQ(pairs_within(index, index, {.radius = T(0.05)}, found), 8u);  // each with itself
+    std::vector<PairWithin<T>> found;
+    EXPECT_EQ(pairs_within(index, T(0.25), found), 7u + 6u);
+    EXPECT_EQ(pairs_within(index, T(0.25)), found);
+    EXPECT_EQ(pairs_within(index, 0.25, {.threads = 1}), found);
+    EXPECT_EQ(pairs_within(index, index, T(0.05), found), 8u);  // each with itself
     // A radius that is the distance of two points has that pair.
     Random random(31);
     for (int i = 0; i < 1000; ++i) {
         PointCloud<T, 3> two;
         two.points = {Vec<T, 3>(), Vec<T, 3>(T(random.uniform()), T(0), T(0))};
-        ASSERT_EQ(pairs_within(build(two), {.radius = two.points[1][0]}, found), 1u);
+        ASSERT_EQ(pairs_within(build(two), two.points[1][0], found), 1u);
     }
     for (const T bad : {T(-1), std::numeric_limits<T>::quiet_NaN(), -std::numeric_limits<T>::infinity()}) {
-        EXPECT_EQ(pairs_within(index, {.radius = bad}, found), 0u);
-        EXPECT_EQ(pairs_within(index, {.radius2 = bad}, found), 0u);
-        EXPECT_EQ(pairs_within(index, index, {.radius = bad}, found), 0u);
+        EXPECT_EQ(pairs_within(index, bad, found), 0u);
+        EXPECT_EQ(pairs_within(index, index, bad, found), 0u);
         EXPECT_TRUE(found.empty());
     }
-    EXPECT_EQ(pairs_within(index, {.radius = std::numeric_limits<T>::infinity()}, found), 28u);
+    EXPECT_EQ(pairs_within(index, std::numeric_limits<T>::infinity(), found), 28u);
 }
 TYPED_TEST(PairsWithinRadius, TheSameForAnyNumberOfThreads) {
     using T = TypeParam;
     const auto a = build(points<T>(20000)), b = build(points<T>(10000, 1));
     std::vector<PairWithin<T>> serial, parallel;
     const ThreadLimit limit(2);
-    pairs_within(a, {.radius = T(0.03)}, serial, serial_executor());
-    pairs_within(a, {.radius = T(0.03)}, parallel, default_executor());
+    pairs_within(a, T(0.03), serial, {.threads = serial_executor()});
+    pairs_within(a, T(0.03), parallel, {.threads = default_executor()});
     EXPECT_EQ(serial, parallel);
     EXPECT_GT(serial.size(), 10000u);
-    pairs_within(a, b, {.radius = T(0.03)}, serial, serial_executor());
-    pairs_within(a, b, {.radius = T(0.03)}, parallel);
+    pairs_within(a, b, T(0.03), serial, {.threads = serial_executor()});
+    pairs_within(a, b, T(0.03), parallel);
     EXPECT_EQ(serial, parallel);
     EXPECT_GT(serial.size(), 10000u);
 }

@@ -206,7 +206,7 @@ std::size_t leaks(const TriangleMesh<double>& mesh, double radius, double restit
         const Vec3d low = index.bounds().low, high = index.bounds().high;
         Vec3d place;
         for (int k = 0; k < 3; ++k) place[k] = random.uniform(low[k], high[k]);
-        if (solid.side(place) != Side::inside) continue;
+        if (side(solid, place) != Side::inside) continue;
         Vec3d target = place + random.direction<3>();
         const auto triangle = mesh.view().triangle(random.bits() % mesh.size());
         if (i % 3 == 1) target = triangle.a;
@@ -219,7 +219,7 @@ std::size_t leaks(const TriangleMesh<double>& mesh, double radius, double restit
         system.step(1);
         leaked = 0;
         for (const Vec3d& place : system.state().particles.places)
-            leaked += solid.side(place) != Side::inside;
+            leaked += side(solid, place) != Side::inside;
         if (leaked > 0) return leaked;
     }
     return leaked;

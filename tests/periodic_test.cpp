@@ -87,7 +87,7 @@ std::vector<PotentialAt<double>> after_ewald(const Cube& cube) {
 
 std::vector<PotentialAt<double>> forces_of(const Cube& cube, double accuracy, Threads threads = {}) {
     std::vector<PotentialAt<double>> found(cube.size());
-    forces<double>(cube.view(), found, {.accuracy = accuracy}, threads);
+    forces<double>(cube.view(), found, {.accuracy = accuracy, .threads = threads});
     return found;
 }
 TEST(Periodic, DirectSumsAreThoseAfterEwald) {

@@ -120,7 +120,7 @@ TEST(Pictures, RaysKeepTheirNumbersForFilters) {
     const auto refuses = [](std::size_t i, const Hit<float>& hit) { return (hit.element + i) % 3 == 0; };
     for_each_picture(index.bounds(), Kind::pinhole, [&](const std::vector<Ray3f>& rays) {
         std::vector<Hit<float>> hits(rays.size());
-        closest_hits(index, rays, std::span(hits), serial_executor(),
+        closest_hits(index, rays, std::span(hits), {.threads = serial_executor()},
                      [&](std::size_t i, const Hit<float>& hit) { return !refuses(i, hit); });
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const auto want =
@@ -137,7 +137,8 @@ TEST(Pictures, GoInPackets) {
     const auto index = build<WideBvh>(mesh);
     for_each_picture(index.bounds(), Kind::parallel, [&](const std::vector<Ray3f>& rays) {
         std::vector<Hit<float>> hits(rays.size());
-        const std::size_t packets = closest_hits(index, rays, std::span(hits), serial_executor()).packets;
+        const std::size_t packets =
+            closest_hits(index, rays, std::span(hits), {.threads = serial_executor()}).packets;
         if (wide_kernels() == nullptr)
             EXPECT_EQ(packets, 0u);
         else

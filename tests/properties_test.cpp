@@ -41,14 +41,14 @@ struct Answers {
     std::vector<PrimitiveId> overlapping;
 
     Answers(const AnyIndex<T, D>& index, const Ray<T, D>& ray) {
-        index.closest_hits({&ray, 1}, {&closest, 1});
-        index.any_hits({&ray, 1}, {&any, 1});
-        index.all_hits(ray, all);
+        closest_hits(index, {&ray, 1}, {&closest, 1});
+        any_hits(index, {&ray, 1}, {&any, 1});
+        all_hits(index, ray, all);
     }
     Answers(const AnyIndex<T, D>& index, const Vec<T, D>& point, std::size_t k, const Box<T, D>& box) {
-        index.closest_points({&point, 1}, {&near, 1});
-        index.nearest(point, k, nearest);
-        index.overlapping(box, overlapping);
+        closest_points(index, {&point, 1}, {&near, 1});
+        hedgerow::nearest(index, point, k, nearest);
+        hedgerow::overlapping(index, box, overlapping);
     }
     friend bool operator==(const Answers&, const Answers&) = default;
 };
@@ -86,15 +86,15 @@ TYPED_TEST(OfEverySet, FirstHitsInPiecesOfAnySizeAreAllHits) {
         const auto indexes = every_index(one.set);
         const auto ray = one.ray();
         std::vector<Hit<T>> all;
-        indexes[0]->all_hits(ray, all);
+        all_hits(*indexes[0], ray, all);
         for (const auto& index : indexes)
             for (std::size_t k = 1; k <= all.size() + 1; ++k) {
                 // Each piece goes on after the last hit of the one before.
                 std::vector<Hit<T>> joined, piece(k);
-                AfterHit<T> after;
+                AfterHit after;
                 std::size_t n = k;
                 while (n == k) {
-                    n = index->first_hits(ray, piece, after);
+                    n = first_hits(*index, ray, std::span(piece), {.after = after});
                     joined.insert(joined.end(), piece.begin(),
                                   piece.begin() + static_cast<std::ptrdiff_t>(n));
                     RC_ASSERT(joined.size() <= all.size());
@@ -111,7 +111,7 @@ TEST(Structures, RaysThatGrazeTheFacesOfTheSceneAreAnsweredToTheirEnd) {
     const auto expect_hit = [](const auto& set, const auto& ray) {
         for (const auto& index : every_index(set)) {
             Hit<typename std::remove_cvref_t<decltype(set)>::Scalar> hit;
-            index->closest_hits({&ray, 1}, {&hit, 1});
+            closest_hits(*index, {&ray, 1}, {&hit, 1});
             EXPECT_TRUE(hit) << index->structure();
         }
     };
@@ -224,8 +224,8 @@ TYPED_TEST(OfEverySet, APowerOfTwoInTheDirectionDividesT) {
         for (T* t : {&longer.t_min, &longer.t_max}) *t = std::ldexp(*t, -k);
         for (const auto& index : every_index(one.set)) {
             std::vector<Hit<T>> hits, scaled;
-            index->all_hits(ray, hits);
-            index->all_hits(longer, scaled);
+            all_hits(*index, ray, hits);
+            all_hits(*index, longer, scaled);
             // Leave out hits at t = 0: for the other ray, whose t does not underflow, they may be just before
             // 0.
             for (auto* list : {&hits, &scaled}) std::erase_if(*list, [](const auto& h) { return h.t == 0; });

@@ -40,7 +40,8 @@ public:
     /// A view that begins with number w of the order.
     template <class E>
     Strided<E> view(std::size_t w = 0) const {
-        return {size_ == 0 ? nullptr : data_.get() + before_ + w * sizeof(T), size_, stride_};
+        return Strided<E>::in_bytes(size_ == 0 ? nullptr : data_.get() + before_ + w * sizeof(T), size_,
+                                    stride_);
     }
 
 private:
@@ -139,11 +140,12 @@ TEST(RayArrays, GoThroughAnyIndexToTheKernels) {
     std::vector<Hit<float>> hits(rays.size());
     std::vector<Visits> visits(rays.size());
     in_every_layout<float>(rays, [&](const char* layout, const RayArray<float, 3>& array) {
-        EXPECT_EQ(any_index->closest_hits(array, hits).packets, wide_kernels() == nullptr ? 0u : 960u)
+        EXPECT_EQ(closest_hits(*any_index, array, hits).packets, wide_kernels() == nullptr ? 0u : 960u)
             << layout;
         for (std::size_t i = 0; i < rays.size(); ++i)
             ASSERT_EQ(hits[i], closest_hit(index, rays[i])) << layout << ", ray " << i;
-        EXPECT_EQ(any_index->closest_hits(array, hits, visits).single, 960u) << layout << ", counted";
+        EXPECT_EQ(closest_hits(*any_index, array, hits, {}, KeepAll(), visits).single, 960u)
+            << layout << ", counted";
     });
     EXPECT_GT(visits[0].nodes, 0u);
 }
@@ -174,7 +176,7 @@ TEST(RayArrays, AreMadeOfWhatHoldsRays) {
     bool any[10];
     EXPECT_NO_THROW(closest_hits(index, rays, hits));
     EXPECT_NO_THROW(closest_hits(index, array, hits));
-    EXPECT_NO_THROW(closest_hits(index, std::span(rays), hits, default_executor()));
+    EXPECT_NO_THROW(closest_hits(index, std::span(rays), hits, {.threads = default_executor()}));
     EXPECT_NO_THROW(closest_hits(index, std::span<const Ray3f>(rays), std::span(hits)));
     EXPECT_NO_THROW(any_hits(index, {rays.data(), 3}, any));
     EXPECT_NO_THROW(any_hits(index, Strided<Ray3f>(rays.data(), 5, 2 * sizeof(Ray3f)), any));

@@ -107,23 +107,21 @@ void expect_own_primitives_ask() {
         return answers;
     };
     const auto ball = [](std::size_t i) { return Sphere<float, 3>{place(i), 0.3f}; };
-    expect_again([&](std::size_t i) { return count_overlapping(index, ball(i)); },
-                 all([&](std::size_t i) { return count_overlapping(oracle, ball(i)); }));
+    expect_again([&](std::size_t i) { return overlap_count(index, ball(i)); },
+                 all([&](std::size_t i) { return overlap_count(oracle, ball(i)); }));
 
     const Solid solid(index);
     const Solid of_oracle(oracle);
-    expect_again([&](std::size_t i) { return solid.winding_number(place(i)); },
-                 all([&](std::size_t i) { return of_oracle.winding_number(place(i)); }));
+    expect_again([&](std::size_t i) { return winding_number(solid, place(i)); },
+                 all([&](std::size_t i) { return winding_number(of_oracle, place(i)); }));
     // Expansions hang on the tree, so the solid itself is the oracle.
     const Solid expanded(index, {.by = SideBy::expansion});
-    const auto expansion = [&](std::size_t i) { return expanded.winding_number(place(i)); };
+    const auto expansion = [&](std::size_t i) { return winding_number(expanded, place(i)); };
     expect_again(expansion, all(expansion));
 
     const auto nearest_ids = [](const auto& of) {
         return [&of](std::size_t i) {
-            std::vector<PrimitiveId> ids(4);
-            nearest(of, std::vector{place(i)}, 4, {ids, {}}, serial_executor());
-            return ids;
+            return nearest(of, std::vector{place(i)}, 4, {.threads = serial_executor()});
         };
     };
     expect_again(nearest_ids(index), all(nearest_ids(oracle)));

@@ -54,12 +54,12 @@ struct Answers {
 template <class I, class P, class R>
 void expect_answers_of(const I& index, const std::vector<R>& regions,
                        const std::vector<Answers<P, R>>& want) {
-    const auto lists = overlapping(index, regions, serial_executor());
-    const auto inner = contained(index, regions, serial_executor());
+    const auto lists = overlapping(index, regions, {.threads = serial_executor()});
+    const auto inner = contained(index, regions, {.threads = serial_executor()});
     std::vector<std::size_t> counts(regions.size());
     const auto any = std::make_unique<bool[]>(regions.size());
-    count_overlapping(index, regions, counts, serial_executor());
-    any_overlapping(index, regions, {any.get(), regions.size()}, serial_executor());
+    overlap_counts(index, regions, counts, {.threads = serial_executor()});
+    any_overlaps(index, regions, {any.get(), regions.size()}, {.threads = serial_executor()});
     for (std::size_t i = 0; i < regions.size(); ++i) {
         const auto list = [](std::span<const PrimitiveId> s) {
             return std::vector<PrimitiveId>(s.begin(), s.end());
@@ -75,12 +75,12 @@ void expect_answers_of_any(const AnyIndex<T, D>& index, const std::vector<R>& re
                            const std::vector<Answers<P, R>>& want) {
     std::vector<PrimitiveId> found;
     for (std::size_t i = 0; i < regions.size(); ++i) {
-        index.overlapping(regions[i], found);
+        overlapping(index, regions[i], found);
         ASSERT_EQ(found, want[i].overlapping) << "overlapping region " << i;
-        index.contained(regions[i], found);
+        contained(index, regions[i], found);
         ASSERT_EQ(found, want[i].contained) << "in region " << i;
-        ASSERT_EQ(index.count_overlapping(regions[i]), want[i].overlapping.size()) << "region " << i;
-        ASSERT_EQ(index.any_overlapping(regions[i]), !want[i].overlapping.empty()) << "region " << i;
+        ASSERT_EQ(overlap_count(index, regions[i]), want[i].overlapping.size()) << "region " << i;
+        ASSERT_EQ(any_overlap(index, regions[i]), !want[i].overlapping.empty()) << "region " << i;
     }
 }
 /// Compares every structure's answers with those found one by one: by its own type an index for each way to

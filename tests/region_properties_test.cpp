@@ -35,13 +35,13 @@ template <std::floating_point T, int D, class R>
 void expect_consistent(const AnyIndex<T, D>& index, const R& region, const std::vector<PrimitiveId>& want,
                        const std::vector<PrimitiveId>& want_contained) {
     std::vector<PrimitiveId> found, inside;
-    RC_ASSERT(index.overlapping(region, found) == want.size());
+    RC_ASSERT(overlapping(index, region, found) == want.size());
     RC_ASSERT(found == want);
-    RC_ASSERT(index.contained(region, inside) == want_contained.size());
+    RC_ASSERT(contained(index, region, inside) == want_contained.size());
     RC_ASSERT(inside == want_contained);
     RC_ASSERT(std::ranges::includes(found, inside));
-    RC_ASSERT(index.count_overlapping(region) == found.size());
-    RC_ASSERT(index.any_overlapping(region) == !found.empty());
+    RC_ASSERT(overlap_count(index, region) == found.size());
+    RC_ASSERT(any_overlap(index, region) == !found.empty());
 }
 template <class P, class R>
 std::vector<PrimitiveId> expect_consistent_everywhere(const P& set, const R& region) {

@@ -155,8 +155,8 @@ TYPED_TEST(Regions, TakeSubtreesOfLargeSetsWhole) {
     const auto expect_few_tests = [&](const auto& index, const auto& region) {
         Visits counted, listed;
         std::vector<PrimitiveId> found;
-        const std::size_t count = count_overlapping(index, region, counted);
-        EXPECT_EQ(overlapping(index, region, found, listed), count);
+        const std::size_t count = overlap_count(index, region, {}, counted);
+        EXPECT_EQ(overlapping(index, region, found, {}, listed), count);
         EXPECT_GT(count, 2000u);
         EXPECT_LT(counted.primitives, count * 3 / 4);
         EXPECT_EQ(counted, listed);
@@ -206,7 +206,7 @@ TEST(RegionsOf, OfBallsAreWhatIsWithinTheRadius) {
     for (std::uint64_t i = 0; i < 200; ++i) {
         const Vec3f p(Random(38, i).in_cube<3>());
         const float radius = std::exp2(-float(i % 8));  // its square is exact
-        within(index, p, {.radius = radius}, near);
+        within(index, p, radius, near);
         ids.clear();
         for (const auto& n : near) ids.push_back(n.element);
         std::sort(ids.begin(), ids.end());
@@ -239,8 +239,8 @@ void expect_instances(const P& set, Scales scales) {
         std::vector<std::vector<PlacedId>> lists;
         const auto ask = [&](const auto& region) {
             overlapping(index, region, lists.emplace_back());
-            EXPECT_EQ(count_overlapping(index, region), lists.back().size());
-            EXPECT_EQ(any_overlapping(index, region), !lists.back().empty());
+            EXPECT_EQ(overlap_count(index, region), lists.back().size());
+            EXPECT_EQ(any_overlap(index, region), !lists.back().empty());
             contained(index, region, lists.emplace_back());
         };
         for (const auto& ball : balls) ask(ball);
@@ -269,8 +269,8 @@ TEST(RegionsOf, OfBatchesNeedRoom) {
     const auto index = build(soup<float>(50));
     const std::vector<Sphere<float, 3>> balls(3, {{0.5f, 0.5f, 0.5f}, 1});
     std::vector<std::size_t> counts(2);
-    EXPECT_THROW(count_overlapping(index, balls, counts), InputError);
-    EXPECT_THROW(any_overlapping(index, balls, std::span<bool>()), InputError);
+    EXPECT_THROW(overlap_counts(index, balls, counts), InputError);
+    EXPECT_THROW(any_overlaps(index, balls, std::span<bool>()), InputError);
 }
 
 }  // namespace

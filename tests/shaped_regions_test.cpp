@@ -386,7 +386,7 @@ TEST(ShapedRegionsOf, Instances) {
             std::vector<PlacedId> found, want;
             EXPECT_EQ(overlapping(index, region, found), overlapping(oracle, region, want));
             EXPECT_EQ(found, want) << kind;
-            EXPECT_EQ(count_overlapping(index, region), want.size()) << kind;
+            EXPECT_EQ(overlap_count(index, region), want.size()) << kind;
             contained(index, region, found), contained(oracle, region, want);
             EXPECT_EQ(found, want) << kind;
             some += want.size();

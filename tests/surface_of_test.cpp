@@ -422,7 +422,7 @@ TEST(SurfaceOf, TheSameForAnyThreadsAndMode) {
     };
     std::vector<Particle> particles;
     for (const Vec3d& p : points) particles.push_back({p, 7});
-    const Strided<Vec3d> places(particles.data(), particles.size(), sizeof(Particle));
+    const Strided<Vec3d> places(&particles[0].place, particles.size(), sizeof(Particle));
     EXPECT_EQ(surface_of(places, {.spacing = 1}).mesh.vertices, want.mesh.vertices);
 }
 

@@ -223,7 +223,7 @@ TEST(OrientedBoxTrees, TestFewerTrianglesOfTurnedCubesThanBoxesDo) {
     const auto tests = [&](const char* structure) {
         std::vector<Hit<float>> hits(rays.size());
         std::vector<Visits> visits(rays.size());
-        build_any(structure, mesh)->closest_hits(std::span<const Ray3f>(rays), hits, visits);
+        closest_hits(*build_any(structure, mesh), std::span<const Ray3f>(rays), hits, {}, KeepAll(), visits);
         double all = 0;
         for (const auto& v : visits) all += static_cast<double>(v.primitives);
         return all / static_cast<double>(rays.size());

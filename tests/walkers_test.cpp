@@ -219,8 +219,8 @@ TEST(Walkers, PassOverWhatLiesBehindTheHit) {
         Hit<float> hit;
         std::vector<Hit<float>> hits;
         Visits closest, all;
-        index->closest_hits({&ray, 1}, {&hit, 1}, {&closest, 1});
-        index->all_hits(ray, hits, &all);
+        closest_hits(*index, {&ray, 1}, {&hit, 1}, {}, KeepAll(), std::span(&closest, 1));
+        all_hits(*index, ray, hits, KeepAll(), all);
         EXPECT_EQ(hit.t, 1);
         EXPECT_EQ(hits.size(), walls);
         EXPECT_LE(closest.primitives, 8u);

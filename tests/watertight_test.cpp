@@ -52,9 +52,9 @@ TYPED_TEST(Watertight, NoRayLeaksOutOfAClosedMesh) {
             const std::unique_ptr<bool[]> hit(new bool[rays.size()]);
             const std::span<const Ray<T, 3>> asked(rays);
             const std::size_t half = rays.size() / 2;  // the first half in a batch, the others alone
-            index->any_hits(asked.first(half), {hit.get(), half});
+            any_hits(*index, asked.first(half), {hit.get(), half});
             for (std::size_t i = half; i < rays.size(); ++i)
-                index->any_hits(asked.subspan(i, 1), {hit.get() + i, 1});
+                any_hits(*index, asked.subspan(i, 1), {hit.get() + i, 1});
             for (std::size_t i = 0; i < rays.size(); ++i)
                 if (!hit[i] && leaks++ == 0) first_leak = begin + i;
         };

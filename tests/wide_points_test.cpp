@@ -1,6 +1,7 @@
 /// The engine's kernels of points: every instruction set of this machine gives the bits of brute force, one
 /// point at a time and in batches of any size, on trees of any width.
 #include "engine.h"
+#include "lists.h"
 #include "long_runs.h"
 
 #include <cmath>
@@ -56,7 +57,7 @@ std::vector<Vec3f> points_of(const Set& set, const Box3f& box, std::size_t count
 template <class Index>
 void expect_found(const Index& index, const std::vector<Vec3f>& points, const Found& want, float within) {
     Found batch(points.size());
-    closest_points(index, points, batch, serial_executor(), {.radius2 = within});
+    closest_points(index, points, batch, {.radius2 = within, .threads = serial_executor()});
     for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_EQ(want[i], batch[i]) << "in a batch, point " << i << ": " << want[i].distance2 << " and "
                                      << batch[i].distance2;
@@ -72,8 +73,8 @@ void expect_lists(const Index& index, const Brute& brute, const Vec3f& p, std::s
     nearest(brute, p, k, want, {.radius2 = within2});
     EXPECT_EQ(nearest(index, p, k, found, {.radius2 = within2}), want.size());
     ASSERT_EQ(want, found) << k << " nearest";
-    within(brute, p, {.radius2 = within2}, want);
-    EXPECT_EQ(within(index, p, {.radius2 = within2}, found), want.size());
+    within(brute, p, PointOptions::anywhere, want, {.radius2 = within2});
+    EXPECT_EQ(within(index, p, PointOptions::anywhere, found, {.radius2 = within2}), want.size());
     ASSERT_EQ(want, found) << "within " << within2;
 }
 
@@ -85,7 +86,7 @@ void expect_counts(const Index& index, const Brute& brute, const Vec3f& p, float
     for (const float radius :
          {0.0f, to_closest, 2 * to_closest, 0.25f * extent, 0.5f * extent, extent, 3 * extent}) {
         const Sphere<float, 3> ball{p, radius};
-        ASSERT_EQ(count_overlapping(brute, ball), count_overlapping(index, ball))
+        ASSERT_EQ(overlap_count(brute, ball), overlap_count(index, ball))
             << "radius " << radius << " about " << p[0] << " " << p[1] << " " << p[2];
     }
 }
@@ -93,22 +94,10 @@ void expect_counts(const Index& index, const Brute& brute, const Vec3f& p, float
 /// Expects a batch of k nearest to write what `nearest` finds, point by point.
 template <class Index>
 void expect_columns(const Index& index, const std::vector<Vec3f>& points, std::size_t k, float within2) {
-    std::vector<PrimitiveId> ids(k * points.size(), 7), only_ids = ids;
-    std::vector<float> distances2(k * points.size(), -1), only_distances2 = distances2;
-    nearest(index, points, k, {ids, distances2}, {}, {.radius2 = within2});
-    nearest(index, points, k, {only_ids, {}}, {}, {.radius2 = within2});
-    nearest(index, points, k, {{}, only_distances2}, {}, {.radius2 = within2});
-    ASSERT_EQ(ids, only_ids);
-    ASSERT_EQ(distances2, only_distances2);
-    Found found;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        nearest(index, points[i], k, found, {.radius2 = within2});
-        found.resize(k);
-        for (std::size_t j = 0; j < k; ++j) {
-            ASSERT_EQ(ids[k * i + j], found[j].element) << "place " << j << " of point " << i;
-            ASSERT_EQ(distances2[k * i + j], found[j].distance2) << "place " << j << " of point " << i;
-        }
-    }
+    const auto lists = nearest(index, points, k, {.radius2 = within2});
+    ASSERT_EQ(lists.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        ASSERT_TRUE(same_list(lists[i], nearest(index, points[i], k, {.radius2 = within2}))) << "point " << i;
 }
 
 /// Compares all instruction sets and widths with brute force, at `count` points of every kind.
@@ -118,7 +107,7 @@ void expect_brute_force(const char* name, const Set& set, std::size_t count) {
     const auto brute = build<BruteForce>(set);
     const auto points = points_of(set, brute.bounds(), count);
     Found want(points.size());
-    closest_points(brute, points, want, default_executor());
+    closest_points(brute, points, want, {.threads = default_executor()});
     std::vector<float> distances;
     for (const auto& near : want) distances.push_back(near.distance2);
     std::sort(distances.begin(), distances.end());
@@ -246,7 +235,7 @@ TEST(WidePoints, LargeBatchesInAnyOrderAsOneByOne) {
             closest_points(index, points, got);
             ASSERT_EQ(want, got);
             std::fill(got.begin(), got.end(), Near<float, 3>());
-            closest_points(index, points, got, serial_executor());
+            closest_points(index, points, got, {.threads = serial_executor()});
             ASSERT_EQ(want, got);
             expect_columns(index, points, 3, anywhere);
         });
@@ -258,12 +247,18 @@ TEST(WidePoints, LargeBatchesInAnyOrderAsOneByOne) {
 TEST(WidePoints, NearestOfManyNeedsRoomForItsRows) {
     const auto index = build<WideBvh>(cloud_of(0, 100, 1));
     const std::vector<Vec3f> points(10);
+    std::vector<std::size_t> offsets(11);
     std::vector<PrimitiveId> ids(29);
     std::vector<float> distances2(30);
-    EXPECT_THROW(nearest(index, points, 3, {ids, distances2}), InputError);
-    EXPECT_NO_THROW(nearest(index, points, 3, {{}, distances2}));
-    EXPECT_NO_THROW(nearest(index, points, 0, {ids, {}}));
-    EXPECT_NO_THROW(nearest(index, std::vector<Vec3f>(), 3, {ids, {}}));
+    auto lists = lists_in(std::span(offsets), std::span(ids), std::span(distances2));
+    EXPECT_THROW(nearest(index, points, 3, lists), InputError);
+    EXPECT_EQ(offsets.back(), 30u);  // the room that is wanted
+    EXPECT_NO_THROW(nearest(index, points, 2, lists));
+    EXPECT_EQ(lists, nearest(index, points, 2));
+    EXPECT_NO_THROW(nearest(index, points, 0, lists));
+    EXPECT_EQ(lists.count(), 0u);
+    EXPECT_NO_THROW(nearest(index, std::vector<Vec3f>(), 3, lists));
+    EXPECT_EQ(lists.size(), 0u);
 }
 
 TEST(WidePoints, FindsNothingForWhatIsNoPoint) {
@@ -281,7 +276,7 @@ TEST(WidePoints, FindsNothingForWhatIsNoPoint) {
         Found want;
         for (const Vec3f& p : points) {
             Visits visits;  // the plain walk
-            want.push_back(closest_point(index, p, {}, visits));
+            want.push_back(closest_point(index, p, {}, KeepAll(), visits));
             EXPECT_EQ(bool(want.back()), length2(p - inside) < anywhere);
         }
         expect_found(index, points, want, anywhere);
@@ -314,12 +309,12 @@ TEST(WidePoints, CloudsAsBruteForce) {
 
 using PairList = std::vector<PairWithin<float>>;
 
-PairList all_pairs(const PointCloud<float, 3>& a, const PointCloud<float, 3>& b, float within2, bool one) {
+PairList all_pairs(const PointCloud<float, 3>& a, const PointCloud<float, 3>& b, float radius, bool one) {
     PairList pairs;
     for (PrimitiveId i = 0; i < a.size(); ++i)
         for (PrimitiveId j = one ? i + 1 : 0; j < b.size(); ++j) {
             const float distance2 = closest_point(a.points[i], b.points[j]).distance2;
-            if (distance2 <= within2) pairs.push_back({i, j, distance2});
+            if (within_radius(distance2, radius)) pairs.push_back({i, j, distance2});
         }
     return pairs;
 }
@@ -335,14 +330,13 @@ TEST(WidePoints, PairsWithinARadiusAsAllPairs) {
                 const auto cloud = cloud_of(kind, count, scale), other = cloud_of(kind ^ 2, 60, scale);
                 const auto of_other = build<PointKdTree>(other);
                 for (const float radius : {0.0f, 2e-4f * scale, 0.2f * scale, 1.0f * scale, anywhere}) {
-                    const float within2 = radius == anywhere ? anywhere : radius * radius;
-                    const PairList alone = all_pairs(cloud, cloud, within2, true),
-                                   with = all_pairs(other, cloud, within2, false);
+                    const PairList alone = all_pairs(cloud, cloud, radius, true),
+                                   with = all_pairs(other, cloud, radius, false);
                     for_each_kernel(cloud, [&](const auto& index, std::string_view) {
                         PairList found{{7, 7, 7}};
-                        EXPECT_EQ(pairs_within(index, {.radius2 = within2}, found), alone.size());
+                        EXPECT_EQ(pairs_within(index, radius, found), alone.size());
                         ASSERT_EQ(found, alone);
-                        EXPECT_EQ(pairs_within(of_other, index, {.radius2 = within2}, found), with.size());
+                        EXPECT_EQ(pairs_within(of_other, index, radius, found), with.size());
                         ASSERT_EQ(found, with);
                     });
                 }
@@ -358,7 +352,7 @@ TEST(WidePoints, PairsOfManyPointsAsWithin) {
         if (want.empty()) {
             Found near;
             for (PrimitiveId i = 0; i < count; ++i) {
-                within(index, cloud.points[i], {.radius = radius}, near);
+                within(index, cloud.points[i], radius, near);
                 for (const auto& n : near)
                     if (n.element > i) want.push_back({i, n.element, n.distance2});
             }
@@ -366,9 +360,9 @@ TEST(WidePoints, PairsOfManyPointsAsWithin) {
             ASSERT_GT(want.size(), 5 * count);
         }
         for (Executor* const executor : {static_cast<Executor*>(&serial_executor()), &default_executor()}) {
-            pairs_within(index, {.radius = radius}, found, *executor);
+            pairs_within(index, radius, found, {.threads = *executor});
             ASSERT_EQ(found, want);
-            pairs_within(index, index, {.radius = radius}, found, *executor);
+            pairs_within(index, index, radius, found, {.threads = *executor});
             ASSERT_EQ(found.size(), 2 * want.size() + count);  // each also with itself
             std::erase_if(found, [](const auto& pair) { return pair.a >= pair.b; });
             ASSERT_EQ(found, want);

@@ -27,7 +27,7 @@ void expect_brute_force(const char* name, const Mesh& mesh, std::size_t count) {
         rays.push_back(ray_of(brute.bounds(), targets, i));
     if (targets.empty()) rays.push_back({Vec3f(0, 0, 0), Vec3f(1, 2, 3)});
     std::vector<Hit<float>> want(rays.size());
-    closest_hits(brute, std::span<const Ray3f>(rays), std::span(want), default_executor());
+    closest_hits(brute, std::span<const Ray3f>(rays), std::span(want), {.threads = default_executor()});
     // Compare each tree, with each instruction set.
     for (const int width : wide_widths)
         for (const auto builder : wide_builders) {
@@ -243,7 +243,8 @@ TEST(Wide, ShortRaysThatGoAllWays) {
                 SCOPED_TRACE(set);
                 const Using use(set);
                 expect_hits(want, Answers(index, rays));
-                const auto used = any_hits(index, rays, {found.get(), rays.size()}, serial_executor());
+                const auto used =
+                    any_hits(index, rays, {found.get(), rays.size()}, {.threads = serial_executor()});
                 EXPECT_EQ(used.packets >= 64, set != "plain") << "from bunch " << begin;
                 if (HasFatalFailure()) return;
             }
@@ -393,11 +394,13 @@ TEST(Wide, InstructionSetsAgreeOnManyRays) {
             for (std::size_t begin = 0; begin < count; begin += at_once) {
                 for (std::size_t i = 0; i < at_once; ++i)
                     rays[i] = ray_of(index.bounds(), targets, begin + i);
-                closest_hits(plain, std::span<const Ray3f>(rays), std::span(want), default_executor());
+                closest_hits(plain, std::span<const Ray3f>(rays), std::span(want),
+                             {.threads = default_executor()});
                 for (const auto set : instruction_sets()) {
                     if (set == "plain") continue;
                     const Using use(set);
-                    closest_hits(index, std::span<const Ray3f>(rays), std::span(got), default_executor());
+                    closest_hits(index, std::span<const Ray3f>(rays), std::span(got),
+                                 {.threads = default_executor()});
                     for (std::size_t i = 0; i < at_once; ++i)
                         ASSERT_EQ(want[i], got[i]) << set << ", width " << width << ", ray " << begin + i;
                 }

@@ -43,7 +43,7 @@ void expect_brute_force(const Set& set, std::span<const Vec<T, 3>> places, std::
     std::sort(distances.begin(), distances.end());
     const T middle = distances[count / 2];
     for_each_kernel(set, [&](const auto& index, std::string_view) {
-        closest_points(index, points, batch, serial_executor());
+        closest_points(index, points, batch, {.threads = serial_executor()});
         ASSERT_EQ(want, batch);
         for (std::size_t i = 0; i < count; ++i) {
             SCOPED_TRACE("point " + std::to_string(i));
@@ -57,7 +57,7 @@ void expect_brute_force(const Set& set, std::span<const Vec<T, 3>> places, std::
             nearest(brute, points[i], k, list);
             EXPECT_EQ(nearest(index, points[i], k, lists), list.size());
             ASSERT_EQ(list, lists);
-            const NearOptions<T> reach{.radius2 = T(2) * want[i].distance2};
+            const double reach = 1.5 * std::sqrt(double(want[i].distance2));
             within(brute, points[i], reach, list);
             EXPECT_EQ(within(index, points[i], reach, lists), list.size());
             ASSERT_EQ(list, lists);

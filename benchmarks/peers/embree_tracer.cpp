@@ -66,13 +66,13 @@ public:
         for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = asked[i].tfar < 0;
         return {rays.size(), 0, 0};
     }
-    void first_hits(const RayArray<float, 3>& rays, std::size_t k, const FirstHitsColumns<float>& columns,
-                    std::span<const AfterHit<float>> after, const Filter& filter) const override {
+    void first_hits(const RayArray<float, 3>& rays, std::size_t k, HitLists<float>& lists,
+                    const AfterHits& after, const Filter& filter) const override {
         const FlushToZero flush;
+        std::vector<Hit<float>> found(k);
+        lists.clear();
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const auto found = columns.hits.subspan(i * k, k);
-            std::ranges::fill(found, Hit<float>());
-            SortedHits<float> sorted(found, after.empty() ? AfterHit<float>() : after[i]);
+            SortedHits<float> sorted(found, after.of(i));
             // All hits are offered, and all are refused, so that Embree goes on.
             auto offer = [&](std::size_t, float t, float u, float v, std::uint32_t element) {
                 const Hit<float> hit = hit_of(t, u, v, element);
@@ -84,7 +84,8 @@ public:
             Context context(offer);
             RTCRay ray = ray_of(rays[i]);
             rtcOccluded1(held_.scene(), &context, &ray);
-            if (!columns.counts.empty()) columns.counts[i] = static_cast<std::uint32_t>(sorted.size());
+            lists.hits.append(std::span(found).first(sorted.size()));
+            lists.offsets.push_back(lists.hits.size());
         }
     }
 

@@ -281,7 +281,7 @@ MeshFaults faults_of(const Common& c, const TriangleMesh<T>& mesh) {
         watched(c, "neighbours", [&](Executor& executor) { return build<WideBvh>(view, {}, executor); });
     std::vector<ElementPair> pairs;
     watched(c, "self-intersections",
-            [&](Executor& executor) { return self_intersections(index, pairs, executor); });
+            [&](Executor& executor) { return self_intersections(index, pairs, {.threads = executor}); });
     const auto first_crossing = first_pairs(pairs);
     add("self_intersections", "self-intersections", pairs.size(), written(first_crossing, pairs.size()));
     if (!pairs.empty()) faults.facts["first_self_intersections"] = first_crossing;

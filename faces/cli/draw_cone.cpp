@@ -60,7 +60,7 @@ int draw_cone_in(const DrawArguments& a, const P& set, const Seen& seen) {
     // Where the axis ends, and the ellipse that the cone covers of the plane there.
     const auto hit_of = [&](const Ray<T, 3>& r) {
         Hit<T> hit;
-        index->closest_hits(std::span(&r, 1), std::span(&hit, 1));
+        closest_hits(*index, std::span(&r, 1), std::span(&hit, 1), {.threads = serial_executor()});
         return hit;
     };
     const auto hit = hit_of(ray);

@@ -89,7 +89,8 @@ private:
             const FrustumRays<T, 2> beam({rays_[first], rays_[last]});
             const double most = std::max(low ? beam.depth_of(rays_[first], low.t) : 0,
                                          high ? beam.depth_of(rays_[last], high.t) : 0);
-            candidates(index_, beam, found_, low ? rounded_up<T>(most) : std::numeric_limits<T>::max());
+            candidates(index_, beam, found_,
+                       {.limit = low ? static_cast<double>(rounded_up<T>(most)) : FamilyOptions().limit});
             ++asked_;
             for (const auto& c : found_) whole = whole && c.element == low.element;
         }

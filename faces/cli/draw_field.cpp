@@ -101,7 +101,7 @@ auto counts_within(const I& index, T radius) {
         balls.reserve(points.size());
         for (const auto& p : points) balls.push_back({p, radius});
         std::vector<std::size_t> counts(points.size());
-        count_overlapping(index, balls, std::span(counts));
+        overlap_counts(index, balls, std::span(counts));
         for (std::size_t i = 0; i < counts.size(); ++i) values[i] = static_cast<double>(counts[i]);
     };
 }

@@ -120,7 +120,7 @@ void add_walls(const FlowArguments& a, FlowScene<3>& scene) {
     WatchedExecutor watched(default_executor(), line.progress());
     scene.mesh = std::make_shared<const MeshOfWalls>(std::move(mesh), watched);
     std::vector<Side> side(scene.start.size());
-    sides(scene.mesh->solid, Strided<Vec3d>(scene.start.places), side, watched);
+    sides(scene.mesh->solid, Strided<Vec3d>(scene.start.places), side, {.threads = watched});
     const auto inside = static_cast<std::size_t>(std::count(side.begin(), side.end(), Side::inside));
     if (inside != 0 && inside != side.size())
         throw InputError(
@@ -166,7 +166,7 @@ void add_inflow(const FlowArguments& a, FlowScene<3>& scene) {
 template <int D>
 void expect_room(const FlowArguments& a, const FlowScene<D>& scene) {
     if (scene.walls.places.empty()) return;
-    NeighbourLists<double> near;
+    NearLists<double> near;
     neighbours_within(scene.walls.places, scene.start.places, 0.45 * scene.options.spacing, near);
     if (near.ids.empty()) return;
     std::size_t i = 0;

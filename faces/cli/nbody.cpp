@@ -54,9 +54,10 @@ int nbody_forces(const NbodyArguments& a) {
         ProgressLine line("finding forces", a.quiet, "particles");
         WatchedExecutor watched(default_executor(), line.progress());
         if (a.from.empty())
-            forces<double>(charges, found, {.accuracy = a.accuracy}, watched);
+            forces<double>(charges, found, {.accuracy = a.accuracy, .threads = watched});
         else
-            forces<double>(charges, Targets<double>(targets), found, {.accuracy = a.accuracy}, watched);
+            forces<double>(charges, Targets<double>(targets), found,
+                           {.accuracy = a.accuracy, .threads = watched});
     }
     const double seconds = now() - began;
     std::optional<ForceErrors> errors;

@@ -42,11 +42,11 @@ std::vector<Column> answer_columns() {
     return list.all;
 }
 
-/// Questions of points that take the options of a NearOptions beside the points.
+/// Questions of points that take PointOptions beside the points.
 template <class Question, class T, int D>
-concept TakesNearOptions = requires(const AnyIndex<T, D>& index, std::span<const Vec<T, D>> given,
-                                    std::span<typename Question::Answer> found) {
-    Question::ask_all(index, given, found, {}, NearOptions<T>());
+concept TakesPointOptions = requires(const AnyIndex<T, D>& index, std::span<const Vec<T, D>> given,
+                                     std::span<typename Question::Answer> found) {
+    Question::ask_all(index, given, found, {}, PointOptions());
 };
 
 /// An index, and the solid that is made of it where a question is asked of that.
@@ -78,7 +78,7 @@ void answer_piece(const Answering<T, D>& by, const RowOptions& options, const T*
             [&](std::span<const Given> given, std::span<Answer> found) {
                 if constexpr (AsksSolid<Question>)
                     Question::ask_solid(*by.solid, given, found);
-                else if constexpr (TakesNearOptions<Question, T, D>)
+                else if constexpr (TakesPointOptions<Question, T, D>)
                     Question::ask_all(index, given, found, {}, options.near<T>());
                 else if constexpr (AsksMany<Question>)
                     Question::ask_all(index, given, found);
@@ -149,7 +149,7 @@ template <class Question, std::floating_point T, int D>
 void check_options(const QueryArguments& a) {
     using Rows = RowsOf<typename Question::Given>;
     constexpr bool near =
-        TakesNearOptions<Question, T, D> || (Rows::takes_count && !detail::is_ray<typename Question::Given>);
+        TakesPointOptions<Question, T, D> || (Rows::takes_count && !detail::is_ray<typename Question::Given>);
     if (Rows::takes_count && a.count == 0)
         throw UsageError(a.kind + " needs --count: how many to find, at least 1");
     if (Rows::takes_radius && a.radius < 0)

@@ -124,14 +124,14 @@ void timed(const QueryArguments& a, QueryReport& report, F ask) {
 
 /// The periods of --period: one for all axes, or one for each.
 template <int D>
-Periods<D> periods_of(const QueryArguments& a) {
+Periods<3> periods_of(const QueryArguments& a) {
     if (a.periods.empty()) return {};
     if (a.periods.size() != 1 && a.periods.size() != D)
         throw UsageError(
             fmt::format("--period: give one length, or {}: one for each axis, 0 where space does not "
                         "repeat",
                         D));
-    Periods<D> periods;
+    Periods<3> periods;
     for (std::size_t k = 0; k < D; ++k)
         periods[static_cast<int>(k)] = a.periods[a.periods.size() == 1 ? 0 : k];
     return periods;
@@ -141,11 +141,12 @@ template <class T, int D>
 int query_neighbours(const QueryArguments& a, const std::vector<Vec<T, D>>& points) {
     QueryReport report;
     report.primitives = points.size();
-    NeighbourLists<T> lists;
-    const NeighbourOptions<D> options{
+    NearLists<T> lists;
+    NeighbourOptions options{
         .periods = periods_of<D>(a), .once = a.kind == "pairs-within", .distances = true};
     timed(a, report, [&](Executor& executor) {
-        neighbours_within(points, rounded_to<T>(a.radius), lists, options, executor);
+        options.threads = executor;
+        neighbours_within(points, static_cast<double>(rounded_to<T>(a.radius)), lists, options);
     });
     write_all(a, lists.ids.size(), report,
               [&, point = std::size_t(0)](auto& f, std::optional<std::uint64_t> i) mutable {
@@ -167,7 +168,8 @@ int query_self(const QueryArguments& a, const A& set) {
             const auto index = build_pair_index(a, a.scene, set);
             report.build_seconds = now() - start, report.primitives = set.size();
             std::vector<ElementPair> pairs;
-            timed(a, report, [&](Executor& executor) { self_intersections(index, pairs, executor); });
+            timed(a, report,
+                  [&](Executor& executor) { self_intersections(index, pairs, {.threads = executor}); });
             write_pairs(a, index, index, pairs, report);
             return print_report(a, report);
         }
@@ -216,7 +218,7 @@ int query_two(const QueryArguments& a, const A& set, const B& with) {
             if (a.kind == "hausdorff")
                 return answer(
                     [&](const auto& one, const auto& other, Executor& executor) {
-                        return hausdorff_distance(one, other, {.relative = a.tolerance}, executor);
+                        return hausdorff_distance(one, other, {.relative = a.tolerance, .threads = executor});
                     },
                     one_row([](auto& f, const auto&... rest) { list_hausdorff(f, rest...); }));
         if constexpr (points)
@@ -224,7 +226,8 @@ int query_two(const QueryArguments& a, const A& set, const B& with) {
                 return answer(
                     [&](const auto& one, const auto& other, Executor& executor) {
                         std::vector<PairWithin<T>> found;
-                        pairs_within(one, other, RowOptions{.radius = a.radius}.near<T>(), found, executor);
+                        pairs_within(one, other, static_cast<double>(rounded_to<T>(a.radius)), found,
+                                     {.threads = executor});
                         return found;
                     },
                     pairs);
@@ -233,7 +236,7 @@ int query_two(const QueryArguments& a, const A& set, const B& with) {
                 return answer(
                     [](const auto& one, const auto& other, Executor& executor) {
                         std::vector<ElementPair> found;
-                        crossing_pairs(one, other, found, executor);
+                        crossing_pairs(one, other, found, {.threads = executor});
                         return found;
                     },
                     pairs);

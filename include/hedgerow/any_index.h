@@ -21,10 +21,10 @@
 
 namespace hedgerow {
 
-/// An index of any structure. A batch of closest or any hits or closest points costs one virtual call, inside
-/// which the structure is known at compile time. So does each list of the engine (`all_hits`, `first_hits`,
-/// `nearest`, `within`, and all that boxes and balls are asked) whose visits are not counted. All other
-/// queries share one walk a probe, in which each candidate costs a virtual call. Const use is thread-safe.
+/// An index of any structure: the functions of ask.h take it as they take an Index. A batch of closest or any
+/// hits or closest points costs one virtual call, inside which the structure is known at compile time. So
+/// does whatever the engine is asked, but for filters and visits. All other queries share one walk a probe,
+/// in which each candidate costs a virtual call. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
@@ -45,8 +45,7 @@ public:
     /// What is wrong with the structure; empty if nothing is.
     virtual std::string validate() const = 0;
 
-    // Queries run in the calling thread. `answer` runs any query type of yours, with this object as the index
-    // and as the set of primitives. The functions of ask.h that take any index call `answer`.
+    // `answer` runs any query type of yours, with this object as the index and as the set of primitives.
 
     using Scalar = T;
     static constexpr int dimension = D;
@@ -69,71 +68,6 @@ public:
 
     /// Whether the structure answers ray queries.
     virtual bool answers_rays() const = 0;
-    /// Writes one hit a ray, false where nothing is hit. Returns which algorithms answered. With `visits`,
-    /// adds to one count a ray, and no kernel answers. Throws InputError where the structure does not answer
-    /// rays.
-    KernelUse closest_hits(const RayArray<T, D>& rays, std::span<Hit<T>> hits,
-                           std::span<Visits> visits = {}) const {
-        if (visits.empty()) return closest_hits_uncounted(rays, hits);
-        return one_by_one<ClosestHit<AnyIndex>>(rays, hits, visits);
-    }
-    KernelUse any_hits(const RayArray<T, D>& rays, std::span<bool> hits,
-                       std::span<Visits> visits = {}) const {
-        if (visits.empty()) return any_hits_uncounted(rays, hits);
-        return one_by_one<AnyHit<AnyIndex>>(rays, hits, visits);
-    }
-    std::size_t all_hits(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, Visits* visits = nullptr) const {
-        if (visits == nullptr) return all_hits_uncounted(ray, hits);
-        return answer<AllHits<AnyIndex>>(*visits, ray, hits);
-    }
-    /// Writes the next hits after a place, as the function of this name in ask/rays.h does.
-    std::size_t first_hits(const Ray<T, D>& ray, std::span<Hit<T>> hits, const AfterHit<T>& after = {},
-                           Visits* visits = nullptr) const {
-        if (visits == nullptr) return first_hits_uncounted(ray, hits, after);
-        return answer<FirstHits<AnyIndex>>(*visits, ray, hits, after);
-    }
-    /// Writes the closest point for each of `points`, false where there is no primitive within the options'
-    /// distance. With `visits`, adds to one count a point, and no kernel answers.
-    void closest_points(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
-                        std::span<Visits> visits = {}, const NearOptions<T>& options = {}) const {
-        if (visits.empty()) return closest_points_uncounted(points, found, options);
-        for (std::size_t i = 0; i < points.size(); ++i)
-            found[i] = answer<ClosestPoint<AnyIndex>>(visits[i], points[i], options);
-    }
-    std::size_t nearest(const Vec<T, D>& point, std::size_t k, std::vector<Near<T, D>>& found,
-                        Visits* visits = nullptr, const NearOptions<T>& options = {}) const {
-        if (visits == nullptr) return nearest_uncounted(point, k, options, found);
-        return answer<Nearest<AnyIndex>>(*visits, point, k, options, found);
-    }
-    std::size_t within(const Vec<T, D>& point, const NearOptions<T>& options, std::vector<Near<T, D>>& found,
-                       Visits* visits = nullptr) const {
-        if (visits == nullptr) return within_uncounted(point, options, found);
-        return answer<Within<AnyIndex>>(*visits, point, options, found);
-    }
-    /// The questions of ask/regions.h, of any region: a box, a ball, another shape of geometry/ or a type of
-    /// yours. Other shapes than boxes share one walk; on the engine balls have one of their own.
-    template <RegionFor<AnyIndex> R>
-    std::size_t overlapping(const R& region, std::vector<PrimitiveId>& found,
-                            Visits* visits = nullptr) const {
-        return list(region, found, Finds::overlapping, visits);
-    }
-    template <RegionFor<AnyIndex> R>
-    std::size_t contained(const R& region, std::vector<PrimitiveId>& found, Visits* visits = nullptr) const {
-        return list(region, found, Finds::contained, visits);
-    }
-    template <RegionFor<AnyIndex> R>
-    std::size_t count_overlapping(const R& region, Visits* visits = nullptr) const {
-        if constexpr (has_walk<R>)
-            if (visits == nullptr) return count_uncounted(region);
-        return count(region, visits);
-    }
-    template <RegionFor<AnyIndex> R>
-    bool any_overlapping(const R& region, Visits* visits = nullptr) const {
-        if constexpr (has_walk<R>)
-            if (visits == nullptr) return any_uncounted(region);
-        return answer_region<AnyOverlap>(region, visits);
-    }
-
     /// Whether the primitives are triangles in space or segments in the plane: these have features, and may
     /// be the surface of a solid. `feature`, `solid` and `make_solid` throw InputError for other primitives.
     virtual bool has_facets() const = 0;
@@ -174,43 +108,59 @@ public:
     virtual double refit(Threads threads = {}) = 0;
 
 protected:
+    friend struct detail::Uncounted;
+
     /// To be called where the primitives change.
     void forget_solid() { solid_.reset(); }
-    virtual KernelUse closest_hits_uncounted(const RayArray<T, D>& rays, std::span<Hit<T>> hits) const = 0;
-    virtual KernelUse any_hits_uncounted(const RayArray<T, D>& rays, std::span<bool> hits) const = 0;
-    virtual void closest_points_uncounted(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
-                                          const NearOptions<T>& options) const = 0;
+
+    // What a structure answers by itself, without filters and visits. A batch of lists returns false where
+    // the queries are to be asked one by one.
+    virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, Hit<T>* hits, Executor& executor) const = 0;
+    virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, bool* hits, Executor& executor) const = 0;
     virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const {
         return answer<AllHits<AnyIndex>>(no_visits, ray, hits);
     }
     virtual std::size_t first_hits_uncounted(const Ray<T, D>& ray, std::span<Hit<T>> hits,
-                                             const AfterHit<T>& after) const {
+                                             const PlaceOfHit<T>& after) const {
         return answer<FirstHits<AnyIndex>>(no_visits, ray, hits, after);
     }
-    virtual std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k,
-                                          const NearOptions<T>& options,
+    virtual void closest_points_uncounted(const Strided<Vec<T, D>>& points, std::span<Near<T, D>> found,
+                                          const PointOptions& options) const = 0;
+    virtual std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearLimits<T>& limits,
                                           std::vector<Near<T, D>>& found) const {
-        return answer<Nearest<AnyIndex>>(no_visits, point, k, options, found);
+        return answer<Nearest<AnyIndex>>(no_visits, point, k, limits, found);
     }
-    virtual std::size_t within_uncounted(const Vec<T, D>& point, const NearOptions<T>& options,
+    virtual bool nearest_uncounted(const Strided<Vec<T, D>>& /*points*/, std::size_t /*k*/,
+                                   NearLists<T>& /*lists*/, const PointOptions& /*options*/) const {
+        return false;
+    }
+    virtual std::size_t within_uncounted(const Vec<T, D>& point, const NearLimits<T>& limits,
                                          std::vector<Near<T, D>>& found) const {
-        return answer<Within<AnyIndex>>(no_visits, point, options, found);
+        return answer<Within<AnyIndex>>(no_visits, point, limits, found);
+    }
+    virtual bool within_uncounted(const Strided<Vec<T, D>>& /*points*/, NearLists<T>& /*lists*/,
+                                  const PointOptions& /*options*/) const {
+        return false;
     }
     virtual std::size_t list_uncounted(const Box<T, D>& region, std::vector<PrimitiveId>& found,
                                        Finds finds) const {
-        return answer_region<Overlapping>(region, nullptr, found, finds);
+        return ask_region<Overlapping>(region, no_visits, found, finds);
     }
     virtual std::size_t list_uncounted(const Sphere<T, D>& region, std::vector<PrimitiveId>& found,
                                        Finds finds) const {
-        return answer_region<Overlapping>(region, nullptr, found, finds);
+        return ask_region<Overlapping>(region, no_visits, found, finds);
     }
-    virtual std::size_t count_uncounted(const Box<T, D>& region) const { return count(region, nullptr); }
-    virtual std::size_t count_uncounted(const Sphere<T, D>& region) const { return count(region, nullptr); }
+    virtual std::size_t count_uncounted(const Box<T, D>& region) const {
+        return ask_region<OverlapCount>(region, no_visits);
+    }
+    virtual std::size_t count_uncounted(const Sphere<T, D>& region) const {
+        return ask_region<OverlapCount>(region, no_visits);
+    }
     virtual bool any_uncounted(const Box<T, D>& region) const {
-        return answer_region<AnyOverlap>(region, nullptr);
+        return ask_region<AnyOverlap>(region, no_visits);
     }
     virtual bool any_uncounted(const Sphere<T, D>& region) const {
-        return answer_region<AnyOverlap>(region, nullptr);
+        return ask_region<AnyOverlap>(region, no_visits);
     }
     virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
     virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
@@ -221,29 +171,28 @@ private:
     mutable std::mutex making_solid_;
     mutable std::unique_ptr<const AnySolid<T, D>> solid_;
 
-    /// Shapes that the engine has walks of its own for.
-    template <class R>
-    static constexpr bool has_walk = std::same_as<R, Box<T, D>> || std::same_as<R, Sphere<T, D>>;
-
-    template <template <class, class> class Q, class R, class... Arguments>
-    auto answer_region(const R& region, Visits* visits, Arguments&&... arguments) const {
-        if constexpr (!std::same_as<R, Box<T, D>> && !std::same_as<R, AnyRegion<T, D>>)
-            return answer_region<Q>(AnyRegion<T, D>(region), visits, arguments...);
+    /// Answers a query of a region: of boxes and balls by the structure, where nothing is counted. Other
+    /// shapes share one walk.
+    template <template <class, class> class Q, class R, class Count, class... Arguments>
+    auto region(const R& region, Count& count, Arguments&&... arguments) const {
+        constexpr bool by_structure = std::same_as<Count, const NoVisits> &&
+                                      (std::same_as<R, Box<T, D>> || std::same_as<R, Sphere<T, D>>);
+        using Query = Q<AnyIndex, R>;
+        if constexpr (by_structure && std::same_as<Query, Overlapping<AnyIndex, R>>)
+            return list_uncounted(region, arguments...);
+        else if constexpr (by_structure && std::same_as<Query, OverlapCount<AnyIndex, R>>)
+            return count_uncounted(region);
+        else if constexpr (by_structure)
+            return any_uncounted(region);
         else
-            return visits != nullptr ? answer<Q<AnyIndex, R>>(*visits, region, arguments...)
-                                     : answer<Q<AnyIndex, R>>(no_visits, region, arguments...);
+            return ask_region<Q>(region, count, arguments...);
     }
-    template <class R>
-    std::size_t list(const R& region, std::vector<PrimitiveId>& found, Finds finds, Visits* visits) const {
-        if constexpr (has_walk<R>)
-            if (visits == nullptr) return list_uncounted(region, found, finds);
-        return answer_region<Overlapping>(region, visits, found, finds);
-    }
-    template <class R>
-    std::size_t count(const R& region, Visits* visits) const {
-        if (exclusive()) return answer_region<OverlapCount>(region, visits);
-        const Scratch<std::vector<PrimitiveId>> found;
-        return answer_region<Overlapping>(region, visits, *found, Finds::overlapping);
+    template <template <class, class> class Q, class R, class Count, class... Arguments>
+    auto ask_region(const R& region, Count& count, Arguments&&... arguments) const {
+        if constexpr (!std::same_as<R, Box<T, D>> && !std::same_as<R, AnyRegion<T, D>>)
+            return ask_region<Q>(AnyRegion<T, D>(region), count, arguments...);
+        else
+            return answer<Q<AnyIndex, R>>(count, region, arguments...);
     }
     /// Walks. The count is a Visits or a NoVisits, or for rays also a TraceLog.
     template <class Probe, class Count>
@@ -258,12 +207,6 @@ private:
         } else {
             walk(query, count);
         }
-    }
-    template <class Q, class Answer>
-    KernelUse one_by_one(const RayArray<T, D>& rays, std::span<Answer> answers,
-                         std::span<Visits> visits) const {
-        for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = answer<Q>(visits[i], rays[i], KeepAll{});
-        return {rays.size(), 0, 0};
     }
 };
 

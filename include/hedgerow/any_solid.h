@@ -7,52 +7,55 @@
 
 namespace hedgerow {
 
-/// A Solid whose structure is chosen at run time. Answers are those of `Solid` (ask/insides.h). Made by
-/// AnyIndex, which must outlive it and must not change meanwhile. Const use is thread-safe.
+/// A Solid whose structure is chosen at run time: the functions of ask/insides.h take it as they take a
+/// Solid. Made by AnyIndex, which must outlive it and must not change meanwhile. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnySolid {
 public:
+    using Scalar = T;
+    static constexpr int dimension = D;
+    using Point = Vec<T, D>;
+    using Points = PointBatch<T, D>;
+
     virtual ~AnySolid() = default;
 
     virtual bool closed() const = 0;
     virtual bool oriented() const = 0;
     virtual SideBy by() const = 0;
-    /// Bytes beyond the index.
+    /// Bytes beyond the index, and those of the index.
     virtual std::size_t bytes() const = 0;
+    virtual std::size_t bytes_of_index() const = 0;
+    /// The box around all primitives.
+    virtual const Box<T, D>& bounds() const = 0;
 
-    /// Write the answer for each of `points`, in the calling thread. With `visits`, add to one count a point,
-    /// and no kernel answers.
-    void sides(std::span<const Vec<T, D>> points, std::span<Side> found,
-               std::span<Visits> visits = {}) const {
-        if (visits.empty()) return sides_uncounted(points, found);
-        for (std::size_t i = 0; i < points.size(); ++i) found[i] = side(points[i], visits[i]);
-    }
-    void winding_numbers(std::span<const Vec<T, D>> points, std::span<double> found,
-                         std::span<Visits> visits = {}) const {
-        if (visits.empty()) return winding_numbers_uncounted(points, found);
-        for (std::size_t i = 0; i < points.size(); ++i) found[i] = winding_number(points[i], visits[i]);
-    }
-    void signed_distances(std::span<const Vec<T, D>> points, std::span<T> found,
-                          std::span<Visits> visits = {}) const {
-        if (visits.empty()) return signed_distances_uncounted(points, found);
-        for (std::size_t i = 0; i < points.size(); ++i) found[i] = signed_distance(points[i], visits[i]);
-    }
+    // What the functions of ask/insides.h ask.
 
-protected:
-    virtual Side side(const Vec<T, D>& point, Visits& visits) const = 0;
-    virtual double winding_number(const Vec<T, D>& point, Visits& visits) const = 0;
-    virtual T signed_distance(const Vec<T, D>& point, Visits& visits) const = 0;
-    virtual void sides_uncounted(std::span<const Vec<T, D>> points, std::span<Side> found) const {
+    virtual Side tell_side(const Point& point, Visits& visits) const = 0;
+    virtual double tell_winding_number(const Point& point, Visits& visits) const = 0;
+    virtual SignedDistance<T, D> tell_distance(const Point& point, Visits& visits) const = 0;
+    Side tell_side(const Point& point, const NoVisits&) const {
         Visits nobodys;
-        for (std::size_t i = 0; i < points.size(); ++i) found[i] = side(points[i], nobodys);
+        return tell_side(point, nobodys);
     }
-    virtual void winding_numbers_uncounted(std::span<const Vec<T, D>> points, std::span<double> found) const {
+    double tell_winding_number(const Point& point, const NoVisits&) const {
         Visits nobodys;
-        for (std::size_t i = 0; i < points.size(); ++i) found[i] = winding_number(points[i], nobodys);
+        return tell_winding_number(point, nobodys);
     }
-    virtual void signed_distances_uncounted(std::span<const Vec<T, D>> points, std::span<T> found) const {
+    SignedDistance<T, D> tell_distance(const Point& point, const NoVisits&) const {
         Visits nobodys;
-        for (std::size_t i = 0; i < points.size(); ++i) found[i] = signed_distance(points[i], nobodys);
+        return tell_distance(point, nobodys);
+    }
+    virtual void write_sides(const Points& points, std::span<Side> found) const {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[points.number(i)] = tell_side(points[i], no_visits);
+    }
+    virtual void write_winding_numbers(const Points& points, std::span<double> found) const {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[points.number(i)] = tell_winding_number(points[i], no_visits);
+    }
+    virtual void write_distances(const Points& points, std::span<T> found) const {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[points.number(i)] = tell_distance(points[i], no_visits).distance;
     }
 };
 

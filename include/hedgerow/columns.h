@@ -21,13 +21,13 @@ struct RowOptions {
     std::size_t count = 0;
     /// Not squared, at least 0; infinite for no limit.
     double radius = std::numeric_limits<double>::infinity();
-    /// How many times as far away as the exact answer an answer may be, at least 1 (NearOptions).
+    /// How many times as far away as the exact answer an answer may be, at least 1 (PointOptions).
     double factor = 1;
 
-    /// The options of a question of a point. The radius is rounded to T; NearOptions squares it.
+    /// The options of a question of a point. The radius is rounded to T.
     template <std::floating_point T>
-    NearOptions<T> near() const {
-        return {.radius = rounded_to<T>(radius), .factor = rounded_to<T>(factor)};
+    PointOptions near() const {
+        return {.radius = static_cast<double>(rounded_to<T>(radius)), .factor = factor};
     }
 };
 
@@ -119,7 +119,7 @@ template <std::floating_point T, int D>
 struct RowsOf<Ball<T, D>> : detail::PointRows<T, D> {
     static constexpr bool takes_count = false, takes_radius = true;
     static Ball<T, D> of(const T* row, const RowOptions& o) {
-        return {detail::vec_at<D>(row), o.near<T>().max_distance2()};
+        return {detail::vec_at<D>(row), NearLimits<T>(o.near<T>()).distance2};
     }
 };
 /// A solid ball, as a region.

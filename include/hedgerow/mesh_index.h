@@ -15,7 +15,7 @@ extern template class Index<WideBvh<float, 3>, TriangleMeshView<float>>;
 extern template Hit<float> closest_hit(const MeshIndex<float>&, const Ray3f&, const KeepAll&,
                                        const NoVisits&);
 extern template bool any_hit(const MeshIndex<float>&, const Ray3f&, const KeepAll&, const NoVisits&);
-extern template Near<float, 3> closest_point(const MeshIndex<float>&, const Vec3f&, const NearOptions<float>&,
-                                             const NoVisits&);
+extern template Near<float, 3> closest_point(const MeshIndex<float>&, const Vec3f&, const PointOptions&,
+                                             const KeepAll&, const NoVisits&);
 
 }  // namespace hedgerow

@@ -21,7 +21,7 @@ template <std::floating_point T, int D>
 struct Neighbours {
     Vec<T, D> point;
     std::size_t k;
-    NearOptions<T> options = {};
+    PointOptions options = {};
 };
 
 /// What is given to a question for the next hits of a ray: how many, and after which place.
@@ -29,8 +29,17 @@ template <std::floating_point T, int D>
 struct HitsAlong {
     Ray<T, D> ray;
     std::size_t k;
-    AfterHit<T> after = {};
+    AfterHit after = {};
 };
+
+namespace detail {
+/// The options of batches that stay in the calling thread.
+inline const SideOptions alone{.threads = serial_executor()};
+inline PointOptions in_this_thread(PointOptions options) {
+    options.threads = serial_executor();
+    return options;
+}
+}  // namespace detail
 
 /// A question: its name; the words for it in a sentence; what is given to it, and what it answers, in memory
 /// that the next answer may use again. A question has either `ask`, which asks an index once, or `ask_all`,
@@ -45,7 +54,7 @@ struct AskClosestHit {
     using Answer = Hit<T>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,
                         std::span<Visits> visits = {}) {
-        index.closest_hits(rays, hits, visits);
+        closest_hits(index, rays, hits, {.threads = serial_executor()}, KeepAll(), visits);
     }
 };
 template <std::floating_point T, int D>
@@ -55,7 +64,7 @@ struct AskAnyHit {
     using Answer = bool;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,
                         std::span<Visits> visits = {}) {
-        index.any_hits(rays, hits, visits);
+        any_hits(index, rays, hits, {.threads = serial_executor()}, KeepAll(), visits);
     }
 };
 template <std::floating_point T, int D>
@@ -64,10 +73,10 @@ struct AskAllHits {
     using Given = Ray<T, D>;
     using Answer = std::vector<Hit<T>>;
     static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits, Visits& visits) {
-        index.all_hits(ray, hits, &visits);
+        all_hits(index, ray, hits, KeepAll(), visits);
     }
     static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits) {
-        index.all_hits(ray, hits);
+        all_hits(index, ray, hits);
     }
 };
 template <std::floating_point T, int D>
@@ -76,16 +85,17 @@ struct AskFirstHits {
     using Given = HitsAlong<T, D>;
     using Answer = std::vector<Hit<T>>;
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Visits& visits) {
-        ask(index, given, hits, &visits);
+        find(index, given, hits, visits);
     }
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits) {
-        ask(index, given, hits, nullptr);
+        find(index, given, hits, no_visits);
     }
 
 private:
-    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Visits* visits) {
+    template <class Count>
+    static void find(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Count& count) {
         hits.resize(std::min(given.k, index.size()));  // a ray has no more hits than there are primitives
-        hits.resize(index.first_hits(given.ray, hits, given.after, visits));
+        hits.resize(first_hits(index, given.ray, std::span(hits), {.after = given.after}, KeepAll(), count));
     }
 };
 template <std::floating_point T, int D>
@@ -94,8 +104,8 @@ struct AskClosestPoint {
     using Given = Vec<T, D>;
     using Answer = Near<T, D>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
-                        std::span<Visits> visits = {}, const NearOptions<T>& options = {}) {
-        index.closest_points(points, found, visits, options);
+                        std::span<Visits> visits = {}, const PointOptions& options = {}) {
+        closest_points(index, points, found, detail::in_this_thread(options), KeepAll(), visits);
     }
 };
 /// A closest point, and where on its triangle or segment it is.
@@ -125,11 +135,11 @@ struct AskFeature {
     using Given = Vec<T, D>;
     using Answer = NearAndFeature<T, D>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
-                        std::span<Visits> visits = {}, const NearOptions<T>& options = {}) {
+                        std::span<Visits> visits = {}, const PointOptions& options = {}) {
         const Scratch<std::vector<Near<T, D>>> kept;
         std::vector<Near<T, D>>& near = *kept;
         near.resize(points.size());
-        index.closest_points(points, near, visits, options);
+        closest_points(index, points, near, detail::in_this_thread(options), KeepAll(), visits);
         for (std::size_t i = 0; i < points.size(); ++i)
             found[i] = {near[i], near[i] ? index.feature(points[i], near[i]) : FeatureOfNear<T, D>()};
     }
@@ -140,10 +150,10 @@ struct AskNearest {
     using Given = Neighbours<T, D>;
     using Answer = std::vector<Near<T, D>>;
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found, Visits& visits) {
-        index.nearest(given.point, given.k, found, &visits, given.options);
+        nearest(index, given.point, given.k, found, given.options, KeepAll(), visits);
     }
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found) {
-        index.nearest(given.point, given.k, found, nullptr, given.options);
+        nearest(index, given.point, given.k, found, given.options);
     }
 };
 template <std::floating_point T, int D>
@@ -152,10 +162,11 @@ struct AskWithin {
     using Given = Ball<T, D>;
     using Answer = std::vector<Near<T, D>>;
     static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found, Visits& visits) {
-        index.within(ball.center, {.radius2 = ball.radius2}, found, &visits);
+        within(index, ball.center, PointOptions::anywhere, found, {.radius2 = ball.radius2}, KeepAll(),
+               visits);
     }
     static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found) {
-        index.within(ball.center, {.radius2 = ball.radius2}, found);
+        within(index, ball.center, PointOptions::anywhere, found, {.radius2 = ball.radius2});
     }
 };
 
@@ -176,9 +187,9 @@ struct AskOverlap {
     using Answer = std::vector<PrimitiveId>;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
     static void ask(const Asked& index, const R& region, Answer& found, Visits& visits) {
-        index.overlapping(region, found, &visits);
+        overlapping(index, region, found, {}, visits);
     }
-    static void ask(const Asked& index, const R& region, Answer& found) { index.overlapping(region, found); }
+    static void ask(const Asked& index, const R& region, Answer& found) { overlapping(index, region, found); }
 };
 template <Region R>
 struct AskContained {
@@ -188,9 +199,9 @@ struct AskContained {
     using Answer = std::vector<PrimitiveId>;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
     static void ask(const Asked& index, const R& region, Answer& found, Visits& visits) {
-        index.contained(region, found, &visits);
+        contained(index, region, found, {}, visits);
     }
-    static void ask(const Asked& index, const R& region, Answer& found) { index.contained(region, found); }
+    static void ask(const Asked& index, const R& region, Answer& found) { contained(index, region, found); }
 };
 template <Region R>
 struct AskCount {
@@ -200,10 +211,10 @@ struct AskCount {
     using Answer = std::uint64_t;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
     static void ask(const Asked& index, const R& region, Answer& count, Visits& visits) {
-        count = index.count_overlapping(region, &visits);
+        count = overlap_count(index, region, {}, visits);
     }
     static void ask(const Asked& index, const R& region, Answer& count) {
-        count = index.count_overlapping(region);
+        count = overlap_count(index, region);
     }
 };
 template <Region R>
@@ -214,9 +225,9 @@ struct AskAnyOverlap {
     using Answer = bool;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
     static void ask(const Asked& index, const R& region, Answer& any, Visits& visits) {
-        any = index.any_overlapping(region, &visits);
+        any = any_overlap(index, region, {}, visits);
     }
-    static void ask(const Asked& index, const R& region, Answer& any) { any = index.any_overlapping(region); }
+    static void ask(const Asked& index, const R& region, Answer& any) { any = any_overlap(index, region); }
 };
 
 // The questions of the solid whose surface the primitives are.
@@ -241,7 +252,7 @@ struct AskSide : AskOfSolid<AskSide<T, D>, T, D, std::int8_t> {
         const Scratch<std::vector<Side>> kept;
         std::vector<Side>& sides = *kept;
         sides.resize(points.size());
-        solid.sides(points, sides, visits);
+        hedgerow::sides(solid, points, sides, detail::alone, visits);
         for (std::size_t i = 0; i < points.size(); ++i)
             found[i] = static_cast<std::int8_t>(static_cast<int>(sides[i]) - static_cast<int>(Side::on));
     }
@@ -252,7 +263,7 @@ struct AskWindingNumber : AskOfSolid<AskWindingNumber<T, D>, T, D, double> {
                                       column = "winding_number";
     static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points,
                           std::span<double> found, std::span<Visits> visits = {}) {
-        solid.winding_numbers(points, found, visits);
+        winding_numbers(solid, points, found, detail::alone, visits);
     }
 };
 template <std::floating_point T, int D>
@@ -261,7 +272,7 @@ struct AskSignedDistance : AskOfSolid<AskSignedDistance<T, D>, T, D, T> {
                                       column = "distance";
     static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points, std::span<T> found,
                           std::span<Visits> visits = {}) {
-        solid.signed_distances(points, found, visits);
+        signed_distances(solid, points, found, detail::alone, visits);
     }
 };
 

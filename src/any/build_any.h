@@ -22,7 +22,9 @@ public:
     using T = typename P::Scalar;
     static constexpr int D = P::dimension;
     using Any = AnySolid<T, D>;
-    using Points = std::span<const Vec<T, D>>;
+    using Point = Vec<T, D>;
+    using Points = PointBatch<T, D>;
+    using Any::tell_distance, Any::tell_side, Any::tell_winding_number;
 
     SolidHolder(const Index<S, P>& index, const SolidOptions& options, Threads threads)
         : solid_(index, options, threads) {}
@@ -31,32 +33,35 @@ public:
     bool oriented() const override { return solid_.oriented(); }
     SideBy by() const override { return solid_.by(); }
     std::size_t bytes() const override { return solid_.bytes(); }
+    std::size_t bytes_of_index() const override { return solid_.bytes_of_index(); }
+    const Box<T, D>& bounds() const override { return solid_.bounds(); }
 
-protected:
-    Side side(const Vec<T, D>& point, Visits& visits) const override { return solid_.side(point, visits); }
-    double winding_number(const Vec<T, D>& point, Visits& visits) const override {
-        return solid_.winding_number(point, visits);
+    Side tell_side(const Point& point, Visits& visits) const override {
+        return solid_.tell_side(point, visits);
     }
-    T signed_distance(const Vec<T, D>& point, Visits& visits) const override {
-        return solid_.signed_distance(point, visits).distance;
+    double tell_winding_number(const Point& point, Visits& visits) const override {
+        return solid_.tell_winding_number(point, visits);
     }
-    void sides_uncounted(Points points, std::span<Side> found) const override {
+    SignedDistance<T, D> tell_distance(const Point& point, Visits& visits) const override {
+        return solid_.tell_distance(point, visits);
+    }
+    void write_sides(const Points& points, std::span<Side> found) const override {
         if constexpr (is_engine)
-            hedgerow::sides(solid_, points, found, serial_executor());
+            solid_.write_sides(points, found);
         else
-            Any::sides_uncounted(points, found);
+            Any::write_sides(points, found);
     }
-    void winding_numbers_uncounted(Points points, std::span<double> found) const override {
+    void write_winding_numbers(const Points& points, std::span<double> found) const override {
         if constexpr (is_engine)
-            hedgerow::winding_numbers(solid_, points, found, serial_executor());
+            solid_.write_winding_numbers(points, found);
         else
-            Any::winding_numbers_uncounted(points, found);
+            Any::write_winding_numbers(points, found);
     }
-    void signed_distances_uncounted(Points points, std::span<T> found) const override {
+    void write_distances(const Points& points, std::span<T> found) const override {
         if constexpr (is_engine)
-            hedgerow::signed_distances(solid_, points, found, serial_executor());
+            solid_.write_distances(points, found);
         else
-            Any::signed_distances_uncounted(points, found);
+            Any::write_distances(points, found);
     }
 
 private:
@@ -99,21 +104,17 @@ public:
         return reported_id(index_.primitives(), element, 0);
     }
     bool answers_rays() const override { return rays; }
-    KernelUse closest_hits_uncounted(const RayArray<T, D>& all, std::span<Hit<T>> hits) const override {
+    KernelUse rays_uncounted(const RayArray<T, D>& all, Hit<T>* hits, Executor& executor) const override {
         if constexpr (rays)
-            return hedgerow::closest_hits(index_, all, hits, serial_executor());
+            return answer_each<ClosestHit>(index_, all, hits, executor, KeepAll());
         else
             refuse_rays();
     }
-    KernelUse any_hits_uncounted(const RayArray<T, D>& all, std::span<bool> hits) const override {
+    KernelUse rays_uncounted(const RayArray<T, D>& all, bool* hits, Executor& executor) const override {
         if constexpr (rays)
-            return hedgerow::any_hits(index_, all, hits, serial_executor());
+            return answer_each<AnyHit>(index_, all, hits, executor, KeepAll());
         else
             refuse_rays();
-    }
-    void closest_points_uncounted(std::span<const Vec<T, D>> points, std::span<Near<T, D>> found,
-                                  const NearOptions<T>& options) const override {
-        hedgerow::closest_points(index_, points, found, serial_executor(), options);
     }
     std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const override {
         if constexpr (is_engine)
@@ -122,25 +123,41 @@ public:
             return Any::all_hits_uncounted(ray, hits);
     }
     std::size_t first_hits_uncounted(const Ray<T, D>& ray, std::span<Hit<T>> hits,
-                                     const AfterHit<T>& after) const override {
+                                     const PlaceOfHit<T>& after) const override {
         if constexpr (is_engine)
-            return hedgerow::first_hits(index_, ray, hits, after);
+            return index_.template answer<FirstHits<P>>(no_visits, ray, hits, after);
         else
             return Any::first_hits_uncounted(ray, hits, after);
     }
-    std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearOptions<T>& options,
+    void closest_points_uncounted(const Strided<Vec<T, D>>& points, std::span<Near<T, D>> found,
+                                  const PointOptions& options) const override {
+        hedgerow::closest_points(index_, points, found, options);
+    }
+    std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearLimits<T>& limits,
                                   std::vector<Near<T, D>>& found) const override {
         if constexpr (is_engine)
-            return hedgerow::nearest(index_, point, k, found, options);
+            return index_.template answer<Nearest<P>>(no_visits, point, k, limits, found);
         else
-            return Any::nearest_uncounted(point, k, options, found);
+            return Any::nearest_uncounted(point, k, limits, found);
     }
-    std::size_t within_uncounted(const Vec<T, D>& point, const NearOptions<T>& options,
+    bool nearest_uncounted(const Strided<Vec<T, D>>& points, std::size_t k, NearLists<T>& lists,
+                           const PointOptions& options) const override {
+        if constexpr (is_engine) hedgerow::nearest(index_, points, k, lists, options);
+        return is_engine;
+    }
+    std::size_t within_uncounted(const Vec<T, D>& point, const NearLimits<T>& limits,
                                  std::vector<Near<T, D>>& found) const override {
         if constexpr (is_engine)
-            return hedgerow::within(index_, point, options, found);
+            return index_.template answer<Within<P>>(no_visits, point, limits, found);
         else
-            return Any::within_uncounted(point, options, found);
+            return Any::within_uncounted(point, limits, found);
+    }
+    bool within_uncounted(const Strided<Vec<T, D>>& points, NearLists<T>& lists,
+                          const PointOptions& options) const override {
+        if constexpr (is_engine)
+            return hedgerow::within(index_, points, PointOptions::anywhere, lists, options), true;
+        else
+            return listed_by_cells(index_.primitives(), points, lists, options);
     }
     std::size_t list_uncounted(const Box<T, D>& region, std::vector<PrimitiveId>& found,
                                Finds finds) const override {
@@ -232,14 +249,14 @@ private:
     template <class R>
     std::size_t count_by(const R& region) const {
         if constexpr (is_engine)
-            return hedgerow::count_overlapping(index_, region);
+            return hedgerow::overlap_count(index_, region);
         else
             return Any::count_uncounted(region);
     }
     template <class R>
     bool any_by(const R& region) const {
         if constexpr (is_engine)
-            return hedgerow::any_overlapping(index_, region);
+            return hedgerow::any_overlap(index_, region);
         else
             return Any::any_uncounted(region);
     }

@@ -1,5 +1,10 @@
 #include <hedgerow/parallel/executor.h>
 
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <mutex>
+
 #ifndef HEDGEROW_HAS_TBB
 #define HEDGEROW_HAS_TBB 1
 #endif
@@ -14,6 +19,7 @@ extern "C" void __tsan_release(void*);
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
 #endif
 
 namespace hedgerow {
@@ -99,11 +105,37 @@ public:
     }
 };
 
+/// Runs work by another executor inside an arena of few threads.
+class ArenaExecutor final : public Executor {
+public:
+    explicit ArenaExecutor(std::size_t threads)
+        : arena_(static_cast<int>(std::min<std::size_t>(threads, std::numeric_limits<int>::max()))) {}
+
+    void for_each_piece(std::size_t count, std::size_t grain,
+                        FunctionRef<void(std::size_t, std::size_t)> body) override {
+        arena_.execute([&] { default_executor().for_each_piece(count, grain, body); });
+    }
+    void both(FunctionRef<void()> first, FunctionRef<void()> second) override {
+        arena_.execute([&] { default_executor().both(first, second); });
+    }
+
+private:
+    tbb::task_arena arena_;
+};
+
 }  // namespace
 
 Executor& default_executor() {
     static TbbExecutor executor;
     return executor;
+}
+Executor& executor_of(std::size_t threads) {
+    if (threads == 0) return default_executor();
+    if (threads == 1) return serial_executor();
+    static std::mutex making;
+    static std::map<std::size_t, ArenaExecutor> made;
+    const std::lock_guard lock(making);
+    return made.try_emplace(threads, threads).first->second;
 }
 ThreadLimit::ThreadLimit(unsigned threads) {
     if (threads > 0)
@@ -114,6 +146,9 @@ ThreadLimit::~ThreadLimit() {
 }
 #else
 Executor& default_executor() {
+    return serial_executor();
+}
+Executor& executor_of(std::size_t) {
     return serial_executor();
 }
 ThreadLimit::ThreadLimit(unsigned) {}

@@ -57,7 +57,7 @@ private:
 
 template <int W>
 std::size_t first_hits_of(const WideScene& scene, Ray<float, 3> asked, std::span<Hit<float>> hits,
-                          const AfterHit<float>& after) {
+                          const PlaceOfHit<float>& after) {
     if (hits.empty() || after.at_end() || scene.tree.empty()) return 0;
     asked.t_min = std::max(asked.t_min, after.t);
     WideRay ray;

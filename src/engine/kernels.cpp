@@ -54,12 +54,12 @@ inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, a
 template <int W>
 struct FirstOnes {
     static std::size_t answer(const WideScene& scene, const Ray<float, 3>* ray, std::span<Hit<float>> hits,
-                              const AfterHit<float>* after) {
+                              const PlaceOfHit<float>* after) {
         return first_hits_of<W>(scene, *ray, hits, *after);
     }
 };
 inline std::size_t answer_first_hits(const WideScene& scene, const Ray<float, 3>& ray,
-                                     std::span<Hit<float>> hits, const AfterHit<float>& after) {
+                                     std::span<Hit<float>> hits, const PlaceOfHit<float>& after) {
     return by_width<FirstOnes>(scene, &ray, hits, &after);
 }
 

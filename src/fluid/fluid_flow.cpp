@@ -437,10 +437,11 @@ std::size_t FluidFlow<D>::pour(const std::vector<V>& places, const V& velocity) 
     FluidState<D>& state = steps_->state;
     const double apart = 0.9 * options().spacing;
     // A place is free if neither a particle nor a place before it is near.
-    NeighbourLists<double> near_fluid, near_places;
-    const NeighbourOptions<D> repeats{options().periods};
-    neighbours_within(state.places, places, apart, near_fluid, repeats, steps_->threads());
-    neighbours_within(places, apart, near_places, repeats, steps_->threads());
+    NearLists<double> near_fluid, near_places;
+    const NeighbourOptions repeats{.periods = periods_in_space(options().periods),
+                                   .threads = steps_->threads()};
+    neighbours_within(state.places, places, apart, near_fluid, repeats);
+    neighbours_within(places, apart, near_places, repeats);
     std::vector<bool> taken(places.size());
     const std::size_t before = state.size();
     for (std::size_t i = 0; i < places.size(); ++i) {

@@ -46,7 +46,7 @@ std::vector<Vec3d> lattice_at_distances(const MeshIndex<double>& mesh, double sp
         for_each_cell<3>({first[0], first[1], z}, {end[0], end[1], z + 1},
                          [&](const Cell<3>& cell) { places.push_back(middle_of<3>(origin, cell, spacing)); });
         distances.resize(places.size());
-        signed_distances(solid, Strided<Vec3d>(places), distances, threads);
+        signed_distances(solid, Strided<Vec3d>(places), distances, {.threads = threads});
         for (std::size_t i = 0; i < places.size(); ++i)
             if (distances[i] >= low * spacing && distances[i] <= high * spacing) found.push_back(places[i]);
     }

@@ -352,9 +352,9 @@ void ParticleSystem::move(std::size_t i, double dt, double flight) {
 void ParticleSystem::separate(Threads threads) {
     Particles& all = state_.particles;
     const auto& radii = state_.radii;
-    NeighbourLists<double> near;
+    NearLists<double> near;
     neighbours_within(all.places, 2 * *std::max_element(radii.begin(), radii.end()), near,
-                      {.distances = true}, threads);
+                      {.distances = true, .threads = threads});
     // Add up all pushes before any ball moves, so that the order of the balls does not matter.
     std::vector<Vec3d> pushes(all.size());
     const detail::Obstacle obstacle(mesh_);

@@ -136,7 +136,7 @@ Stored<E> stored(const FileBytes& file, std::uint64_t at, std::uint64_t count) {
 }
 template <class E>
 Strided<E> strided(const FileBytes& file, std::uint64_t at, std::uint64_t count) {
-    return {file.data + at, static_cast<std::size_t>(count)};
+    return Strided<E>::in_bytes(file.data + at, static_cast<std::size_t>(count));
 }
 /// An index whose arrays are in the file itself. `View` is that of its primitives.
 template <class View>

@@ -38,8 +38,8 @@ std::size_t Trial::one_by_one(const Engine& engine) const {
 }
 KernelUse Trial::batch(const Engine& engine, Executor& executor) {
     return question_ == Question::closest
-               ? closest_hits(engine, rays_, std::span(hits_), executor)
-               : any_hits(engine, rays_, std::span(any_.get(), rays_.size()), executor);
+               ? closest_hits(engine, rays_, std::span(hits_), {.threads = executor})
+               : any_hits(engine, rays_, std::span(any_.get(), rays_.size()), {.threads = executor});
 }
 
 std::vector<Row> Trial::run(const GoOn& go_on) {

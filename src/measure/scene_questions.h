@@ -65,7 +65,7 @@ public:
                 rays.push_back({eye, place.point - eye});
             }
             std::vector<Hit<T>> hits(some);
-            index_.closest_hits(rays, hits);
+            closest_hits(index_, rays, hits, {.threads = serial_executor()});
             // A hit more than 2^-10 of the way before the place hides the place.
             const auto hidden = std::count_if(hits.begin(), hits.end(),
                                               [](const auto& h) { return h && h.t < T(1) - T(0x1p-10); });
@@ -108,7 +108,7 @@ private:
     }
     std::size_t missed(const Rays& rays) const {
         std::vector<Hit<T>> hits(rays.size());
-        index_.closest_hits(rays, hits);
+        closest_hits(index_, rays, hits, {.threads = serial_executor()});
         return static_cast<std::size_t>(
             std::count_if(hits.begin(), hits.end(), [](const auto& h) { return !h; }));
     }

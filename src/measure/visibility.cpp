@@ -77,13 +77,13 @@ private:
         cost.build_seconds = builds.empty() ? 0 : median(builds);
         cost.bytes = index->bytes();
         std::vector<Visits> visits(rays_.size());
-        index->closest_hits(rays_, hits_, visits);
+        closest_hits(*index, rays_, hits_, {.threads = serial_executor()}, KeepAll(), visits);
         Visits all;
         for (const Visits& v : visits) all += v;
         cost.tests = a_sample(all.primitives), cost.nodes = a_sample(all.nodes + all.leaves);
         check(cost.way);
         contest_.add(cost.way, [this, index] {
-            index->closest_hits(rays_, hits_);
+            closest_hits(*index, rays_, hits_, {.threads = serial_executor()});
             return hits_.size();
         });
         costs_.push_back(cost);

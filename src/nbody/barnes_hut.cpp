@@ -45,8 +45,7 @@ void one_by_one(const Charges<T>& charges, std::span<PotentialAt<T>> found, doub
 }  // namespace
 
 template <std::floating_point T>
-void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, const BarnesHutOptions& options,
-                Threads threads) {
+void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, const BarnesHutOptions& options) {
     if (!(options.opening_angle > 0 && options.opening_angle < 1))
         throw UsageError("an opening angle of " + std::to_string(options.opening_angle) +
                          " is not above 0 and below 1");
@@ -56,8 +55,8 @@ void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, cons
     const detail::Extremes<T> extremes(charges);  // throws for bad numbers
     const NbodyKernels* const kernels = nbody_kernels();
     if (found.size() < least_charges || (kernels == nullptr && detail::softened(charges)))
-        return direct_sum(charges, found, threads);
-    Executor& executor = threads.over(found.size());
+        return direct_sum(charges, found, {.threads = options.threads});
+    Executor& executor = options.threads.over(found.size());
     in_ieee_mode([&] {
         IeeeExecutor ieee(executor);
         if (kernels == nullptr)
@@ -68,9 +67,7 @@ void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, cons
     });
 }
 
-template void barnes_hut(const Charges<float>&, std::span<PotentialAt<float>>, const BarnesHutOptions&,
-                         Threads);
-template void barnes_hut(const Charges<double>&, std::span<PotentialAt<double>>, const BarnesHutOptions&,
-                         Threads);
+template void barnes_hut(const Charges<float>&, std::span<PotentialAt<float>>, const BarnesHutOptions&);
+template void barnes_hut(const Charges<double>&, std::span<PotentialAt<double>>, const BarnesHutOptions&);
 
 }  // namespace hedgerow

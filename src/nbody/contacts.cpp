@@ -34,9 +34,9 @@ std::size_t bounce(Particles& spheres, std::span<const double> radii, double res
         throw UsageError("a restitution of " + std::to_string(restitution) + " is not from 0 to 1");
     expect_sound(spheres, radii);
     if (spheres.size() < 2) return 0;
-    NeighbourLists<double> near;
+    NearLists<double> near;
     neighbours_within(spheres.places, 2 * *std::max_element(radii.begin(), radii.end()), near,
-                      {.once = true, .distances = true}, threads);
+                      {.once = true, .distances = true, .threads = threads});
     std::size_t contacts = 0;
     const auto meet = [&](std::size_t a, std::size_t b, double distance2) {
         const double reach = radii[a] + radii[b];

@@ -247,25 +247,25 @@ void sum_directly(const Charges<T>& sources, const Targets<T>& targets, bool at_
 
 template <std::floating_point T>
 void direct_sum(const Charges<T>& sources, const Targets<T>& targets, std::span<PotentialAt<T>> found,
-                Threads threads) {
+                const SumOptions& options) {
     // Where targets are the first of bare charges, the sum is the same without what each does to itself, and
     // faster.
     const Strided<Vec<T, 3>>&charges = sources.places, &at = targets.places;
     const bool at_charges = !detail::softened(sources) && !at.empty() && at.size() <= charges.size() &&
                             at.at(0) == charges.at(0) && at.stride() == charges.stride();
-    sum_directly(sources, targets, at_charges, found, threads);
+    sum_directly(sources, targets, at_charges, found, options.threads);
 }
 template <std::floating_point T>
-void direct_sum(const Charges<T>& charges, std::span<PotentialAt<T>> found, Threads threads) {
+void direct_sum(const Charges<T>& charges, std::span<PotentialAt<T>> found, const SumOptions& options) {
     const std::size_t count = found.size(), n = charges.places.size();
     if (count > n) detail::expect_room(count, n);
     const Strided<T> lengths = charges.lengths.size() == n ? charges.lengths.part(0, count) : charges.lengths;
-    sum_directly(charges, Targets<T>(charges.places.part(0, count), lengths), true, found, threads);
+    sum_directly(charges, Targets<T>(charges.places.part(0, count), lengths), true, found, options.threads);
 }
 
 template <std::floating_point T>
 void direct_tides(const Charges<T>& sources, const Targets<T>& targets, std::span<Tides> found,
-                  Threads threads) {
+                  const SumOptions& options) {
     const std::size_t n = sources.places.size(), count = targets.places.size();
     detail::expect_room(found.size(), count);
     detail::Extremes<T> extremes(sources);
@@ -274,7 +274,7 @@ void direct_tides(const Charges<T>& sources, const Targets<T>& targets, std::spa
     const detail::RepeatingCube cube(sources);
     const detail::PlacesInCube<T> places(sources.places, cube), at(targets.places, cube);
     const std::vector<Vec3d> images = side > 0 ? detail::near_image_places(side) : std::vector<Vec3d>(1);
-    IeeeExecutor executor(threads.over(count > 1 ? n * count / 8 : 0));
+    IeeeExecutor executor(options.threads.over(count > 1 ? n * count / 8 : 0));
     executor.for_each_piece(count, 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const double own = static_cast<double>(detail::reach_of(targets, sources.softening, t));
@@ -320,13 +320,14 @@ void direct_tides(const Charges<T>& sources, const Targets<T>& targets, std::spa
     for (std::size_t i = 0; i < count; ++i) found[i] += tides[i];
 }
 
-template void direct_tides(const Charges<float>&, const Targets<float>&, std::span<Tides>, Threads);
-template void direct_tides(const Charges<double>&, const Targets<double>&, std::span<Tides>, Threads);
+template void direct_tides(const Charges<float>&, const Targets<float>&, std::span<Tides>, const SumOptions&);
+template void direct_tides(const Charges<double>&, const Targets<double>&, std::span<Tides>,
+                           const SumOptions&);
 template void direct_sum(const Charges<float>&, const Targets<float>&, std::span<PotentialAt<float>>,
-                         Threads);
+                         const SumOptions&);
 template void direct_sum(const Charges<double>&, const Targets<double>&, std::span<PotentialAt<double>>,
-                         Threads);
-template void direct_sum(const Charges<float>&, std::span<PotentialAt<float>>, Threads);
-template void direct_sum(const Charges<double>&, std::span<PotentialAt<double>>, Threads);
+                         const SumOptions&);
+template void direct_sum(const Charges<float>&, std::span<PotentialAt<float>>, const SumOptions&);
+template void direct_sum(const Charges<double>&, std::span<PotentialAt<double>>, const SumOptions&);
 
 }  // namespace hedgerow

@@ -45,7 +45,7 @@ ForceCheck::ForceCheck(const Charges<T>& charges, std::size_t targets, Threads t
     for (std::size_t i = 0; i < n; ++i)
         if (i % step_ != 0) add(i);
     const Charges<double> all{places, reordered, charges.softening, lengths, detail::side_of(charges)};
-    direct_sum<double>(all, want_, threads);
+    direct_sum<double>(all, want_, {.threads = threads});
     threads.over(n * want_.size() / 16)
         .for_each_piece(want_.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k)

@@ -76,7 +76,7 @@ bool plain_forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, do
 
 template <class T>
 void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::span<PotentialAt<T>> found,
-               const ForceOptions& options, Threads threads) {
+               const ForceOptions& options) {
     const Plan& plan = plan_for(options.accuracy, given.period > 0);
     if (std::same_as<T, float> && options.accuracy < detail::least_accuracy_of_float)
         throw UsageError("an accuracy below 1e-7 is beyond what numbers of float hold: use double");
@@ -100,7 +100,8 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
     if (given_targets != nullptr)
         other.emplace(targets_in_cube.places(), given_targets->lengths, given_targets->charges);
     const Targets<T>* const targets = other ? &*other : nullptr;
-    Executor& executor = threads.over(found.size());
+    const SumOptions sum{options.threads};
+    Executor& executor = options.threads.over(found.size());
     const NbodyKernels* const kernels = nbody_kernels();
     const bool plain = kernels == nullptr && targets == nullptr && !detail::softened(charges) &&
                        !(charges.period > 0) && !with_tides && found.size() >= 2000 &&
@@ -123,9 +124,9 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
             direct_tides(
                 charges,
                 targets != nullptr ? *targets : Targets<T>(charges.places, charges.lengths, charges.charges),
-                options.tides, threads);
-        return targets != nullptr ? direct_sum(charges, *targets, found, threads)
-                                  : direct_sum(charges, found, threads);
+                options.tides, sum);
+        return targets != nullptr ? direct_sum(charges, *targets, found, sum)
+                                  : direct_sum(charges, found, sum);
     }
     in_ieee_mode([&] {
         IeeeExecutor ieee(executor);
@@ -134,7 +135,8 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
                                             ieee);
         };
         if (plain) {
-            if (!plain_forces(charges, found, options.accuracy, ieee)) direct_sum(charges, found, ieee);
+            if (!plain_forces(charges, found, options.accuracy, ieee))
+                direct_sum(charges, found, {.threads = ieee});
         } else if (plan.precision != Precision::single || !by(of_order(*kernels->fmm_float, plan.order)))
             by(of_order(*kernels->fmm_double, plan.order));
     });
@@ -143,14 +145,13 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
 }  // namespace
 
 template <std::floating_point T>
-void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options,
-            Threads threads) {
-    forces_at<T>(charges, nullptr, found, options, threads);
+void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options) {
+    forces_at<T>(charges, nullptr, found, options);
 }
 template <std::floating_point T>
 void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<PotentialAt<T>> found,
-            const ForceOptions& options, Threads threads) {
-    forces_at<T>(charges, &targets, found, options, threads);
+            const ForceOptions& options) {
+    forces_at<T>(charges, &targets, found, options);
 }
 
 template <std::floating_point T>
@@ -174,11 +175,11 @@ std::vector<ActingCell> acting_cells(const Charges<T>& given, std::size_t i, con
 
 template std::vector<ActingCell> acting_cells(const Charges<float>&, std::size_t, const ForceOptions&);
 template std::vector<ActingCell> acting_cells(const Charges<double>&, std::size_t, const ForceOptions&);
-template void forces(const Charges<float>&, std::span<PotentialAt<float>>, const ForceOptions&, Threads);
-template void forces(const Charges<double>&, std::span<PotentialAt<double>>, const ForceOptions&, Threads);
+template void forces(const Charges<float>&, std::span<PotentialAt<float>>, const ForceOptions&);
+template void forces(const Charges<double>&, std::span<PotentialAt<double>>, const ForceOptions&);
 template void forces(const Charges<float>&, const Targets<float>&, std::span<PotentialAt<float>>,
-                     const ForceOptions&, Threads);
+                     const ForceOptions&);
 template void forces(const Charges<double>&, const Targets<double>&, std::span<PotentialAt<double>>,
-                     const ForceOptions&, Threads);
+                     const ForceOptions&);
 
 }  // namespace hedgerow

@@ -221,7 +221,7 @@ void Motion::accelerate() {
 void Motion::accelerate(const Ids& active) {
     const Particles& all = state_.particles;
     const Charges<double> charges{all.places, all.masses, options_.softening, {}, options_.period};
-    ForceOptions options{options_.accuracy};
+    ForceOptions options{.accuracy = options_.accuracy, .threads = threads_};
     std::vector<double> sizes;
     if (known_)
         for (const std::uint32_t i : active)
@@ -230,12 +230,12 @@ void Motion::accelerate(const Ids& active) {
     options.sizes = sizes;
     std::vector<PotentialAt<double>> found(active.size());
     if (active.size() == all.size()) {
-        forces(charges, std::span(found), options, threads_);
+        forces(charges, std::span(found), options);
     } else {
         std::vector<Vec3d> places;
         std::vector<double> lengths(active.size(), options_.softening.length), masses;
         for (const std::uint32_t i : active) places.push_back(all.places[i]), masses.push_back(all.masses[i]);
-        forces(charges, Targets<double>(places, lengths, masses), std::span(found), options, threads_);
+        forces(charges, Targets<double>(places, lengths, masses), std::span(found), options);
     }
     for (std::size_t k = 0; k < active.size(); ++k) {
         state_.accelerations[active[k]] = found[k].gradient * options_.gravity;

@@ -145,7 +145,7 @@ bool are_accurate(const Charges<T>& charges, const Targets<T>& targets, const st
     for (std::size_t k = 0; k < some.size(); k += step) few.push_back(some[k]);
     const FewTargets<T> at(targets, few);
     std::vector<PotentialAt<T>> want(few.size());
-    direct_sum(charges, at.view(), std::span(want), executor);
+    direct_sum(charges, at.view(), std::span(want), {.threads = executor});
     double squares = 0;
     for (std::size_t k = 0; k < few.size(); ++k) {
         const Vec3d gradient(want[k].gradient);

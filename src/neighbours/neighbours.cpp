@@ -27,15 +27,16 @@ struct PartLists {
 /// Writes the lists in the order of cells.
 template <class T, int D>
 void list_in_order(const detail::CellOrder<T, D>& order, T max_distance2, detail::Listed listed,
-                   NeighbourLists<T>& lists, bool distances, Threads threads) {
+                   NearLists<T>& lists, bool distances, Threads threads) {
     const std::size_t n = order.size();
     const auto lister = [&] {
         return detail::CellLister<T, D>(order, order, max_distance2, listed, distances);
     };
     lists.offsets.resize(n + 1);
     lists.offsets[0] = 0;
+    std::size_t* const offsets = lists.offsets.data();
     if (Executor& executor = threads.over(n); &executor == &serial_executor()) {
-        lister().list(0, order.cells().size() - 1, lists.offsets.data() + 1, lists.ids, lists.distances2);
+        lister().list(0, order.cells().size() - 1, offsets + 1, lists.ids, lists.distances2);
     } else {
         using Part = PartLists<T>;
         const auto begins = detail::parts_of(order);
@@ -52,25 +53,24 @@ void list_in_order(const detail::CellOrder<T, D>& order, T max_distance2, detail
                     lister().list(begins[i], begins[i + 1], part.ends.data(), part.ids, part.distances2);
             },
             [&](std::size_t i, const Part& part) {
-                const std::size_t size = lists.offsets[first(i)] + part.size;
+                const std::size_t size = offsets[first(i)] + part.size;
                 // Expect about as many neighbours for the points to come, and a tenth more.
                 const double share = static_cast<double>(first(i + 1)) / static_cast<double>(n),
                              expected = 1.1 * static_cast<double>(size) / share;
                 grow(lists.ids, size, expected);
                 if (distances) grow(lists.distances2, size, expected);
-                lists.offsets[first(i + 1)] = size;
+                offsets[first(i + 1)] = size;
             },
             [&](std::size_t i, const Part& part) {
-                const std::size_t at = lists.offsets[first(i)];
-                const auto to = static_cast<std::ptrdiff_t>(at);
+                const std::size_t at = offsets[first(i)];
                 for (std::size_t k = 0; k + 1 < part.points; ++k)
-                    lists.offsets[first(i) + k + 1] = at + part.ends[k];
-                std::copy_n(part.ids.begin(), part.size, lists.ids.begin() + to);
-                if (distances) std::copy_n(part.distances2.begin(), part.size, lists.distances2.begin() + to);
+                    offsets[first(i) + k + 1] = at + part.ends[k];
+                std::copy_n(part.ids.begin(), part.size, lists.ids.begin() + at);
+                if (distances) std::copy_n(part.distances2.begin(), part.size, lists.distances2.begin() + at);
             });
     }
-    lists.ids.resize(lists.offsets[n]);
-    lists.distances2.resize(distances ? lists.offsets[n] : 0);
+    lists.ids.resize(offsets[n]);
+    lists.distances2.resize(distances ? offsets[n] : 0);
 }
 
 /// How many of some different numbers are less than each.
@@ -150,16 +150,17 @@ private:
 /// Lists of neighbours of a caller, in the order of his points.
 template <class T>
 struct ListsOf {
-    NeighbourLists<T>& lists;
+    NearLists<T>& lists;
     bool distances;
 
     void start(const std::vector<std::size_t>& offsets) {
-        lists.offsets = offsets;
+        lists.offsets.clear();
+        lists.offsets.append(offsets);
         lists.ids.resize(offsets.back());
         lists.distances2.resize(distances ? offsets.back() : 0);
     }
     void write(std::size_t point, const PrimitiveId* ids, const T* distances2, std::size_t size) const {
-        const auto to = static_cast<std::ptrdiff_t>(lists.offsets[point]);
+        const std::size_t to = lists.offsets[point];
         std::copy_n(ids, size, lists.ids.begin() + to);
         if (distances) std::copy_n(distances2, size, lists.distances2.begin() + to);
     }
@@ -222,31 +223,36 @@ void list_renumbered(const detail::CellOrder<T, D>& asking, const detail::CellOr
 }
 
 template <int D>
-void check_periods(const Periods<D>& periods) {
-    for (int k = 0; k < D; ++k)
+Periods<D> periods_of(const NeighbourOptions& options) {
+    Periods<D> periods;
+    for (int k = 0; k < D; ++k) {
+        periods[k] = options.periods[k];
         if (!(periods[k] >= 0) || std::isinf(periods[k]))
             throw UsageError("a period of " + std::to_string(periods[k]) + " along axis " +
                              std::to_string(k) + " is not a length, nor 0 where space does not repeat");
+    }
+    return periods;
 }
 
 /// Lists the neighbours of one set.
 template <class T, int D>
-void list_neighbours(const Strided<Vec<T, D>>& points, T max_distance2, NeighbourLists<T>& lists,
-                     const NeighbourOptions<D>& options, Threads threads) {
+void list_neighbours(const Strided<Vec<T, D>>& points, T max_distance2, NearLists<T>& lists,
+                     const NeighbourOptions& options) {
+    const Periods<D> periods = periods_of<D>(options);
     if (options.order != nullptr) options.order->clear();
     if (points.empty()) {
-        lists.offsets.assign(1, 0), lists.ids.clear(), lists.distances2.clear();
+        lists.clear();
         return;
     }
-    IeeeExecutor executor(threads.over(points.size()));
-    const detail::CellAxes<T, D> axes(std::span(&points, 1), detail::farthest_within(max_distance2),
-                                      options.periods, executor);
+    IeeeExecutor executor(options.threads.over(points.size()));
+    const detail::CellAxes<T, D> axes(std::span(&points, 1), detail::farthest_within(max_distance2), periods,
+                                      executor);
     const detail::CellOrder<T, D> order(points, axes, executor);
     const auto& ids = order.order();
     const auto listed = options.once ? detail::Listed::later : detail::Listed::others;
     if (options.order != nullptr) options.order->assign(ids.begin(), ids.end());
     if (options.order != nullptr || std::is_sorted(ids.begin(), ids.end()))
-        list_in_order(order, max_distance2, listed, lists, options.distances, threads);
+        list_in_order(order, max_distance2, listed, lists, options.distances, options.threads);
     else
         list_renumbered(order, order, max_distance2, listed, ListsOf<T>{lists, options.distances}, executor);
 }
@@ -270,7 +276,7 @@ std::uint64_t pairs_in_touching_cells(const detail::CellOrder<T, D>& asking,
 }
 /// Sorts each list by (distance², id).
 template <class T>
-void sort_by_distance(NeighbourLists<T>& lists, Executor& executor) {
+void sort_by_distance(NearLists<T>& lists, Executor& executor) {
     executor.for_each_piece(lists.offsets.size() - 1, 256, [&](std::size_t from, std::size_t to) {
         std::vector<std::pair<T, PrimitiveId>> list;
         for (std::size_t i = from; i < to; ++i) {
@@ -307,24 +313,23 @@ bool list_among(const Strided<Vec<T, D>>& points, const Strided<Vec<T, D>>& aski
 }  // namespace
 
 template <std::floating_point T, int D>
-std::size_t detail::CellNeighbours<T, D>::list(const Points& points, T radius, NeighbourLists<T>& lists,
-                                               const NeighbourOptions<D>& options, Threads threads) {
-    check_periods(options.periods);
-    in_ieee_mode([&] { list_neighbours(points, largest_square_within(radius), lists, options, threads); });
-    return lists.ids.size();
+void detail::CellNeighbours<T, D>::list(const Points& points, T max_distance2, NearLists<T>& lists,
+                                        const NeighbourOptions& options) {
+    in_ieee_mode([&] {
+        list_in_own_memory(lists, [&](auto& own) { list_neighbours(points, max_distance2, own, options); });
+    });
 }
 template <std::floating_point T, int D>
-std::size_t detail::CellNeighbours<T, D>::list(const Points& points, const Points& asking, T radius,
-                                               NeighbourLists<T>& lists, const NeighbourOptions<D>& options,
-                                               Threads threads) {
-    check_periods(options.periods);
+void detail::CellNeighbours<T, D>::list(const Points& points, const Points& asking, T max_distance2,
+                                        NearLists<T>& lists, const NeighbourOptions& options) {
     if (options.once || options.order != nullptr)
         throw UsageError("pairs once, and points in the order of cells, are for neighbours of one set");
     in_ieee_mode([&] {
-        list_among(points, asking, largest_square_within(radius), options.periods,
-                   ListsOf<T>{lists, options.distances}, threads);
+        list_in_own_memory(lists, [&](auto& own) {
+            list_among(points, asking, max_distance2, periods_of<D>(options),
+                       ListsOf<T>{own, options.distances}, options.threads);
+        });
     });
-    return lists.ids.size();
 }
 
 template <std::floating_point T, int D>
@@ -348,7 +353,7 @@ std::size_t detail::CellNeighbours<T, D>::pairs(const Points& a, const Points& b
 
 template <std::floating_point T, int D>
 bool detail::CellNeighbours<T, D>::within(const Points& points, const Points& asking, T max_distance2,
-                                          NeighbourLists<T>& lists, Threads threads) {
+                                          NearLists<T>& lists, Threads threads) {
     // Sorting a point by its cell takes about a tenth of the time of a walk. The distances of a cell's points
     // are measured 16 at once: 4096 take about as long as a walk that finds few.
     constexpr std::size_t points_for_each = 16, least = 256, most_measured_for_each = 4096;

@@ -290,8 +290,8 @@ private:
     template <class Shade>
     TransparencyCounts follow(std::span<const Ray<T, 3>> rays, std::span<const Hit<T>> first,
                               const Shade& shade) {
-        const auto find = [&](const auto& some, std::size_t k, const auto& columns, auto after, const auto&) {
-            parts_.tracer->first_hits(some, k, columns, after, keeps_);
+        const auto find = [&](const auto& some, std::size_t k, auto& lists, const auto& after, const auto&) {
+            parts_.tracer->first_hits(some, k, lists, after, keeps_);
         };
         return Walk(o_.transparency).follow(rays, 0, rays.size(), first, find, shade);
     }

@@ -147,7 +147,7 @@ bool pairs_agree(std::size_t count) {
                 static_cast<unsigned long long>(sum));
     for (const auto set : instruction_sets()) {
         use_instruction_set(set);
-        pairs_within(index, {.radius = 0.1f}, got, serial_executor());
+        pairs_within(index, 0.1f, got, {.threads = serial_executor()});
         if (got == want) continue;
         std::printf("points: pairs differ with %s\n", std::string(set).c_str());
         return false;

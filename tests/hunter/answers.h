@@ -16,14 +16,14 @@
 
 namespace hedgerow::hunter {
 
-/// The closest point in a batch with the options of NearOptions, which the table of questions leaves out.
+/// The closest point in a batch with PointOptions, which the table of questions leaves out.
 template <class T, int D>
 struct AskClosestWithOptions {
     static constexpr std::string_view name = "closest-point", words = "closest point with options";
     using Given = Neighbours<T, D>;
     using Answer = Near<T, D>;
     static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found) {
-        index.closest_points({&given.point, 1}, {&found, 1}, {}, given.options);
+        closest_points(index, {&given.point, 1}, {&found, 1}, given.options);
     }
 };
 
@@ -60,9 +60,9 @@ Neighbours<T, D> exactly(Neighbours<T, D> given) {
     return given;
 }
 template <class T, int D>
-bool about_as_near(const Near<T, D>& near, const Near<T, D>& exact, T factor) {
+bool about_as_near(const Near<T, D>& near, const Near<T, D>& exact, double factor) {
     if (!near || !exact) return bool(near) == bool(exact);
-    const double most = double(exact.distance2) * double(factor) * double(factor) * (1 + 0x1p-18);
+    const double most = double(exact.distance2) * factor * factor * (1 + 0x1p-18);
     return near.distance2 >= exact.distance2 && double(near.distance2) <= most;
 }
 /// Whether an answer is what brute force answers to the same with a factor of 1.

@@ -25,10 +25,10 @@ PlacedRayAnswer<T> placed_answer(const Index& index, const Ray<T, 3>& ray) {
     all_hits(index, ray, said.all);
     // The first hits, and those after them.
     std::array<Hit<T>, 3> piece;
-    AfterHit<T> after;
+    AfterHit after;
     std::size_t n = piece.size();
     while (n == piece.size()) {
-        n = first_hits(index, ray, piece, after);
+        n = first_hits(index, ray, piece, {.after = after});
         said.in_pieces.insert(said.in_pieces.end(), piece.begin(),
                               piece.begin() + static_cast<std::ptrdiff_t>(n));
         after = piece.back();

@@ -33,9 +33,9 @@ auto pair_answers(const std::vector<Shape>& one, const std::vector<Shape>& two, 
     const auto in_a = build<SA>(a);
     const auto in_b = build<SB>(b);
     PairAnswers<T, D> said;
-    const NearOptions<T> near{.radius = static_cast<T>(radius)};
+    const double near = static_cast<double>(static_cast<T>(radius));
     said.apart = minimum_distance(in_a, in_b);
-    said.apart_within = minimum_distance(in_a, in_b, near);
+    said.apart_within = minimum_distance(in_a, in_b, {.radius = near});
     if constexpr (std::is_same_v<Shape, Triangle<T, 3>>) {
         crossing_pairs(in_a, in_b, said.crossings);
         self_intersections(in_a, said.self);
@@ -53,8 +53,7 @@ auto all_pair_answers(const std::vector<Shape>& one, const std::vector<Shape>& t
     using T = typename std::decay_t<decltype(a)>::Scalar;
     constexpr int D = std::decay_t<decltype(a)>::dimension;
     constexpr bool triangles = std::is_same_v<Shape, Triangle<T, 3>>;
-    const T near = static_cast<T>(radius);
-    const T radius2 = NearOptions<T>{.radius = near}.max_distance2();
+    const T radius2 = largest_square_within(static_cast<T>(radius));
     PairAnswers<T, D> said;
     for (PrimitiveId i = 0; i < one.size(); ++i)
         for (PrimitiveId j = 0; j < two.size(); ++j) {

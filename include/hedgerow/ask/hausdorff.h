@@ -43,23 +43,21 @@ auto directed_hausdorff(const IA& a, const IB& b, const HausdorffOptions& option
 /// vertex, and some of them a dozen or more, by how alike the sets are and how narrow the tolerance is; where
 /// the sets are far apart, most vertices are not asked for. Takes up to 24 bytes for each vertex of both sets
 /// and 40 for each triangle, and 160 for each part of a triangle that may be the farthest. Large sets are
-/// asked on all cores, unless an executor is given (Threads); the result is the same.
+/// asked on all cores, or the threads of the options; the result is the same.
 template <class SA, class A, class SB, class B>
 requires FarFrom<A, B> Hausdorff<typename A::Scalar, A::dimension> directed_hausdorff_distance(
-    const Index<SA, A>& a, const Index<SB, B>& b, const HausdorffOptions& options = {},
-    Threads threads = {}) {
+    const Index<SA, A>& a, const Index<SB, B>& b, const HausdorffOptions& options = {}) {
     detail::expect_tolerances(options);
-    return detail::directed_hausdorff(a, b, options, threads.over(a.size()), 0);
+    return detail::directed_hausdorff(a, b, options, options.threads.over(a.size()), 0);
 }
 
 /// The (symmetric) Hausdorff distance: the greater of the directed ones. It is 0 for two empty sets, and
 /// infinite if one is empty.
 template <class SA, class A, class SB, class B>
 requires(FarFrom<A, B>&& FarFrom<B, A>) Hausdorff<typename A::Scalar, A::dimension> hausdorff_distance(
-    const Index<SA, A>& a, const Index<SB, B>& b, const HausdorffOptions& options = {},
-    Threads threads = {}) {
+    const Index<SA, A>& a, const Index<SB, B>& b, const HausdorffOptions& options = {}) {
     detail::expect_tolerances(options);
-    Executor& executor = threads.over(std::max(a.size(), b.size()));
+    Executor& executor = options.threads.over(std::max(a.size(), b.size()));
     auto result = detail::directed_hausdorff(a, b, options, executor, 0);
     // What is no farther than the distance found is of no interest in the other direction.
     const auto back = detail::directed_hausdorff(b, a, options, executor, static_cast<double>(result.lower));

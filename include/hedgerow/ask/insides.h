@@ -151,21 +151,23 @@ public:
     SideBy by() const { return options_.by; }
     const SolidOptions& options() const { return options_; }
     const I& index() const { return *index_; }
+    std::size_t bytes_of_index() const { return index_->bytes(); }
     /// Bytes beyond the index.
     std::size_t bytes() const {
         return boundary_.open.capacity() * sizeof(boundary_.open[0]) + closing_.bytes() + caps_.bytes() +
                pseudonormals_.bytes() + (expansion_ ? expansion_->bytes() : 0);
     }
 
-    template <class Count = const NoVisits>
-    Side side(const Point& point, Count& count = no_visits) const {
+    // What the functions below ask.
+
+    template <class Count>
+    Side tell_side(const Point& point, Count& count) const {
         if (!finite(point)) return Side::outside;
-        if (by_near()) return signed_distance(point, count).side;
+        if (by_near()) return tell_distance(point, count).side;
         return in_ieee_mode([&] { return side_by_number(point, count); });
     }
-    /// On the surface, that of a point next to it.
-    template <class Count = const NoVisits>
-    double winding_number(const Point& point, Count& count = no_visits) const {
+    template <class Count>
+    double tell_winding_number(const Point& point, Count& count) const {
         if (!finite(point)) return std::numeric_limits<double>::quiet_NaN();
         return in_ieee_mode([&] {
             if constexpr (dimension == 3)
@@ -177,12 +179,10 @@ public:
             return number_of(asked, crossings(*index_, asked, true, count));
         });
     }
-    /// The magnitude is the root of the squared distance of `closest_point`, rounded once, except that it is
-    /// +0 wherever the side is `on`.
-    template <class Count = const NoVisits>
-    Distance signed_distance(const Point& point, Count& count = no_visits) const {
+    template <class Count>
+    Distance tell_distance(const Point& point, Count& count) const {
         if (!finite(point)) return Distance{.by = by(), .near = {}};
-        const auto near = closest_point(*index_, point, {}, count);
+        const auto near = closest_point(*index_, point, PointOptions(), KeepAll(), count);
         return in_ieee_mode([&] {
             return with_side(near,
                              by_near() ? side_beside(near, point, count) : side_by_number(point, count));
@@ -194,7 +194,8 @@ public:
     /// Write the answer to point number n to place n. Rays and closest points are asked some at a time.
     void write_sides(const Points& points, std::span<Side> sides) const {
         if (by_near() || by() == SideBy::expansion) {
-            for (std::size_t i = 0; i < points.size(); ++i) sides[points.number(i)] = side(points[i]);
+            for (std::size_t i = 0; i < points.size(); ++i)
+                sides[points.number(i)] = tell_side(points[i], no_visits);
             return;
         }
         for_each_crossed(points, false, [&](std::size_t i, const Ray& asked, const CrossingCount& found) {
@@ -204,7 +205,7 @@ public:
     void write_winding_numbers(const Points& points, std::span<double> numbers) const {
         if (by() == SideBy::expansion) {
             for (std::size_t i = 0; i < points.size(); ++i)
-                numbers[points.number(i)] = winding_number(points[i]);
+                numbers[points.number(i)] = tell_winding_number(points[i], no_visits);
             return;
         }
         for_each_crossed(points, true, [&](std::size_t i, const Ray& asked, const CrossingCount& found) {
@@ -220,7 +221,7 @@ public:
             const std::size_t count = std::min(at_once, points.size() - begin);
             for (std::size_t k = 0; k < count; ++k) some[k] = points[begin + k];
             const std::span<const Point> asked(some.data(), count);
-            closest_points(*index_, asked, std::span(near), serial_executor());
+            closest_points(*index_, asked, near, {.threads = serial_executor()});
             if (by_near()) {
                 for (std::size_t k = 0; k < count; ++k)
                     if (near[k]) pseudonormals_.prefetch(near[k].element);
@@ -302,7 +303,8 @@ private:
 
     template <class Count>
     Side side_by_number(const Point& p, Count& count) const {
-        if (by() == SideBy::expansion) return winding_number(p, count) >= 0.5 ? Side::inside : Side::outside;
+        if (by() == SideBy::expansion)
+            return tell_winding_number(p, count) >= 0.5 ? Side::inside : Side::outside;
         if (plainly_outside(p)) return Side::outside;
         const Ray asked = soonest_out(p, bounds_);
         return side_of(asked, crossings(*index_, asked, false, count), count);
@@ -342,7 +344,8 @@ private:
         if (!(distance > 4 * error)) return side_by_number(p, count);
         const double reach = product(distance, 1 + share) + 2 * error;
         const Scratch<std::vector<Near<Scalar, dimension>>> closest;
-        within(*index_, p, {.radius2 = rounded_up<Scalar>(product(reach, reach))}, *closest, count);
+        within(*index_, p, PointOptions::anywhere, *closest,
+               {.radius2 = rounded_up<Scalar>(product(reach, reach))}, KeepAll(), count);
         int side = 0;
         for (const auto& other : *closest) {
             const int of_other = pseudonormals_.side(other.element, p);
@@ -377,41 +380,83 @@ private:
     std::optional<Expanded> expansion_;
 };
 
+/// By which threads a batch is answered.
+struct SideOptions {
+    Threads threads = {};
+};
+
+/// The side of a surface that a point is on. The surface is a Solid, OrientedPoints or an AnySolid. `count`
+/// may be a Visits.
+template <class S, class Count = const NoVisits>
+Side side(const S& solid, const typename S::Point& point, const SideOptions& = {}, Count& count = no_visits) {
+    return solid.tell_side(point, count);
+}
+/// How often the surface winds around a point. On the surface, that of a point next to it; NaN about a point
+/// that is not finite.
+template <class S, class Count = const NoVisits>
+double winding_number(const S& solid, const typename S::Point& point, const SideOptions& = {},
+                      Count& count = no_visits) {
+    return solid.tell_winding_number(point, count);
+}
+/// The distance to the surface of a solid, negative inside, and all that tells it: the side and the closest
+/// point. The magnitude is the root of the squared distance of `closest_point`, rounded once, except that it
+/// is +0 wherever the side is `on`.
+template <class S, class Count = const NoVisits>
+SignedDistance<typename S::Scalar, S::dimension> closest_side(const S& solid, const typename S::Point& point,
+                                                              const SideOptions& = {},
+                                                              Count& count = no_visits) {
+    return solid.tell_distance(point, count);
+}
+/// That distance alone.
+template <class S, class Count = const NoVisits>
+typename S::Scalar signed_distance(const S& solid, const typename S::Point& point,
+                                   const SideOptions& options = {}, Count& count = no_visits) {
+    return closest_side(solid, point, options, count).distance;
+}
+
 namespace detail {
-/// Calls answer(part) for parts of a batch, which together are all of its points.
-template <class S, class Answer>
-void ask_solid_in_parts(const S& solid, const Strided<typename S::Point>& points, Threads threads,
-                        Answer answer) {
-    IeeeExecutor executor(threads.over(points.size()));
-    for_each_part(points, solid.bounds(), solid.index().bytes(), executor, answer);
+/// Answers for each point of a batch: by many(part), or where visits are counted by one(i, count).
+template <class S, class Answer, class Many, class One>
+void ask_solid(const S& solid, const Strided<typename S::Point>& points, std::span<Answer> found,
+               const SideOptions& options, std::span<Visits> visits, Many many, One one) {
+    expect_room("points", points.size(), found.size());
+    expect_visits(visits, points.size());
+    IeeeExecutor executor(options.threads.over(points.size()));
+    for_each_part(points, solid.bounds(), solid.bytes_of_index(), executor, [&](const auto& part) {
+        if (visits.empty()) return many(part);
+        for (std::size_t k = 0; k < part.size(); ++k) {
+            const std::size_t i = part.number(k);
+            found[i] = one(points[i], visits[i]);
+        }
+    });
 }
 }  // namespace detail
 
-/// Writes the side of point i to sides[i], as `Solid::side` tells it; `winding_numbers` and
-/// `signed_distances` write the other answers. Large batches are cut into pieces over all cores, unless an
-/// executor is given (Threads), and answered in an order in which neighbours follow each other, for which
-/// they take 16 bytes a point. The points may have any layout in memory. Throws InputError, and writes
-/// nothing, if there are fewer places for answers than points.
-template <class I>
-void sides(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<Side> sides_of,
-           Threads threads = {}) {
-    detail::expect_room("points", points.size(), sides_of.size());
-    detail::ask_solid_in_parts(solid, points, threads,
-                               [&](const auto& part) { solid.write_sides(part, sides_of); });
+/// Writes the side of point i to found[i], as `side` tells it; `winding_numbers` and `signed_distances` write
+/// the other answers. Large batches are answered in an order in which neighbours follow each other, for which
+/// they take 16 bytes a point.
+template <class S>
+void sides(const S& solid, const Strided<typename S::Point>& points, std::span<Side> found,
+           const SideOptions& options = {}, std::span<Visits> visits = {}) {
+    detail::ask_solid(
+        solid, points, found, options, visits, [&](const auto& part) { solid.write_sides(part, found); },
+        [&](const auto& point, auto& count) { return solid.tell_side(point, count); });
 }
-template <class I>
-void winding_numbers(const Solid<I>& solid, const Strided<PointOf<I>>& points, std::span<double> numbers,
-                     Threads threads = {}) {
-    detail::expect_room("points", points.size(), numbers.size());
-    detail::ask_solid_in_parts(solid, points, threads,
-                               [&](const auto& part) { solid.write_winding_numbers(part, numbers); });
+template <class S>
+void winding_numbers(const S& solid, const Strided<typename S::Point>& points, std::span<double> found,
+                     const SideOptions& options = {}, std::span<Visits> visits = {}) {
+    detail::ask_solid(
+        solid, points, found, options, visits,
+        [&](const auto& part) { solid.write_winding_numbers(part, found); },
+        [&](const auto& point, auto& count) { return solid.tell_winding_number(point, count); });
 }
-template <class I>
-void signed_distances(const Solid<I>& solid, const Strided<PointOf<I>>& points,
-                      std::span<typename I::Scalar> distances, Threads threads = {}) {
-    detail::expect_room("points", points.size(), distances.size());
-    detail::ask_solid_in_parts(solid, points, threads,
-                               [&](const auto& part) { solid.write_distances(part, distances); });
+template <class S>
+void signed_distances(const S& solid, const Strided<typename S::Point>& points,
+                      std::span<typename S::Scalar> found, const SideOptions& options = {},
+                      std::span<Visits> visits = {}) {
+    detail::ask_solid(
+        solid, points, found, options, visits, [&](const auto& part) { solid.write_distances(part, found); },
+        [&](const auto& point, auto& count) { return solid.tell_distance(point, count).distance; });
 }
 
 }  // namespace hedgerow

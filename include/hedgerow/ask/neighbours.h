@@ -8,34 +8,27 @@
 
 #include <hedgerow/base/strided.h>
 #include <hedgerow/geometry/periods.h>
+#include <hedgerow/geometry/radius.h>
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/concepts.h>
+#include <hedgerow/queries/lists.h>
 #include <hedgerow/queries/pairs_within.h>
 
 namespace hedgerow {
 
-/// Lists of neighbours: those of point i stand from offsets[i] to offsets[i + 1], ascending. The vectors are
-/// the caller's: what they hold is replaced, and their memory used again.
-template <std::floating_point T>
-struct NeighbourLists {
-    std::vector<std::size_t> offsets;
-    std::vector<PrimitiveId> ids;
-    std::vector<T> distances2;  ///< squared distances, where they are asked for; else empty
-};
-
-template <int D>
 struct NeighbourOptions {
     /// Space repeats after these lengths along each axis, and distances are those to the nearest image; 0
-    /// where it does not. Points may be anywhere.
-    Periods<D> periods = {};
+    /// where it does not. Points may be anywhere. In the plane the third is not read.
+    Periods<3> periods = {};
     /// Each pair once: only neighbours with a greater number are listed.
     bool once = false;
-    bool distances = false;  ///< whether to measure squared distances
+    bool distances = false;  ///< whether to measure squared distances; else lists have no column of them
     /// If not null: gets the points in the order of cells in rows, and lists are in that order too. Number i
     /// is then that of point (*order)[i] of the array, in the lists and in what they hold. A simulation that
     /// puts its arrays in this order keeps near particles near in memory, and lists are written as they are
     /// found: else they are renumbered, which takes twice to five times as long as to find them.
     std::vector<PrimitiveId>* order = nullptr;
+    Threads threads = {};
 };
 
 namespace detail {
@@ -46,10 +39,10 @@ struct CellNeighbours {
     using Points = Strided<Vec<T, D>>;
     static constexpr bool compiled =
         (D == 2 || D == 3) && (std::same_as<T, float> || std::same_as<T, double>);
-    static std::size_t list(const Points& points, T radius, NeighbourLists<T>& lists,
-                            const NeighbourOptions<D>& options, Threads threads);
-    static std::size_t list(const Points& points, const Points& asking, T radius, NeighbourLists<T>& lists,
-                            const NeighbourOptions<D>& options, Threads threads);
+    static void list(const Points& points, T max_distance2, NearLists<T>& lists,
+                     const NeighbourOptions& options);
+    static void list(const Points& points, const Points& asking, T max_distance2, NearLists<T>& lists,
+                     const NeighbourOptions& options);
     /// Writes the pairs of points of one set, each once, or of two, that are within a squared distance.
     static std::size_t pairs(const Points& points, T max_distance2, std::vector<PairWithin<T>>& found,
                              Threads threads);
@@ -58,7 +51,7 @@ struct CellNeighbours {
     /// Lists all `points` within a squared distance of each of `asking`, in the order of (distance², id).
     /// Returns false, and lists nothing, where a tree may be faster: for few that ask, for cells that hold
     /// far more points than are near, and for coordinates that no cell has.
-    static bool within(const Points& points, const Points& asking, T max_distance2, NeighbourLists<T>& lists,
+    static bool within(const Points& points, const Points& asking, T max_distance2, NearLists<T>& lists,
                        Threads threads);
 };
 /// The points of a set in an array: its own, or copied to `copies`.
@@ -73,44 +66,50 @@ Strided<V> points_of(const P& set, std::vector<V>& copies) {
 }
 }  // namespace detail
 
-/// Lists for each point the others within a radius: those whose distance, in double and rounded once to T, is
-/// at most the radius (geometry/radius.h), as `within` of each point finds them but for the point itself.
-/// Coincident points are neighbours. Nobody has any if the radius is negative or NaN. Returns how many
-/// neighbours are listed.
+/// Lists for each point the others within a radius, ascending by number: those whose distance, in double and
+/// rounded once to T, is at most the radius (geometry/radius.h), as `within` of each point finds them but for
+/// the point itself. Coincident points are neighbours. Nobody has any if the radius is negative or NaN.
 ///
 /// O(n + pairs) time, wherever the points are, and memory for the lists and 24 to 60 bytes a point. Large
-/// arrays are listed on all cores, unless an executor is given (Threads); the lists are the same for any
-/// threads and instruction set. Points are sorted by cells of the radius's length (the method of linked
-/// cells, Hockney and Eastwood, Computer Simulation Using Particles, 1981, section 8.4; cells are stored as
-/// rows of a sorted array); vectors of float relative to a cell decide which points are near, and those in
-/// doubt are measured in double.
+/// arrays are listed on all cores, or the threads of the options; the lists are the same for any threads and
+/// instruction set. Points are sorted by cells of the radius's length (the method of linked cells, Hockney
+/// and Eastwood, Computer Simulation Using Particles, 1981, section 8.4; cells are stored as rows of a sorted
+/// array); vectors of float relative to a cell decide which points are near, and those in doubt are measured
+/// in double.
 ///
 /// Throws InputError for a point whose coordinate is NaN, infinite or beyond `largest_coordinate`, and
 /// UsageError for a period that is negative, NaN or infinite. T is float or double, D 2 or 3.
 template <std::floating_point T, int D>
-std::size_t neighbours_within(const Strided<Vec<T, D>>& points, T radius, NeighbourLists<T>& lists,
-                              const NeighbourOptions<D>& options = {}, Threads threads = {}) {
-    return detail::CellNeighbours<T, D>::list(points, radius, lists, options, threads);
+void neighbours_within(const Strided<Vec<T, D>>& points, double radius, NearLists<T>& lists,
+                       const NeighbourOptions& options = {}) {
+    detail::CellNeighbours<T, D>::list(points, largest_square_within(greatest_at_most<T>(radius)), lists,
+                                       options);
 }
 /// Lists for each point of `asking` all `points` within a radius of it, in the order of `asking`. Throws
 /// UsageError also for the options `once` and `order`.
 template <std::floating_point T, int D>
-std::size_t neighbours_within(const Strided<Vec<T, D>>& points, const Strided<Vec<T, D>>& asking, T radius,
-                              NeighbourLists<T>& lists, const NeighbourOptions<D>& options = {},
-                              Threads threads = {}) {
-    return detail::CellNeighbours<T, D>::list(points, asking, radius, lists, options, threads);
+void neighbours_within(const Strided<Vec<T, D>>& points, const Strided<Vec<T, D>>& asking, double radius,
+                       NearLists<T>& lists, const NeighbourOptions& options = {}) {
+    detail::CellNeighbours<T, D>::list(points, asking, largest_square_within(greatest_at_most<T>(radius)),
+                                       lists, options);
 }
 /// Of vectors of points.
 template <std::floating_point T, int D>
-std::size_t neighbours_within(const std::vector<Vec<T, D>>& points, T radius, NeighbourLists<T>& lists,
-                              const NeighbourOptions<D>& options = {}, Threads threads = {}) {
-    return detail::CellNeighbours<T, D>::list(points, radius, lists, options, threads);
+void neighbours_within(const std::vector<Vec<T, D>>& points, double radius, NearLists<T>& lists,
+                       const NeighbourOptions& options = {}) {
+    neighbours_within(Strided<Vec<T, D>>(points), radius, lists, options);
 }
 template <std::floating_point T, int D>
-std::size_t neighbours_within(const std::vector<Vec<T, D>>& points, const std::vector<Vec<T, D>>& asking,
-                              T radius, NeighbourLists<T>& lists, const NeighbourOptions<D>& options = {},
-                              Threads threads = {}) {
-    return detail::CellNeighbours<T, D>::list(points, asking, radius, lists, options, threads);
+void neighbours_within(const std::vector<Vec<T, D>>& points, const std::vector<Vec<T, D>>& asking,
+                       double radius, NearLists<T>& lists, const NeighbourOptions& options = {}) {
+    neighbours_within(Strided<Vec<T, D>>(points), Strided<Vec<T, D>>(asking), radius, lists, options);
+}
+/// Returns the lists: of a vector of points, or of Strided ones.
+template <class Points>
+auto neighbours_within(const Points& points, double radius, const NeighbourOptions& options = {}) {
+    NearLists<typename std::decay_t<decltype(points[0])>::Scalar> lists;
+    neighbours_within(points, radius, lists, options);
+    return lists;
 }
 
 }  // namespace hedgerow

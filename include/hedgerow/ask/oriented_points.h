@@ -41,23 +41,33 @@ public:
     }
     OrientedPoints(I&&, const Strided<Point>&, double = 0, Threads = {}) = delete;
 
-    /// NaN about a point that is not finite.
-    template <class Count = const NoVisits>
-    double winding_number(const Point& point, Count& count = no_visits) const {
+    // What the functions of ask/insides.h ask.
+
+    template <class Count>
+    double tell_winding_number(const Point& point, Count& count) const {
         if (!finite(point)) return std::numeric_limits<double>::quiet_NaN();
         return in_ieee_mode([&] {
             return expansion_->winding_number(parts(expansion_->scale()), Vec3d(point), error_, count);
         });
     }
     /// Inside where the winding number is at least one half, else outside.
-    template <class Count = const NoVisits>
-    Side side(const Point& point, Count& count = no_visits) const {
-        return winding_number(point, count) >= 0.5 ? Side::inside : Side::outside;
+    template <class Count>
+    Side tell_side(const Point& point, Count& count) const {
+        return tell_winding_number(point, count) >= 0.5 ? Side::inside : Side::outside;
+    }
+    void write_winding_numbers(const PointBatch<Scalar, 3>& points, std::span<double> numbers) const {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            numbers[points.number(i)] = tell_winding_number(points[i], no_visits);
+    }
+    void write_sides(const PointBatch<Scalar, 3>& points, std::span<Side> sides) const {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            sides[points.number(i)] = tell_side(points[i], no_visits);
     }
 
     const I& index() const { return *index_; }
     const Box<Scalar, 3>& bounds() const { return index_->bounds(); }
     double error() const { return error_; }
+    std::size_t bytes_of_index() const { return index_->bytes(); }
     /// Bytes beyond the index and the normals.
     std::size_t bytes() const { return expansion_->bytes(); }
 
@@ -79,17 +89,5 @@ private:
     double error_;
     std::optional<detail::ExpandedIndex<I, Parts>> expansion_;
 };
-
-/// Writes the winding number about point i to numbers[i], as `OrientedPoints::winding_number` tells it, in
-/// the order and on the threads that `winding_numbers` of a Solid takes.
-template <class I>
-void winding_numbers(const OrientedPoints<I>& surface, const Strided<PointOf<I>>& points,
-                     std::span<double> numbers, Threads threads = {}) {
-    detail::expect_room("points", points.size(), numbers.size());
-    detail::ask_solid_in_parts(surface, points, threads, [&](const auto& part) {
-        for (std::size_t k = 0; k < part.size(); ++k)
-            numbers[part.number(k)] = surface.winding_number(part[k]);
-    });
-}
 
 }  // namespace hedgerow

@@ -16,16 +16,26 @@
 
 namespace hedgerow {
 
+/// How far questions of two indexes look, and how exactly: as those of a point do (PointOptions).
+struct DistanceOptions {
+    double radius = PointOptions::anywhere, radius2 = PointOptions::anywhere;
+    double factor = 1;
+};
+struct PairOptions {
+    Threads threads = {};
+};
+
 /// The closest points of two sets within the options' distance, their squared distance, and the primitives
 /// that they are on; an Apart that is false if there are none so close. Equal distances go to the lowest
 /// (element_a, element_b). Triangles that meet are at distance 0 exactly. For triangles in space, and for
 /// points and any primitives with a closest point. `count` may be a Visits, of pairs.
 template <class SA, class A, class SB, class B, class Count = const NoVisits>
 Apart<typename A::Scalar, A::dimension> minimum_distance(const Index<SA, A>& a, const Index<SB, B>& b,
-                                                         const NearOptions<typename A::Scalar>& options = {},
+                                                         const DistanceOptions& options = {},
                                                          Count& count = no_visits) {
+    const PointOptions near{.radius = options.radius, .radius2 = options.radius2, .factor = options.factor};
     return in_ieee_mode([&] {
-        MinimumDistance query(a.primitives(), b.primitives(), options);
+        MinimumDistance query(a.primitives(), b.primitives(), NearLimits<typename A::Scalar>(near));
         walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
                    query, count);
         return query.answer();
@@ -116,12 +126,19 @@ struct StopAtFirst {
 
 /// Writes the pairs of triangles of two meshes that share a point to `found`, ascending: positions in both
 /// sets. Touching counts; the answers are those of exact arithmetic (geometry/triangles_meet.h). Returns how
-/// many there are. Large sets are walked on all cores, unless an executor is given (Threads).
+/// many there are. Large sets are walked on all cores, or the threads of the options.
 template <class SA, TriangleSet A, class SB, TriangleSet B>
 std::size_t crossing_pairs(const Index<SA, A>& a, const Index<SB, B>& b, std::vector<ElementPair>& found,
-                           Threads threads = {}) {
+                           const PairOptions& options = {}) {
     return detail::list_pairs(
-        a, b, threads, [&](auto f) { return Crossings(triangles_of(a), triangles_of(b), f); }, found);
+        a, b, options.threads, [&](auto f) { return Crossings(triangles_of(a), triangles_of(b), f); }, found);
+}
+template <class SA, TriangleSet A, class SB, TriangleSet B>
+std::vector<ElementPair> crossing_pairs(const Index<SA, A>& a, const Index<SB, B>& b,
+                                        const PairOptions& options = {}) {
+    std::vector<ElementPair> found;
+    crossing_pairs(a, b, found, options);
+    return found;
 }
 /// Whether any triangles of two meshes share a point. Stops at the first pair.
 template <class SA, TriangleSet A, class SB, TriangleSet B>
@@ -138,12 +155,18 @@ bool any_crossing(const Index<SA, A>& a, const Index<SB, B>& b) {
 /// Writes the pairs (i, j), i < j, of triangles of one mesh that intersect to `found`, ascending. Neighbours,
 /// which share corners by position, intersect only if they meet beyond these: folded onto each other,
 /// overlapping, piercing (geometry/meet_beyond_shared.h). Exact. Returns how many pairs there are. Large
-/// meshes are walked on all cores, unless an executor is given (Threads).
+/// meshes are walked on all cores, or the threads of the options.
 template <class S, TriangleSet P>
 std::size_t self_intersections(const Index<S, P>& index, std::vector<ElementPair>& found,
-                               Threads threads = {}) {
+                               const PairOptions& options = {}) {
     return detail::list_pairs(
-        index, threads, [&](auto f) { return SelfCrossings(triangles_of(index), f); }, found);
+        index, options.threads, [&](auto f) { return SelfCrossings(triangles_of(index), f); }, found);
+}
+template <class S, TriangleSet P>
+std::vector<ElementPair> self_intersections(const Index<S, P>& index, const PairOptions& options = {}) {
+    std::vector<ElementPair> found;
+    self_intersections(index, found, options);
+    return found;
 }
 /// Whether any triangles of a mesh intersect. Stops at the first pair.
 template <class S, TriangleSet P>
@@ -156,28 +179,46 @@ bool any_self_intersection(const Index<S, P>& index) {
     });
 }
 
-/// Writes all pairs (i, j), i < j, of points of one set that are within the options' distance of each other
-/// to `found`, each once and ascending, with the squared distance: what `within` finds for each point, so
-/// `pairs_within(index, {.radius = 0.5f}, found)`. None if the radius is negative or NaN. Returns how many
-/// there are. Takes memory for all pairs, which may be n²/2 of them, and as much again while it runs. Large
-/// sets are searched on all cores, unless an executor is given (Threads); the list is the same. Whatever the
-/// index, the points are sorted by cells for it (ask/neighbours.h), which is faster than to walk one.
+/// Writes all pairs (i, j), i < j, of points of one set that are within a radius of each other to `found`,
+/// each once and ascending, with the squared distance: what `within` finds for each point. None if the radius
+/// is negative or NaN. Returns how many there are. Takes memory for all pairs, which may be n²/2 of them, and
+/// as much again while it runs. Large sets are searched on all cores, or the threads of the options; the list
+/// is the same. Whatever the index, the points are sorted by cells for it (ask/neighbours.h), which is faster
+/// than to walk one.
 template <class S, PointSet P>
-std::size_t pairs_within(const Index<S, P>& index, const NearOptions<typename P::Scalar>& options,
-                         std::vector<PairWithin<typename P::Scalar>>& found, Threads threads = {}) {
-    std::vector<Vec<typename P::Scalar, P::dimension>> copies;
-    return detail::CellNeighbours<typename P::Scalar, P::dimension>::pairs(
-        detail::points_of(index.primitives(), copies), options.max_distance2(), found, threads);
+std::size_t pairs_within(const Index<S, P>& index, double radius,
+                         std::vector<PairWithin<typename P::Scalar>>& found,
+                         const PairOptions& options = {}) {
+    using T = typename P::Scalar;
+    std::vector<Vec<T, P::dimension>> copies;
+    return detail::CellNeighbours<T, P::dimension>::pairs(detail::points_of(index.primitives(), copies),
+                                                          largest_square_within(greatest_at_most<T>(radius)),
+                                                          found, options.threads);
+}
+template <class S, PointSet P>
+std::vector<PairWithin<typename P::Scalar>> pairs_within(const Index<S, P>& index, double radius,
+                                                         const PairOptions& options = {}) {
+    std::vector<PairWithin<typename P::Scalar>> found;
+    pairs_within(index, radius, found, options);
+    return found;
 }
 /// Finds the pairs of a point of A and one of B.
 template <class SA, PointSet A, class SB, PointSet B>
-std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,
-                         const NearOptions<typename A::Scalar>& options,
-                         std::vector<PairWithin<typename A::Scalar>>& found, Threads threads = {}) {
-    std::vector<Vec<typename A::Scalar, A::dimension>> copies_of_a, copies_of_b;
-    return detail::CellNeighbours<typename A::Scalar, A::dimension>::pairs(
+std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b, double radius,
+                         std::vector<PairWithin<typename A::Scalar>>& found,
+                         const PairOptions& options = {}) {
+    using T = typename A::Scalar;
+    std::vector<Vec<T, A::dimension>> copies_of_a, copies_of_b;
+    return detail::CellNeighbours<T, A::dimension>::pairs(
         detail::points_of(a.primitives(), copies_of_a), detail::points_of(b.primitives(), copies_of_b),
-        options.max_distance2(), found, threads);
+        largest_square_within(greatest_at_most<T>(radius)), found, options.threads);
+}
+template <class SA, PointSet A, class SB, PointSet B>
+std::vector<PairWithin<typename A::Scalar>> pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,
+                                                         double radius, const PairOptions& options = {}) {
+    std::vector<PairWithin<typename A::Scalar>> found;
+    pairs_within(a, b, radius, found, options);
+    return found;
 }
 
 }  // namespace hedgerow

@@ -1,7 +1,8 @@
 /// The questions of a point, one at a time or many in a batch: the closest point, the nearest primitives, and
-/// those within a distance.
+/// those within a distance. ask/asking.h tells what all questions share.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <span>
 #include <vector>
@@ -18,33 +19,106 @@ namespace hedgerow {
 template <class I>
 using PointOf = Vec<typename I::Scalar, I::dimension>;
 template <class I>
-using NearOf = Near<typename I::Scalar, I::dimension>;
-
+using PointsOf = Strided<PointOf<I>>;
 template <class I>
-using NearOptionsOf = NearOptions<typename I::Scalar>;
+using NearOf = Near<typename I::Scalar, I::dimension>;
+template <class I>
+using NearListsOf = NearLists<typename I::Scalar, IdOf<typename I::Primitives>>;
+
+/// A filter of what is near: callable with a Near, or with the number of a query and a Near (queries/hit.h).
+template <class F, class I>
+concept NearFilterOf = detail::Asks<F, NearOf<I>> || detail::Asks<F, std::size_t, NearOf<I>>;
+
+namespace detail {
+/// The answer of a query Q of a point. Kernels have no filter.
+template <template <class, class> class Q, class I, class Filter, class Count, class... Arguments>
+auto answer_near(const I& index, const Filter& filter, Count& count, Arguments&&... arguments) {
+    using P = typename I::Primitives;
+    if constexpr (std::same_as<Filter, KeepAll>)
+        return index.template answer<Q<P, KeepAll>>(count, arguments...);
+    else
+        return index.template answer<Q<P, Filter>>(count, arguments..., filter);
+}
+template <class I, class Filter, class Count>
+std::size_t nearest(const I& index, const PointOf<I>& point, std::size_t k, std::vector<NearOf<I>>& found,
+                    const NearLimits<typename I::Scalar>& limits, const Filter& filter, Count& count) {
+    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
+                  requires { Uncounted::nearest(index, point, k, limits, found); })
+        return Uncounted::nearest(index, point, k, limits, found);
+    else
+        return answer_near<Nearest>(index, filter, count, point, k, limits, found);
+}
+template <class I, class Filter, class Count>
+std::size_t within(const I& index, const PointOf<I>& point, std::vector<NearOf<I>>& found,
+                   const NearLimits<typename I::Scalar>& limits, const Filter& filter, Count& count) {
+    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
+                  requires { Uncounted::within(index, point, limits, found); })
+        return Uncounted::within(index, point, limits, found);
+    else
+        return answer_near<Within>(index, filter, count, point, limits, found);
+}
+/// The options of a question that has a radius of its own. Both hold; nothing is within NaN.
+inline PointOptions within_both(double radius, PointOptions options) {
+    if (radius < options.radius || std::isnan(radius)) options.radius = radius;
+    return options;
+}
+}  // namespace detail
 
 /// The closest point of any primitive within the options' distance; a Near that is false if there is no such
 /// primitive.
-template <class S, class P, class Count = const NoVisits>
-inline Near<typename P::Scalar, P::dimension> closest_point(
-    const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
-    const NearOptions<typename P::Scalar>& options = {}, Count& count = no_visits) {
-    return index.template answer<ClosestPoint<P>>(count, point, options);
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+inline NearOf<I> closest_point(const I& index, const PointOf<I>& point, const PointOptions& options = {},
+                               const Filter& filter = {}, Count& count = no_visits) {
+    return detail::answer_near<ClosestPoint>(index, filter, count, point,
+                                             NearLimits<typename I::Scalar>(options));
 }
+template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
+NearOf<I> closest_point(const I& index, const PointOf<I>& point, const Filter& filter,
+                        Count& count = no_visits) {
+    return closest_point(index, point, PointOptions(), filter, count);
+}
+
 /// Writes the k nearest primitives within the options' distance to `found`, in the order of (distance²,
 /// instance, element). Returns how many there are.
-template <class S, class P, class Count = const NoVisits>
-std::size_t nearest(const Index<S, P>& index, const Vec<typename P::Scalar, P::dimension>& point,
-                    std::size_t k, std::vector<Near<typename P::Scalar, P::dimension>>& found,
-                    const NearOptions<typename P::Scalar>& options = {}, Count& count = no_visits) {
-    return index.template answer<Nearest<P>>(count, point, k, options, found);
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::size_t nearest(const I& index, const PointOf<I>& point, std::size_t k, std::vector<NearOf<I>>& found,
+                    const PointOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
+    return detail::nearest(index, point, k, found, NearLimits<typename I::Scalar>(options), filter, count);
 }
-/// Writes all primitives within the options' distance to `found`, in the order of (distance², instance,
-/// element). Returns how many there are: `within(index, p, {.radius = 0.5f}, found)`.
-template <class I, class Count = const NoVisits>
-std::size_t within(const I& index, const PointOf<I>& point, const NearOptionsOf<I>& options,
-                   std::vector<NearOf<I>>& found, Count& count = no_visits) {
-    return index.template answer<Within<typename I::Primitives>>(count, point, options, found);
+template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
+std::size_t nearest(const I& index, const PointOf<I>& point, std::size_t k, std::vector<NearOf<I>>& found,
+                    const Filter& filter, Count& count = no_visits) {
+    return nearest(index, point, k, found, PointOptions(), filter, count);
+}
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::vector<NearOf<I>> nearest(const I& index, const PointOf<I>& point, std::size_t k,
+                               const PointOptions& options = {}, const Filter& filter = {},
+                               Count& count = no_visits) {
+    std::vector<NearOf<I>> found;
+    nearest(index, point, k, found, options, filter, count);
+    return found;
+}
+
+/// Writes all primitives within a radius to `found`, in the order of (distance², instance, element). Returns
+/// how many there are.
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::size_t within(const I& index, const PointOf<I>& point, double radius, std::vector<NearOf<I>>& found,
+                   const PointOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
+    const NearLimits<typename I::Scalar> limits(detail::within_both(radius, options));
+    return detail::within(index, point, found, limits, filter, count);
+}
+template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
+std::size_t within(const I& index, const PointOf<I>& point, double radius, std::vector<NearOf<I>>& found,
+                   const Filter& filter, Count& count = no_visits) {
+    return within(index, point, radius, found, PointOptions(), filter, count);
+}
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::vector<NearOf<I>> within(const I& index, const PointOf<I>& point, double radius,
+                              const PointOptions& options = {}, const Filter& filter = {},
+                              Count& count = no_visits) {
+    std::vector<NearOf<I>> found;
+    within(index, point, radius, found, options, filter, count);
+    return found;
 }
 
 namespace detail {
@@ -59,178 +133,234 @@ bool answered_by_kernel(Many many) {
         return false;
     }
 }
-/// Answers a question Q of each of many points: by many(kernel, part), unless there is no kernel or it
-/// returns false; then by one(i).
-template <class Q, class S, class P, class Many, class One>
-void ask_in_parts(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
-                  Threads threads, Many many, One one) {
-    for_each_part(points, index.bounds(), index.bytes(), threads.over(points.size()), [&](const auto& part) {
-        if (answered_by_kernel<Q, Index<S, P>>([&](const auto& kernel) { return many(kernel, part); }))
+/// Answers a question Q of each of many points: by many(kernel, part), unless there is no kernel,
+/// `one_by_one` is true or it returns false; then by one(i).
+template <class Q, class I, class Many, class One>
+void ask_in_parts(const I& index, const PointsOf<I>& points, Executor& executor, bool one_by_one, Many many,
+                  One one) {
+    for_each_part(points, index.bounds(), index.bytes(), executor, [&](const auto& part) {
+        if (!one_by_one && answered_by_kernel<Q, I>([&](const auto& kernel) { return many(kernel, part); }))
             return;
         for (std::size_t i = 0; i < part.size(); ++i) one(part.number(i));
     });
 }
-}  // namespace detail
-
-/// Writes the closest point for each of `points`, as `closest_point` finds it. The points may have any layout
-/// in memory (base/strided.h); a vector or a span of points will do. Throws InputError, and writes nothing,
-/// if there are fewer places for answers than points.
-template <class S, class P>
-void closest_points(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
-                    std::span<Near<typename P::Scalar, P::dimension>> found, Threads threads = {},
-                    const NearOptions<typename P::Scalar>& options = {}) {
-    detail::expect_room("points", points.size(), found.size());
-    detail::ask_in_parts<ClosestPoint<P>>(
-        index, points, threads,
-        [&](const auto& kernel, const auto& part) {
-            return kernel.answer_many(index, part, options, found.data());
-        },
-        [&](std::size_t i) { found[i] = closest_point(index, points[i], options); });
+inline PrimitiveId element_of(PrimitiveId id) {
+    return id;
+}
+inline PrimitiveId element_of(const PlacedId& id) {
+    return id.element;
 }
 
-/// The arrays of a caller in which a batch of k nearest writes its answers: k places for each point, in the
-/// order of (distance², instance, element). Places beyond what is found have no primitive and an infinite
-/// distance. An array that is empty is not written.
-template <class P>
-struct NearestColumns {
-    std::span<IdOf<P>> ids;
-    std::span<typename P::Scalar> distances2;
-};
-/// Writes the k nearest primitives for each of `points`, as `nearest` finds them: their positions in the set,
-/// or PlacedIds among instances, and their squared distances. Throws InputError, and writes nothing, if an
-/// array that is not empty has less room than k places for each point.
-template <class S, class P>
-void nearest(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
-             std::size_t k, const NearestColumns<P>& columns, Threads threads = {},
-             const NearOptions<typename P::Scalar>& options = {}) {
-    using Found = Near<typename P::Scalar, P::dimension>;
-    for (const std::size_t room : {columns.ids.size(), columns.distances2.size()})
-        if (room > 0) detail::expect_room("places (k for each point)", k * points.size(), room);
-    if (k == 0) return;
-    detail::ask_in_parts<Nearest<P>>(
-        index, points, threads,
-        [&](const auto& kernel, const auto& part) {
-            return kernel.answer_many(index, part, k, options, columns.ids.data(), columns.distances2.data());
-        },
-        [&](std::size_t i) {
-            const Scratch<std::vector<Found>> found;
-            nearest(index, points[i], k, *found, options);
-            for (std::size_t j = 0; j < k; ++j) {
-                const Found near = j < found->size() ? (*found)[j] : Found();
-                if (!columns.ids.empty()) columns.ids[i * k + j] = Identity<P>::of(near);
-                if (!columns.distances2.empty()) columns.distances2[i * k + j] = near.distance2;
-            }
-        });
-}
-
-/// Lists of a batch in columns: those of point i stand from offsets[i] to offsets[i + 1], in the order of
-/// (distance², instance, element). The vectors are the caller's: what they hold is replaced, and their memory
-/// used again.
-template <class P>
-struct ListColumns {
-    std::vector<std::size_t> offsets;
-    std::vector<IdOf<P>> ids;  ///< positions in the set, or PlacedIds among instances
-    std::vector<typename P::Scalar> distances2;
-
-    void clear() { offsets.assign(1, 0), ids.clear(), distances2.clear(); }
-    /// Appends the lists of more points.
-    void append(const ListColumns& more) {
-        for (std::size_t i = 1; i < more.offsets.size(); ++i) offsets.push_back(ids.size() + more.offsets[i]);
-        ids.insert(ids.end(), more.ids.begin(), more.ids.end());
-        distances2.insert(distances2.end(), more.distances2.begin(), more.distances2.end());
+/// Packs rows of `width` places, which end at the first without a primitive: each becomes a list, of at most
+/// `most` and without the element that its query leaves out.
+template <std::floating_point T, class Id>
+void pack_rows(NearLists<T, Id>& rows, std::size_t count, std::size_t width, std::size_t most,
+               const LeaveOut& leave_out) {
+    rows.offsets.resize(count + 1);
+    std::size_t* const offsets = rows.offsets.data();
+    Id* const ids = rows.ids.data();
+    T* const distances2 = rows.distances2.data();
+    std::size_t end = offsets[0] = 0, i = 0;
+    // Rows that are full stay where they are.
+    if (leave_out.none())
+        while (i < count && (width == 0 || element_of(ids[(i + 1) * width - 1]) != no_primitive))
+            offsets[++i] = end += width;
+    for (; i < count; ++i) {
+        const PrimitiveId without = leave_out.of(i);
+        for (std::size_t k = i * width; k < (i + 1) * width && element_of(ids[k]) != no_primitive; ++k) {
+            if (element_of(ids[k]) == without) continue;
+            if (end - offsets[i] == most) break;
+            ids[end] = ids[k], distances2[end] = distances2[k];
+            ++end;
+        }
+        offsets[i + 1] = end;
     }
-};
-
-namespace detail {
+    rows.ids.resize(end), rows.distances2.resize(end);
+}
+/// Takes the elements that queries leave out from their lists.
+template <std::floating_point T, class Id>
+void leave_out_of(NearLists<T, Id>& lists, const LeaveOut& leave_out) {
+    if (leave_out.none()) return;
+    std::size_t end = 0, begin = 0;
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        const PrimitiveId without = leave_out.of(i);
+        for (std::size_t k = std::exchange(begin, lists.offsets[i + 1]), last = begin; k < last; ++k) {
+            if (element_of(lists.ids[k]) == without) continue;
+            lists.ids[end] = lists.ids[k], lists.distances2[end] = lists.distances2[k];
+            ++end;
+        }
+        lists.offsets[i + 1] = end;
+    }
+    lists.ids.resize(end), lists.distances2.resize(end);
+}
 /// Lists the points of a set within the options' distance of each of `points`, in the order of (distance²,
-/// element), by cells that are sorted for it. Returns false, and lists nothing, where a walk may be faster.
-template <PointSet P, class T>
-bool listed_by_cells(const P& set, const Strided<Vec<T, P::dimension>>& points, const NearOptions<T>& options,
-                     NeighbourLists<T>& lists, Threads threads) {
-    if constexpr (CellNeighbours<T, P::dimension>::compiled) {
+/// element), by cells that are sorted for it. Returns false, and lists nothing, where a walk may be faster,
+/// and for other primitives.
+template <class P, class T>
+bool listed_by_cells(const P& set, const Strided<Vec<T, P::dimension>>& points, NearLists<T, IdOf<P>>& lists,
+                     const PointOptions& options) {
+    if constexpr (PointSet<P> && CellNeighbours<T, P::dimension>::compiled) {
         std::vector<Vec<T, P::dimension>> copies;
-        return CellNeighbours<T, P::dimension>::within(points_of(set, copies), points,
-                                                       options.max_distance2(), lists, threads);
+        if (!CellNeighbours<T, P::dimension>::within(
+                points_of(set, copies), points, NearLimits<T>(options).distance2, lists, options.threads))
+            return false;
+        leave_out_of(lists, options.leave_out);
+        return true;
     } else {
         return false;
     }
 }
 }  // namespace detail
 
-/// Writes all primitives within the options' distance of each of `points` to columns. Returns how many there
-/// are in all. Over several threads the call needs the memory of the answers twice while it runs.
+/// Writes the closest point for each of `points`, as `closest_point` finds it. The points may have any layout
+/// in memory (base/strided.h); a vector or a span of points will do.
+template <class I, class Filter = KeepAll>
+void closest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<I>> found,
+                    const PointOptions& options = {}, const Filter& filter = {},
+                    std::span<Visits> visits = {}) {
+    using T = typename I::Scalar;
+    detail::expect_room("points", points.size(), found.size());
+    detail::expect_visits(visits, points.size());
+    options.leave_out.expect(points.size());
+    constexpr bool unfiltered = std::same_as<Filter, KeepAll>;
+    if constexpr (unfiltered &&
+                  requires { detail::Uncounted::closest_points(index, points, found, options); })
+        if (visits.empty()) return detail::Uncounted::closest_points(index, points, found, options);
+    const auto one = [&](std::size_t i) {
+        const NearLimits<T> limits(options, i);
+        found[i] = detail::with_visits(visits, i, [&](auto& count) {
+            return detail::answer_near<ClosestPoint>(index, filter_of_ray(filter, i), count, points[i],
+                                                     limits);
+        });
+    };
+    const NearLimits<T> limits(options);
+    detail::ask_in_parts<ClosestPoint<typename I::Primitives>>(
+        index, points, detail::executor_for<Filter>(options.threads, points.size()),
+        !unfiltered || !visits.empty() || !options.leave_out.none(),
+        [&](const auto& kernel, const auto& part) {
+            return kernel.answer_many(index, part, limits, found.data());
+        },
+        one);
+}
+template <class I, NearFilterOf<I> Filter>
+void closest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<I>> found,
+                    const Filter& filter, std::span<Visits> visits = {}) {
+    closest_points(index, points, found, PointOptions(), filter, visits);
+}
+
+/// Writes the k nearest primitives for each of `points` to lists, as `nearest` finds them: their positions in
+/// the set, or PlacedIds among instances, and their squared distances.
+template <class I, class Filter = KeepAll>
+void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearListsOf<I>& lists,
+             const PointOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
+    using P = typename I::Primitives;
+    using T = typename I::Scalar;
+    detail::expect_visits(visits, points.size());
+    options.leave_out.expect(points.size());
+    constexpr bool unfiltered = std::same_as<Filter, KeepAll>;
+    const NearLimits<T> of_one(options);
+    k = std::min(k, detail::primitives_in(index.primitives()));
+    // A kernel leaves nothing out, so it finds one more.
+    const bool one_by_one =
+        !unfiltered || !visits.empty() || (Instanced<P> && !options.leave_out.none()) || k == 0;
+    const std::size_t width = options.leave_out.none() ? k : k + 1;
+    NearLimits<T> of_kernel = of_one;
+    of_kernel.leave_out = no_primitive;
+    detail::list_in_own_memory(lists, [&](NearListsOf<I>& rows) {
+        if constexpr (unfiltered && requires { detail::Uncounted::nearest(index, points, k, rows, options); })
+            if (visits.empty() && detail::Uncounted::nearest(index, points, k, rows, options)) return;
+        rows.ids.resize(width * points.size()), rows.distances2.resize(width * points.size());
+        detail::ask_in_parts<Nearest<P>>(
+            index, points, detail::executor_for<Filter>(options.threads, points.size()), one_by_one,
+            [&](const auto& kernel, const auto& part) {
+                return kernel.answer_many(index, part, width, of_kernel, rows.ids.data(),
+                                          rows.distances2.data());
+            },
+            [&](std::size_t i) {
+                const Scratch<std::vector<NearOf<I>>> found;
+                const NearLimits<T> limits(options, i);
+                detail::with_visits(visits, i, [&](auto& count) {
+                    return detail::nearest(index, points[i], k, *found, limits, filter_of_ray(filter, i),
+                                           count);
+                });
+                found->resize(width);
+                for (std::size_t j = 0; j < width; ++j) {
+                    rows.ids[i * width + j] = Identity<P>::of((*found)[j]);
+                    rows.distances2[i * width + j] = (*found)[j].distance2;
+                }
+            });
+        detail::pack_rows(rows, points.size(), width, k, options.leave_out);
+    });
+}
+template <class I, NearFilterOf<I> Filter>
+void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearListsOf<I>& lists,
+             const Filter& filter, std::span<Visits> visits = {}) {
+    nearest(index, points, k, lists, PointOptions(), filter, visits);
+}
+template <class I, class Filter = KeepAll>
+NearListsOf<I> nearest(const I& index, const PointsOf<I>& points, std::size_t k,
+                       const PointOptions& options = {}, const Filter& filter = {},
+                       std::span<Visits> visits = {}) {
+    NearListsOf<I> lists;
+    nearest(index, points, k, lists, options, filter, visits);
+    return lists;
+}
+
+/// Writes all primitives within a radius of each of `points` to lists, as `within` finds them.
 ///
 /// Many questions among points are answered by cells that are sorted for them (ask/neighbours.h) where these
 /// are faster than the index; the answers are the same.
-template <class S, class P>
-std::size_t within(const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points,
-                   const NearOptions<typename P::Scalar>& options, ListColumns<P>& columns,
-                   Threads threads = {}) {
-    using Part = PointBatch<typename P::Scalar, P::dimension>;
-    if constexpr (PointSet<P>) {
-        NeighbourLists<typename P::Scalar> lists{std::move(columns.offsets), std::move(columns.ids),
-                                                 std::move(columns.distances2)};
-        const bool listed = detail::listed_by_cells(index.primitives(), points, options, lists, threads);
-        columns = {std::move(lists.offsets), std::move(lists.ids), std::move(lists.distances2)};
-        if (listed) return columns.ids.size();
-    }
-    const auto answer = [&](const Part& part, ListColumns<P>& to) {
-        to.clear();
-        if (detail::answered_by_kernel<Within<P>, Index<S, P>>([&](const auto& kernel) {
-                return kernel.answer_many(index, part, options, to.offsets, to.ids, to.distances2);
-            }))
-            return;
-        std::vector<Near<typename P::Scalar, P::dimension>> found;
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            within(index, part[i], options, found);
-            for (const auto& near : found) {
-                to.ids.push_back(Identity<P>::of(near));
-                to.distances2.push_back(near.distance2);
+template <class I, class Filter = KeepAll>
+void within(const I& index, const PointsOf<I>& points, double radius, NearListsOf<I>& lists,
+            const PointOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
+    using P = typename I::Primitives;
+    using T = typename I::Scalar;
+    detail::expect_visits(visits, points.size());
+    options.leave_out.expect(points.size());
+    const PointOptions both = detail::within_both(radius, options);
+    constexpr bool unfiltered = std::same_as<Filter, KeepAll>;
+    NearLimits<T> limits(both);
+    limits.leave_out = no_primitive;  // they are taken from the lists
+    const bool one_by_one = !unfiltered || !visits.empty();
+    detail::list_in_own_memory(lists, [&](NearListsOf<I>& rows) {
+        if constexpr (unfiltered && requires { detail::Uncounted::within(index, points, rows, both); })
+            if (visits.empty() && detail::Uncounted::within(index, points, rows, both)) return;
+        if (!one_by_one && detail::listed_by_cells(index.primitives(), points, rows, both)) return;
+        const auto answer = [&](std::size_t begin, std::size_t end, NearListsOf<I>& to) {
+            const auto part = PointBatch<T, I::dimension>(points).part(begin, end - begin);
+            if (!one_by_one && detail::answered_by_kernel<Within<P>, I>([&](const auto& kernel) {
+                    return kernel.answer_many(index, part, limits, to);
+                }))
+                return;
+            const Scratch<std::vector<NearOf<I>>> found;
+            for (std::size_t i = begin; i < end; ++i) {
+                detail::with_visits(visits, i, [&](auto& count) {
+                    return detail::within(index, points[i], *found, limits, filter_of_ray(filter, i), count);
+                });
+                for (const auto& near : *found) {
+                    to.ids.push_back(Identity<P>::of(near));
+                    to.distances2.push_back(near.distance2);
+                }
+                to.offsets.push_back(to.ids.size());
             }
-            to.offsets.push_back(to.ids.size());
-        }
-    };
-    // The executor cuts the row of pieces; the lists of each cut are joined in the order of the points.
-    constexpr std::size_t piece = 256;
-    std::vector<ListColumns<P>> cuts((points.size() + piece - 1) / piece);
-    columns.clear();
-    threads.over(points.size()).for_each_piece(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
-        if (begin == end) return;
-        const std::size_t first = begin * piece, last = std::min(end * piece, points.size());
-        answer(Part(points).part(first, last - first), end - begin == cuts.size() ? columns : cuts[begin]);
+        };
+        detail::list_in_pieces(points.size(), detail::executor_for<Filter>(options.threads, points.size()),
+                               rows, answer);
+        detail::leave_out_of(rows, options.leave_out);
     });
-    for (const ListColumns<P>& lists : cuts) columns.append(lists);
-    return columns.ids.size();
 }
-
-/// A list of primitives for each of many points (ask/asking.h).
-template <class S, class P>
-AnswerLists<Near<typename P::Scalar, P::dimension>> nearest(
-    const Index<S, P>& index, const Strided<Vec<typename P::Scalar, P::dimension>>& points, std::size_t k,
-    Threads threads = {}, const NearOptions<typename P::Scalar>& options = {}) {
-    return answer_lists<Near<typename P::Scalar, P::dimension>>(
-        points.size(), threads.over(points.size()),
-        [&](std::size_t i, auto& found) { nearest(index, points[i], k, found, options); });
+template <class I, NearFilterOf<I> Filter>
+void within(const I& index, const PointsOf<I>& points, double radius, NearListsOf<I>& lists,
+            const Filter& filter, std::span<Visits> visits = {}) {
+    within(index, points, radius, lists, PointOptions(), filter, visits);
 }
-template <class I>
-AnswerLists<NearOf<I>> within(const I& index, const Strided<PointOf<I>>& points,
-                              const NearOptionsOf<I>& options, Threads threads = {}) {
-    if constexpr (requires { index.primitives(); }) {
-        const auto& set = index.primitives();
-        NeighbourLists<typename I::Scalar> lists;
-        if constexpr (PointSet<std::decay_t<decltype(set)>>)
-            if (detail::listed_by_cells(set, points, options, lists, threads))
-                return answer_lists<NearOf<I>>(
-                    points.size(), threads.over(points.size()), [&](std::size_t i, auto& found) {
-                        found.clear();
-                        for (std::size_t k = lists.offsets[i]; k < lists.offsets[i + 1]; ++k)
-                            found.push_back({lists.distances2[k], reported_id(set, lists.ids[k], 0),
-                                             lists.ids[k], set.point(lists.ids[k])});
-                    });
-    }
-    return answer_lists<NearOf<I>>(
-        points.size(), threads.over(points.size()),
-        [&](std::size_t i, auto& found) { within(index, points[i], options, found); });
+template <class I, class Filter = KeepAll>
+NearListsOf<I> within(const I& index, const PointsOf<I>& points, double radius,
+                      const PointOptions& options = {}, const Filter& filter = {},
+                      std::span<Visits> visits = {}) {
+    NearListsOf<I> lists;
+    within(index, points, radius, lists, options, filter, visits);
+    return lists;
 }
 
 }  // namespace hedgerow

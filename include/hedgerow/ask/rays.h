@@ -1,5 +1,5 @@
 /// The questions of a ray, one at a time or many in a batch: closest hit, any hit, all hits, the first hits,
-/// how many hits.
+/// how many hits. ask/asking.h tells what all questions share.
 #pragma once
 
 #include <atomic>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/ask/truths.h>
 #include <hedgerow/geometry/offset.h>
 #include <hedgerow/probes/ray_array.h>
 #include <hedgerow/queries/all_hits.h>
@@ -21,33 +22,115 @@ namespace hedgerow {
 template <class I>
 using RayOf = Ray<typename I::Scalar, I::dimension>;
 template <class I>
+using RaysOf = RayArray<typename I::Scalar, I::dimension>;
+template <class I>
 using HitOf = Hit<typename I::Scalar>;
+template <class I>
+using HitListsOf = HitLists<typename I::Scalar>;
+
+/// What a question of rays leaves out, and by which threads a batch is answered. A ray has its own `t_min`
+/// and `t_max`.
+struct RayOptions {
+    LeaveOut leave_out = {};
+    Threads threads = {};
+};
+/// Those of first hits, which may go on after others.
+struct HitsOptions {
+    AfterHits after = {};
+    LeaveOut leave_out = {};
+    Threads threads = {};
+};
+
+namespace detail {
+/// A filter that leaves out the element of each query, of one type whatever the filter of the caller.
+template <std::floating_point T>
+struct LeavingOut {
+    LeaveOut leave_out;
+    FunctionRef<bool(std::size_t, const Hit<T>&)> keeps;
+    FunctionRef<bool(std::uint32_t)> lets_in;
+
+    bool operator()(std::size_t ray, const Hit<T>& hit) const {
+        return hit.element != leave_out.of(ray) && keeps(ray, hit);
+    }
+    bool enters(std::uint32_t mask) const { return lets_in(mask); }
+};
+/// Answers by f(filter): that of the caller, or one that leaves elements out too.
+template <std::floating_point T, class Filter, class F>
+auto with_filter(const LeaveOut& leave_out, const Filter& filter, F f) {
+    if (leave_out.none()) return f(filter);
+    const auto keeps = [&](std::size_t ray, const Hit<T>& hit) { return hedgerow::keeps(filter, ray, hit); };
+    const auto enters = [&](std::uint32_t mask) { return hedgerow::enters(filter, mask); };
+    return f(LeavingOut<T>{leave_out, keeps, enters});
+}
+}  // namespace detail
 
 // The first queries are declared inline so that an optimising compiler can inline those that `core` has
 // compiled too (mesh_index.h).
 
-/// The hit of least t in [t_min, t_max]; a Hit that is false if nothing is hit. `filter(hit)` may refuse a
-/// hit; `count` may be a Visits.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-inline Hit<typename P::Scalar> closest_hit(const Index<S, P>& index,
-                                           const Ray<typename P::Scalar, P::dimension>& ray,
-                                           const Filter& filter = {}, Count& count = no_visits) {
-    return index.template answer<ClosestHit<P, Filter>>(count, ray, filter);
+/// The hit of least t in [t_min, t_max]; a Hit that is false if nothing is hit.
+template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
+inline HitOf<I> closest_hit(const I& index, const RayOf<I>& ray, const Filter& filter,
+                            Count& count = no_visits) {
+    return index.template answer<ClosestHit<typename I::Primitives, Filter>>(count, ray, filter);
 }
+template <class I>
+inline HitOf<I> closest_hit(const I& index, const RayOf<I>& ray) {
+    return closest_hit(index, ray, KeepAll());
+}
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+HitOf<I> closest_hit(const I& index, const RayOf<I>& ray, const RayOptions& options,
+                     const Filter& filter = {}, Count& count = no_visits) {
+    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        return closest_hit(index, ray, filter_of_ray(all, 0), count);
+    });
+}
+
 /// Whether the ray hits anything in [t_min, t_max].
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-inline bool any_hit(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
-                    const Filter& filter = {}, Count& count = no_visits) {
-    return index.template answer<AnyHit<P, Filter>>(count, ray, filter);
+template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
+inline bool any_hit(const I& index, const RayOf<I>& ray, const Filter& filter, Count& count = no_visits) {
+    return index.template answer<AnyHit<typename I::Primitives, Filter>>(count, ray, filter);
 }
+template <class I>
+inline bool any_hit(const I& index, const RayOf<I>& ray) {
+    return any_hit(index, ray, KeepAll());
+}
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+bool any_hit(const I& index, const RayOf<I>& ray, const RayOptions& options, const Filter& filter = {},
+             Count& count = no_visits) {
+    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        return any_hit(index, ray, filter_of_ray(all, 0), count);
+    });
+}
+
 /// Writes every hit to `hits`, each primitive once, in the order of (t, instance, element). Returns how many
 /// there are.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
-                     std::vector<Hit<typename P::Scalar>>& hits, const Filter& filter = {},
+template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
+std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits, const Filter& filter,
                      Count& count = no_visits) {
-    return index.template answer<AllHits<P, Filter>>(count, ray, hits, filter);
+    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
+                  requires { detail::Uncounted::all_hits(index, ray, hits); })
+        return detail::Uncounted::all_hits(index, ray, hits);
+    else
+        return index.template answer<AllHits<typename I::Primitives, Filter>>(count, ray, hits, filter);
 }
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits,
+                     const RayOptions& options, const Filter& filter = {}, Count& count = no_visits) {
+    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        return all_hits(index, ray, hits, filter_of_ray(all, 0), count);
+    });
+}
+template <class I>
+std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits) {
+    return all_hits(index, ray, hits, KeepAll());
+}
+template <class I>
+std::vector<HitOf<I>> all_hits(const I& index, const RayOf<I>& ray) {
+    std::vector<HitOf<I>> hits;
+    all_hits(index, ray, hits);
+    return hits;
+}
+
 /// Writes the next hits to `hits`, as many as there is room for, each primitive once, in the order of (t,
 /// instance, element). Returns how many there are: fewer than there is room for where the ray has no more.
 /// The hits are those after a place in that order, or the first. So calls that each go on after the last hit
@@ -55,56 +138,66 @@ std::size_t all_hits(const Index<S, P>& index, const Ray<typename P::Scalar, P::
 ///
 ///   std::array<Hit<float>, 8> some;
 ///   std::size_t n = first_hits(index, ray, some);
-///   for (; n > 0; n = first_hits(index, ray, some, some[n - 1])) ...
-///
-/// `index` may be an AnyIndex too, which answers as its own function of this name does where there is no
-/// filter.
+///   for (; n > 0; n = first_hits(index, ray, some, {.after = some[n - 1]})) ...
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits,
-                       const AfterHit<typename I::Scalar>& after = {}, const Filter& filter = {},
-                       Count& count = no_visits) {
-    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
-                  requires { index.first_hits(ray, hits, after); })
-        return index.first_hits(ray, hits, after);
-    else
-        return index.template answer<FirstHits<typename I::Primitives, Filter>>(count, ray, hits, after,
-                                                                                filter);
+                       const HitsOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
+    using T = typename I::Scalar;
+    const PlaceOfHit<T> after(options.after.of(0));
+    return detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) -> std::size_t {
+        const auto of_ray = filter_of_ray(all, 0);
+        using Kept = std::remove_const_t<decltype(of_ray)>;
+        if constexpr (std::same_as<Kept, KeepAll> && std::same_as<Count, const NoVisits> &&
+                      requires { detail::Uncounted::first_hits(index, ray, hits, after); })
+            return detail::Uncounted::first_hits(index, ray, hits, after);
+        else
+            return index.template answer<FirstHits<typename I::Primitives, Kept>>(count, ray, hits, after,
+                                                                                  of_ray);
+    });
 }
+template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
+std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits, const Filter& filter,
+                       Count& count = no_visits) {
+    return first_hits(index, ray, hits, HitsOptions(), filter, count);
+}
+
 /// The number of primitives hit (two at a shared edge). Where a primitive may be offered twice, the hits are
 /// first collected, in memory that the thread keeps, and repeated ones are removed.
-template <class S, class P, class Filter = KeepAll, class Count = const NoVisits>
-std::size_t hit_count(const Index<S, P>& index, const Ray<typename P::Scalar, P::dimension>& ray,
-                      const Filter& filter = {}, Count& count = no_visits) {
-    if (index.structure().exclusive() && offers_once(index.primitives())) {
-        return index.template answer<HitCount<P, Filter>>(count, ray, filter);
+template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
+std::size_t hit_count(const I& index, const RayOf<I>& ray, const Filter& filter, Count& count = no_visits) {
+    if (detail::offers_each_once(index)) {
+        return index.template answer<HitCount<typename I::Primitives, Filter>>(count, ray, filter);
     } else {
-        const Scratch<std::vector<Hit<typename P::Scalar>>> hits;
+        const Scratch<std::vector<HitOf<I>>> hits;
         return all_hits(index, ray, *hits, filter, count);
     }
 }
+template <class I>
+std::size_t hit_count(const I& index, const RayOf<I>& ray) {
+    return hit_count(index, ray, KeepAll());
+}
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::size_t hit_count(const I& index, const RayOf<I>& ray, const RayOptions& options,
+                      const Filter& filter = {}, Count& count = no_visits) {
+    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        return hit_count(index, ray, filter_of_ray(all, 0), count);
+    });
+}
 
 namespace detail {
-/// The executor of a batch. A filter may keep state, which threads would share, so a batch with a filter
-/// stays on one thread unless the caller gives an executor.
-template <class Filter>
-Executor& executor_for(Threads threads, std::size_t rays) {
-    return threads.over(std::same_as<Filter, KeepAll> ? rays : 0);
-}
 /// Sets answers[i] to the answer of Q for ray i, in pieces over the executor. The kernel of Q answers a piece
 /// if it takes many rays, else `one(i)` answers each ray.
-template <class Q, class I, class Rays, class Answer, class Filter, class One>
-KernelUse answer_rays(const I& index, const Rays& rays, std::span<Answer> answers, Threads threads,
-                      const Filter& filter, One one) {
-    expect_room("rays", rays.size(), answers.size());
-    Executor& executor = executor_for<Filter>(threads, rays.size());
+template <class Q, class I, class Answer, class Filter, class One>
+KernelUse answer_rays(const I& index, const RaysOf<I>& rays, Answer* answers, Executor& executor,
+                      bool one_by_one, const Filter& filter, One one) {
     std::atomic<std::size_t> phased{0}, packets{0};
     executor.for_each_piece(rays.size(), 4096, [&](std::size_t begin, std::size_t end) {
         const Kernel<Q, I> kernel;
         const auto some = rays.part(begin, end - begin);
-        if constexpr (requires { kernel.answer_many(index, begin, some, answers.data(), filter); })
-            if (kernel) {
+        if constexpr (requires { kernel.answer_many(index, begin, some, answers, filter); })
+            if (kernel && !one_by_one) {
                 const KernelUse use = in_ieee_mode(
-                    [&] { return kernel.answer_many(index, begin, some, answers.data() + begin, filter); });
+                    [&] { return kernel.answer_many(index, begin, some, answers + begin, filter); });
                 phased += use.phased, packets += use.packets;
                 return;
             }
@@ -112,103 +205,165 @@ KernelUse answer_rays(const I& index, const Rays& rays, std::span<Answer> answer
     });
     return {rays.size() - phased - packets, phased, packets};
 }
+/// The same of a query that has an answer for each ray: Q is ClosestHit or AnyHit.
+template <template <class, class> class Q, class I, class Answer, class Filter>
+KernelUse answer_each(const I& index, const RaysOf<I>& rays, Answer* answers, Executor& executor,
+                      const Filter& filter, std::span<Visits> visits = {}) {
+    using P = typename I::Primitives;
+    if constexpr (std::same_as<Filter, KeepAll> &&
+                  requires { Uncounted::rays(index, rays, answers, executor); })
+        if (visits.empty()) return Uncounted::rays(index, rays, answers, executor);
+    return answer_rays<Q<P, Filter>>(
+        index, rays, answers, executor, !visits.empty(), filter, [&](std::size_t i) {
+            const auto of_ray = filter_of_ray(filter, i);
+            return with_visits(visits, i, [&](auto& count) {
+                return index.template answer<Q<P, std::remove_const_t<decltype(of_ray)>>>(count, rays[i],
+                                                                                          of_ray);
+            });
+        });
+}
+template <template <class, class> class Q, class I, class Answer, class Filter>
+KernelUse answer_each(const I& index, const RaysOf<I>& rays, Answer* answers, const RayOptions& options,
+                      const Filter& filter, std::span<Visits> visits) {
+    expect_visits(visits, rays.size());
+    options.leave_out.expect(rays.size());
+    Executor& executor = executor_for<Filter>(options.threads, rays.size());
+    return with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        return answer_each<Q>(index, rays, answers, executor, all, visits);
+    });
+}
 }  // namespace detail
 
-/// Writes the closest hit of ray i to hits[i], as `closest_hit` finds it; `any_hits` writes whether ray i
-/// hits anything. Large batches are cut into pieces over all cores, unless an executor is given or there is a
-/// filter (Threads). The rays may have any layout in memory (probes/ray_array.h); a vector or a span of rays
-/// will do. `filter(hit)` or `filter(i, hit)`, for ray i, may refuse a hit (queries/hit.h). Throws
-/// InputError, and writes nothing, if there are fewer places for answers than rays. Returns which algorithms
-/// answered (walks/kernel.h): only indexes of float triangles in a WideBvh answer batches by kernels, all
-/// others ray by ray.
+/// Writes the closest hit of ray i to hits[i], as `closest_hit` finds it. The rays may have any layout in
+/// memory (probes/ray_array.h); a vector or a span of rays will do. `filter(hit)` or `filter(i, hit)`, for
+/// ray i, may refuse a hit (queries/hit.h). Returns which algorithms answered (walks/kernel.h): only indexes
+/// of float triangles in a WideBvh answer batches by kernels, all others ray by ray.
 ///
-///   closest_hits(index, rays, hits, default_executor());
+///   closest_hits(index, rays, hits, {.threads = 4});
 ///   closest_hits(index, rays, hits,
 ///                [&](std::size_t i, const Hit<float>& h) { return h.element != starts_on[i]; });
-template <class S, class P, class Filter = KeepAll>
-KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                       std::span<Hit<typename P::Scalar>> hits, Threads threads = {},
-                       const Filter& filter = {}) {
-    return detail::answer_rays<ClosestHit<P, Filter>>(index, rays, hits, threads, filter, [&](std::size_t i) {
-        return closest_hit(index, rays[i], filter_of_ray(filter, i));
-    });
+template <class I, class Filter = KeepAll>
+KernelUse closest_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits,
+                       const RayOptions& options = {}, const Filter& filter = {},
+                       std::span<Visits> visits = {}) {
+    detail::expect_room("rays", rays.size(), hits.size());
+    return detail::answer_each<ClosestHit>(index, rays, hits.data(), options, filter, visits);
 }
-template <class S, class P, class Filter = KeepAll>
-KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                   std::span<bool> hits, Threads threads = {}, const Filter& filter = {}) {
-    return detail::answer_rays<AnyHit<P, Filter>>(index, rays, hits, threads, filter, [&](std::size_t i) {
-        return any_hit(index, rays[i], filter_of_ray(filter, i));
-    });
-}
-template <class S, class P, FilterOf<typename P::Scalar> Filter>
-KernelUse closest_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                       std::span<Hit<typename P::Scalar>> hits, const Filter& filter) {
-    return closest_hits(index, rays, hits, Threads(), filter);
-}
-template <class S, class P, FilterOf<typename P::Scalar> Filter>
-KernelUse any_hits(const Index<S, P>& index, const RayArray<typename P::Scalar, P::dimension>& rays,
-                   std::span<bool> hits, const Filter& filter) {
-    return any_hits(index, rays, hits, Threads(), filter);
+template <class I, FilterOf<typename I::Scalar> Filter>
+KernelUse closest_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits, const Filter& filter,
+                       std::span<Visits> visits = {}) {
+    return closest_hits(index, rays, hits, RayOptions(), filter, visits);
 }
 
-/// A list of hits for each of many rays (ask/asking.h). A filter may also take the ray's number. Exceptions
-/// of a filter reach the caller.
+/// Writes whether ray i hits anything to place i of `hits`: an array of bool or of bytes, or a
+/// std::vector<bool>.
+template <class I, class Filter = KeepAll>
+KernelUse any_hits(const I& index, const RaysOf<I>& rays, const Truths& hits, const RayOptions& options = {},
+                   const Filter& filter = {}, std::span<Visits> visits = {}) {
+    detail::expect_room("rays", rays.size(), hits.size());
+    return hits.written(rays.size(), [&](bool* answers) {
+        return detail::answer_each<AnyHit>(index, rays, answers, options, filter, visits);
+    });
+}
+template <class I, FilterOf<typename I::Scalar> Filter>
+KernelUse any_hits(const I& index, const RaysOf<I>& rays, const Truths& hits, const Filter& filter,
+                   std::span<Visits> visits = {}) {
+    return any_hits(index, rays, hits, RayOptions(), filter, visits);
+}
+
+/// Writes a list of all hits for each of many rays.
 ///
 ///   const auto hits = all_hits(index, rays);
 ///   for (const Hit<float>& hit : hits[7]) ...
-template <class S, class P, class Filter = KeepAll>
-AnswerLists<Hit<typename P::Scalar>> all_hits(const Index<S, P>& index,
-                                              const RayArray<typename P::Scalar, P::dimension>& rays,
-                                              Threads threads = {}, const Filter& filter = {}) {
-    return answer_lists<Hit<typename P::Scalar>>(
-        rays.size(), detail::executor_for<Filter>(threads, rays.size()),
-        [&](std::size_t i, auto& hits) { all_hits(index, rays[i], hits, filter_of_ray(filter, i)); });
-}
-template <class S, class P, FilterOf<typename P::Scalar> Filter>
-AnswerLists<Hit<typename P::Scalar>> all_hits(const Index<S, P>& index,
-                                              const RayArray<typename P::Scalar, P::dimension>& rays,
-                                              const Filter& filter) {
-    return all_hits(index, rays, Threads(), filter);
-}
-
-/// The arrays of a caller in which a batch of first hits writes its answers: k places for each ray, of which
-/// counts[i] are filled for ray i. The other places become Hits that are false. `counts` may be empty.
-template <std::floating_point T>
-struct FirstHitsColumns {
-    std::span<Hit<T>> hits;
-    std::span<std::uint32_t> counts = {};
-};
-/// Writes the next k hits of each ray, as `first_hits` finds them: those after after[i] for ray i, or the
-/// first where `after` is empty. Throws InputError, and writes nothing, if an array that is not empty is too
-/// short. Threads and filters are those of `closest_hits`.
 template <class I, class Filter = KeepAll>
-void first_hits(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays, std::size_t k,
-                const FirstHitsColumns<typename I::Scalar>& columns,
-                std::span<const AfterHit<typename I::Scalar>> after = {}, Threads threads = {},
-                const Filter& filter = {}) {
-    if (k > 0 && columns.hits.size() / k < rays.size())
-        detail::expect_room("places (k for each ray)", k * rays.size(), columns.hits.size());
-    if (!columns.counts.empty()) detail::expect_room("rays", rays.size(), columns.counts.size());
-    if (!after.empty() && after.size() < rays.size())
-        throw InputError("there are " + std::to_string(rays.size()) + " rays, but places to go on from for " +
-                         std::to_string(after.size()) + ": give one for each ray, or none");
-    detail::executor_for<Filter>(threads, rays.size())
-        .for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const auto hits = columns.hits.subspan(i * k, k);
-                const std::size_t found = first_hits(
-                    index, rays[i], hits, after.empty() ? AfterHit<typename I::Scalar>() : after[i],
-                    filter_of_ray(filter, i));
-                std::fill(hits.begin() + static_cast<std::ptrdiff_t>(found), hits.end(), HitOf<I>());
-                if (!columns.counts.empty()) columns.counts[i] = static_cast<std::uint32_t>(found);
-            }
-        });
+void all_hits(const I& index, const RaysOf<I>& rays, HitListsOf<I>& lists, const RayOptions& options = {},
+              const Filter& filter = {}, std::span<Visits> visits = {}) {
+    detail::expect_visits(visits, rays.size());
+    options.leave_out.expect(rays.size());
+    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
+    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        detail::list_one_by_one(rays.size(), executor, lists, &HitListsOf<I>::hits,
+                                [&](std::size_t i, auto& hits) {
+                                    detail::with_visits(visits, i, [&](auto& count) {
+                                        return all_hits(index, rays[i], hits, filter_of_ray(all, i), count);
+                                    });
+                                });
+    });
+}
+template <class I, FilterOf<typename I::Scalar> Filter>
+void all_hits(const I& index, const RaysOf<I>& rays, HitListsOf<I>& lists, const Filter& filter,
+              std::span<Visits> visits = {}) {
+    all_hits(index, rays, lists, RayOptions(), filter, visits);
+}
+template <class I, class Filter = KeepAll>
+HitListsOf<I> all_hits(const I& index, const RaysOf<I>& rays, const RayOptions& options = {},
+                       const Filter& filter = {}, std::span<Visits> visits = {}) {
+    HitListsOf<I> lists;
+    all_hits(index, rays, lists, options, filter, visits);
+    return lists;
+}
+template <class I, FilterOf<typename I::Scalar> Filter>
+HitListsOf<I> all_hits(const I& index, const RaysOf<I>& rays, const Filter& filter) {
+    return all_hits(index, rays, RayOptions(), filter);
 }
 
+/// Writes a list of the next k hits for each of many rays, as `first_hits` finds them: those after
+/// options.after, which may have a place for each ray, or the first.
+template <class I, class Filter = KeepAll>
+void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf<I>& lists,
+                const HitsOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
+    detail::expect_visits(visits, rays.size());
+    options.after.expect(rays.size());
+    options.leave_out.expect(rays.size());
+    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
+    // A ray has no more hits than there are primitives.
+    k = std::min(k, detail::primitives_in(index.primitives()));
+    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        detail::list_in_pieces(
+            rays.size(), executor, lists, [&](std::size_t begin, std::size_t end, HitListsOf<I>& to) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const std::size_t before = to.hits.size();
+                    to.hits.resize(before + k);
+                    const std::size_t found = detail::with_visits(visits, i, [&](auto& count) {
+                        return first_hits(index, rays[i], std::span(to.hits.data() + before, k),
+                                          {.after = options.after.of(i)}, filter_of_ray(all, i), count);
+                    });
+                    to.hits.resize(before + found);
+                    to.offsets.push_back(to.hits.size());
+                }
+            });
+    });
+}
 template <class I, FilterOf<typename I::Scalar> Filter>
-void first_hits(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays, std::size_t k,
-                const FirstHitsColumns<typename I::Scalar>& columns, const Filter& filter) {
-    first_hits(index, rays, k, columns, {}, Threads(), filter);
+void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf<I>& lists,
+                const Filter& filter, std::span<Visits> visits = {}) {
+    first_hits(index, rays, k, lists, HitsOptions(), filter, visits);
+}
+template <class I, class Filter = KeepAll>
+HitListsOf<I> first_hits(const I& index, const RaysOf<I>& rays, std::size_t k,
+                         const HitsOptions& options = {}, const Filter& filter = {},
+                         std::span<Visits> visits = {}) {
+    HitListsOf<I> lists;
+    first_hits(index, rays, k, lists, options, filter, visits);
+    return lists;
+}
+
+/// Writes the number of primitives that ray i hits to counts[i].
+template <class I, class Filter = KeepAll>
+void hit_counts(const I& index, const RaysOf<I>& rays, std::span<std::size_t> counts,
+                const RayOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
+    detail::expect_room("rays", rays.size(), counts.size());
+    detail::expect_visits(visits, rays.size());
+    options.leave_out.expect(rays.size());
+    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
+    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        executor.for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                counts[i] = detail::with_visits(visits, i, [&](auto& count) {
+                    return hit_count(index, rays[i], filter_of_ray(all, i), count);
+                });
+        });
+    });
 }
 
 }  // namespace hedgerow

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/ask/truths.h>
 #include <hedgerow/geometry/ball.h>
 #include <hedgerow/geometry/cone.h>
 #include <hedgerow/geometry/slab_region.h>
@@ -19,41 +20,70 @@
 namespace hedgerow {
 
 /// A region that an index can be asked.
-template <class R, class P>
+template <class R, class I>
 concept RegionFor =
-    Region<R> && std::same_as<typename R::Scalar, typename P::Scalar> && R::dimension == P::dimension;
+    Region<R> && std::same_as<typename R::Scalar, typename I::Scalar> && R::dimension == I::dimension;
+
+template <class I>
+using IdListsOf = IdLists<IdOf<typename I::Primitives>>;
+
+/// By which threads a batch of regions is answered.
+struct RegionOptions {
+    Threads threads = {};
+};
+
+namespace detail {
+template <template <class, class> class Q, class I, class R, class Count, class... Arguments>
+auto answer_region(const I& index, const R& region, Count& count, Arguments&&... arguments) {
+    if constexpr (requires { Uncounted::template region<Q>(index, region, count, arguments...); })
+        return Uncounted::template region<Q>(index, region, count, arguments...);
+    else
+        return index.template answer<Q<typename I::Primitives, R>>(count, region, arguments...);
+}
+}  // namespace detail
 
 /// Writes the primitives that overlap a region to `found`, ascending: their positions in the set, or
 /// PlacedIds among instances. Returns how many there are.
-template <class S, class P, RegionFor<P> R, class Count = const NoVisits>
-std::size_t overlapping(const Index<S, P>& index, const R& region, std::vector<IdOf<P>>& found,
-                        Count& count = no_visits) {
-    return index.template answer<Overlapping<P, R>>(count, region, found);
+template <class I, RegionFor<I> R, class Count = const NoVisits>
+std::size_t overlapping(const I& index, const R& region, std::vector<IdOf<typename I::Primitives>>& found,
+                        const RegionOptions& = {}, Count& count = no_visits) {
+    return detail::answer_region<Overlapping>(index, region, count, found, Finds::overlapping);
+}
+template <class I, RegionFor<I> R>
+std::vector<IdOf<typename I::Primitives>> overlapping(const I& index, const R& region) {
+    std::vector<IdOf<typename I::Primitives>> found;
+    overlapping(index, region, found);
+    return found;
 }
 /// Writes the primitives that lie in a region wholly to `found`, as `overlapping` does. Returns how many
 /// there are.
-template <class S, class P, RegionFor<P> R, class Count = const NoVisits>
-std::size_t contained(const Index<S, P>& index, const R& region, std::vector<IdOf<P>>& found,
-                      Count& count = no_visits) {
-    static_assert(Instanced<P> || LiesWithinRegions<P, R>,
+template <class I, RegionFor<I> R, class Count = const NoVisits>
+std::size_t contained(const I& index, const R& region, std::vector<IdOf<typename I::Primitives>>& found,
+                      const RegionOptions& = {}, Count& count = no_visits) {
+    using P = typename I::Primitives;
+    static_assert(Instanced<P> || LiesWithinRegions<P, R> || std::same_as<P, I>,
                   "a set of your own tells what lies in a region by `lies_within(i, region)`");
-    return index.template answer<Overlapping<P, R>>(count, region, found, Finds::contained);
+    return detail::answer_region<Overlapping>(index, region, count, found, Finds::contained);
+}
+template <class I, RegionFor<I> R>
+std::vector<IdOf<typename I::Primitives>> contained(const I& index, const R& region) {
+    std::vector<IdOf<typename I::Primitives>> found;
+    contained(index, region, found);
+    return found;
 }
 /// The number of primitives that overlap a region. Where a primitive may be offered twice, they are first
 /// collected, in memory that the thread keeps, and repeated ones are removed.
-template <class S, class P, RegionFor<P> R, class Count = const NoVisits>
-std::size_t count_overlapping(const Index<S, P>& index, const R& region, Count& count = no_visits) {
-    if (index.structure().exclusive() && offers_once(index.primitives())) {
-        return index.template answer<OverlapCount<P, R>>(count, region);
-    } else {
-        const Scratch<std::vector<IdOf<P>>> found;
-        return overlapping(index, region, *found, count);
-    }
+template <class I, RegionFor<I> R, class Count = const NoVisits>
+std::size_t overlap_count(const I& index, const R& region, const RegionOptions& options = {},
+                          Count& count = no_visits) {
+    if (detail::offers_each_once(index)) return detail::answer_region<OverlapCount>(index, region, count);
+    const Scratch<std::vector<IdOf<typename I::Primitives>>> found;
+    return overlapping(index, region, *found, options, count);
 }
 /// Whether any primitive overlaps a region. Stops at the first.
-template <class S, class P, RegionFor<P> R, class Count = const NoVisits>
-bool any_overlapping(const Index<S, P>& index, const R& region, Count& count = no_visits) {
-    return index.template answer<AnyOverlap<P, R>>(count, region);
+template <class I, RegionFor<I> R, class Count = const NoVisits>
+bool any_overlap(const I& index, const R& region, const RegionOptions& = {}, Count& count = no_visits) {
+    return detail::answer_region<AnyOverlap>(index, region, count);
 }
 
 // Batches. The regions of one are of one shape, in an array of any layout (base/strided.h): a vector or a
@@ -61,56 +91,97 @@ bool any_overlapping(const Index<S, P>& index, const R& region, Count& count = n
 
 namespace detail {
 template <class Rs>
-struct ElementOf;
+struct RegionOf;
 template <class R>
-struct ElementOf<Strided<R>> {
+struct RegionOf<Strided<R>> {
     using Type = R;
 };
 template <class Rs>
 requires requires(const Rs& rs) {
     std::span(rs);
 }
-struct ElementOf<Rs> {
+struct RegionOf<Rs> {
     using Type = std::remove_const_t<typename decltype(std::span(std::declval<const Rs&>()))::element_type>;
 };
+/// Calls one(i, region, count) for each region of a batch, in pieces over the threads.
+template <class R, class One>
+void ask_each(const Strided<R>& regions, const RegionOptions& options, std::span<Visits> visits, One one) {
+    expect_visits(visits, regions.size());
+    options.threads.over(regions.size())
+        .for_each_piece(regions.size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                with_visits(visits, i, [&](auto& count) { return one(i, regions[i], count); });
+        });
+}
+/// The same where one(region, list, count) lists ids.
+template <class Id, class R, class One>
+void list_each(const Strided<R>& regions, IdLists<Id>& lists, const RegionOptions& options,
+               std::span<Visits> visits, One one) {
+    expect_visits(visits, regions.size());
+    list_one_by_one(regions.size(), options.threads.over(regions.size()), lists, &IdLists<Id>::ids,
+                    [&](std::size_t i, auto& found) {
+                        with_visits(visits, i, [&](auto& count) { return one(regions[i], found, count); });
+                    });
+}
 }  // namespace detail
 /// An array of regions that an index can be asked.
-template <class Rs, class P>
-concept RegionsFor = RegionFor<typename detail::ElementOf<Rs>::Type, P> &&
-    std::convertible_to<const Rs&, Strided<typename detail::ElementOf<Rs>::Type>>;
+template <class Rs, class I>
+concept RegionsFor = RegionFor<typename detail::RegionOf<Rs>::Type, I> &&
+    std::convertible_to<const Rs&, Strided<typename detail::RegionOf<Rs>::Type>>;
 
-/// A list of primitives for each of many regions (ask/asking.h).
-template <class S, class P, RegionsFor<P> Rs>
-AnswerLists<IdOf<P>> overlapping(const Index<S, P>& index, const Rs& regions, Threads threads = {}) {
-    const Strided<typename detail::ElementOf<Rs>::Type> all(regions);
-    return answer_lists<IdOf<P>>(all.size(), threads.over(all.size()),
-                                 [&](std::size_t i, auto& found) { overlapping(index, all[i], found); });
+/// Writes a list of primitives for each of many regions.
+template <class I, RegionsFor<I> Rs>
+void overlapping(const I& index, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options = {},
+                 std::span<Visits> visits = {}) {
+    detail::list_each(Strided<typename detail::RegionOf<Rs>::Type>(regions), lists, options, visits,
+                      [&](const auto& region, auto& found, auto& count) {
+                          return overlapping(index, region, found, {}, count);
+                      });
 }
-template <class S, class P, RegionsFor<P> Rs>
-AnswerLists<IdOf<P>> contained(const Index<S, P>& index, const Rs& regions, Threads threads = {}) {
-    const Strided<typename detail::ElementOf<Rs>::Type> all(regions);
-    return answer_lists<IdOf<P>>(all.size(), threads.over(all.size()),
-                                 [&](std::size_t i, auto& found) { contained(index, all[i], found); });
+template <class I, RegionsFor<I> Rs>
+IdListsOf<I> overlapping(const I& index, const Rs& regions, const RegionOptions& options = {},
+                         std::span<Visits> visits = {}) {
+    IdListsOf<I> lists;
+    overlapping(index, regions, lists, options, visits);
+    return lists;
 }
-/// Writes the number of primitives that overlap each region to `counts`. Throws InputError, and writes
-/// nothing, if there are fewer places than regions.
-template <class S, class P, RegionsFor<P> Rs>
-void count_overlapping(const Index<S, P>& index, const Rs& regions, std::span<std::size_t> counts,
-                       Threads threads = {}) {
-    const Strided<typename detail::ElementOf<Rs>::Type> all(regions);
+template <class I, RegionsFor<I> Rs>
+void contained(const I& index, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options = {},
+               std::span<Visits> visits = {}) {
+    detail::list_each(Strided<typename detail::RegionOf<Rs>::Type>(regions), lists, options, visits,
+                      [&](const auto& region, auto& found, auto& count) {
+                          return contained(index, region, found, {}, count);
+                      });
+}
+template <class I, RegionsFor<I> Rs>
+IdListsOf<I> contained(const I& index, const Rs& regions, const RegionOptions& options = {},
+                       std::span<Visits> visits = {}) {
+    IdListsOf<I> lists;
+    contained(index, regions, lists, options, visits);
+    return lists;
+}
+/// Writes the number of primitives that overlap region i to counts[i].
+template <class I, RegionsFor<I> Rs>
+void overlap_counts(const I& index, const Rs& regions, std::span<std::size_t> counts,
+                    const RegionOptions& options = {}, std::span<Visits> visits = {}) {
+    const Strided<typename detail::RegionOf<Rs>::Type> all(regions);
     detail::expect_room("regions", all.size(), counts.size());
-    threads.over(all.size()).for_each_piece(all.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) counts[i] = count_overlapping(index, all[i]);
+    detail::ask_each(all, options, visits, [&](std::size_t i, const auto& region, auto& count) {
+        return counts[i] = overlap_count(index, region, {}, count);
     });
 }
-/// Writes whether any primitive overlaps each region, as `count_overlapping` does.
-template <class S, class P, RegionsFor<P> Rs>
-void any_overlapping(const Index<S, P>& index, const Rs& regions, std::span<bool> found,
-                     Threads threads = {}) {
-    const Strided<typename detail::ElementOf<Rs>::Type> all(regions);
+/// Writes whether any primitive overlaps region i to place i of `found`: an array of bool or of bytes, or a
+/// std::vector<bool>.
+template <class I, RegionsFor<I> Rs>
+void any_overlaps(const I& index, const Rs& regions, const Truths& found, const RegionOptions& options = {},
+                  std::span<Visits> visits = {}) {
+    const Strided<typename detail::RegionOf<Rs>::Type> all(regions);
     detail::expect_room("regions", all.size(), found.size());
-    threads.over(all.size()).for_each_piece(all.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) found[i] = any_overlapping(index, all[i]);
+    found.written(all.size(), [&](bool* answers) {
+        detail::ask_each(all, options, visits, [&](std::size_t i, const auto& region, auto& count) {
+            return answers[i] = any_overlap(index, region, {}, count);
+        });
+        return true;
     });
 }
 

@@ -10,6 +10,29 @@
 
 namespace hedgerow {
 
+namespace detail {
+/// The type of the numbers of T, and how many it has: 0 for what is no row of numbers.
+template <class T>
+struct NumbersOf {
+    using Type = void;
+    static constexpr std::size_t count = 0;
+};
+template <class T>
+requires requires(T element) {
+    element[0];
+}
+struct NumbersOf<T> {
+    using Type = std::remove_cvref_t<decltype(std::declval<T&>()[0])>;
+    static constexpr std::size_t count = sizeof(T) / sizeof(Type);
+};
+}  // namespace detail
+
+/// What an array of elements T may consist of: T, or arrays of as many numbers as a T has.
+template <class E, class T>
+concept ElementOf = std::same_as<E, T> ||
+    (std::is_bounded_array_v<E>&& std::rank_v<E> == 1 && std::extent_v<E> == detail::NumbersOf<T>::count &&
+     std::same_as<std::remove_extent_t<E>, typename detail::NumbersOf<T>::Type>);
+
 /// A view of `size` elements of type T that start `stride` bytes apart. Copies nothing, owns nothing; an
 /// element need not be aligned.
 template <class T>
@@ -18,8 +41,17 @@ class Strided {
 
 public:
     Strided() = default;
-    Strided(const void* first, std::size_t size, std::size_t stride = sizeof(T))
-        : data_(static_cast<const std::byte*>(first)), size_(size), stride_(stride) {}
+    /// A view of elements in the caller's array; `stride` is from one to the next, in bytes. A Vec may be an
+    /// array of its numbers, such as the member `float position[3]` of a vertex:
+    ///
+    ///   Strided<Vec3f>(&vertices[0].position, vertices.size(), sizeof(Vertex))
+    template <ElementOf<T> E>
+    Strided(const E* first, std::size_t size, std::size_t stride = sizeof(E))
+        : Strided(reinterpret_cast<const std::byte*>(first), size, stride, Bytes()) {}
+    /// A view of elements at an address, which the caller knows to be of type T.
+    static Strided in_bytes(const void* first, std::size_t size, std::size_t stride = sizeof(T)) {
+        return {static_cast<const std::byte*>(first), size, stride, Bytes()};
+    }
     /// A view of a span, a vector or an array, whose elements are contiguous.
     template <class R>
     requires std::convertible_to<const R&, std::span<const T>> Strided(const R& all)
@@ -31,7 +63,7 @@ public:
     /// The address of element i, which need not be aligned.
     const std::byte* at(std::size_t i) const { return data_ + i * stride_; }
     /// `count` elements from number `first` on.
-    Strided part(std::size_t first, std::size_t count) const { return {at(first), count, stride_}; }
+    Strided part(std::size_t first, std::size_t count) const { return {at(first), count, stride_, Bytes()}; }
     T operator[](std::size_t i) const {
         assert(i < size_);
         T element;
@@ -50,6 +82,10 @@ public:
     }
 
 private:
+    struct Bytes {};
+    Strided(const std::byte* first, std::size_t size, std::size_t stride, Bytes)
+        : data_(first), size_(size), stride_(stride) {}
+
     const std::byte* data_ = nullptr;
     std::size_t size_ = 0;
     std::size_t stride_ = sizeof(T);

@@ -74,7 +74,7 @@ struct RayKernels {
 /// Writes the next hits of a ray after a place, as many as there is room for, and returns how many there are
 /// (queries/first_hits.h).
 using FirstHitsKernel = std::size_t (*)(const WideScene&, const Ray<float, 3>&, std::span<Hit<float>>,
-                                        const AfterHit<float>&);
+                                        const PlaceOfHit<float>&);
 
 /// What a kernel needs to know of an index of points: the tree, and the points of its leaves.
 struct WidePoints {

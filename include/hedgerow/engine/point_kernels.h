@@ -12,6 +12,7 @@
 #include <hedgerow/engine/near_keys.h>
 #include <hedgerow/geometry/ball.h>
 #include <hedgerow/queries/closest_point.h>
+#include <hedgerow/queries/lists.h>
 #include <hedgerow/queries/nearest.h>
 #include <hedgerow/queries/overlap_count.h>
 #include <hedgerow/queries/within.h>
@@ -54,12 +55,15 @@ protected:
         const auto& bounds = index.bounds();
         return takes(bounds.low) && takes(bounds.high) && max_component(bounds.extent()) > T(0x1p-40);
     }
-    // Kernels are exact.
-    static bool takes(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) {
-        return takes(point) && takes(index) && options.factor == 1;
+    // Kernels leave nothing out, not even what is a little nearer.
+    static bool exact(const NearLimits<T>& limits) {
+        return limits.factor == 1 && limits.leave_out == no_primitive;
     }
-    static bool takes_all(const I& index, const PointBatch<T, 3>& points, const NearOptions<T>& options) {
-        bool all = takes(index) && options.factor == 1;
+    static bool takes(const I& index, const Vec<T, 3>& point, const NearLimits<T>& limits) {
+        return takes(point) && takes(index) && exact(limits);
+    }
+    static bool takes_all(const I& index, const PointBatch<T, 3>& points, const NearLimits<T>& limits) {
+        bool all = takes(index) && exact(limits);
         for (std::size_t i = 0; i < points.size(); ++i) all &= takes(points[i]);
         return all;
     }
@@ -116,10 +120,10 @@ protected:
     using typename PointKernel<I>::T;
 
     template <class Q, class... Arguments>
-    auto answer_of(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options,
+    auto answer_of(const I& index, const Vec<T, 3>& point, const NearLimits<T>& limits,
                    Arguments&&... arguments) const {
         Q query(index, point, arguments...);
-        if (this->takes(index, point, options))
+        if (this->takes(index, point, limits))
             walk(index, query);
         else
             index.ask(query);
@@ -153,8 +157,8 @@ requires(detail::WideForKernels<I> && !detail::ClosestForKernels<I>)  //
     struct Kernel<ClosestPoint<Set>, I> : detail::OtherKernel<I> {
     using typename detail::PointKernel<I>::T;
 
-    auto answer(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
-        return this->template answer_of<ClosestPoint<Set>>(index, point, options, options);
+    auto answer(const I& index, const Vec<T, 3>& point, const NearLimits<T>& limits) const {
+        return this->template answer_of<ClosestPoint<Set>>(index, point, limits, limits);
     }
 };
 template <class Set, class I>
@@ -163,9 +167,9 @@ requires(detail::WideForKernels<I> && !detail::NearForKernels<I>)  //
     using typename detail::PointKernel<I>::T;
 
     template <class Found>
-    std::size_t answer(const I& index, const Vec<T, 3>& point, std::size_t k, const NearOptions<T>& options,
+    std::size_t answer(const I& index, const Vec<T, 3>& point, std::size_t k, const NearLimits<T>& limits,
                        Found& found) const {
-        return this->template answer_of<Nearest<Set>>(index, point, options, k, options, found);
+        return this->template answer_of<Nearest<Set>>(index, point, limits, k, limits, found);
     }
 };
 template <class Set, class I>
@@ -174,9 +178,9 @@ requires(detail::WideForKernels<I> && !detail::NearForKernels<I>)  //
     using typename detail::PointKernel<I>::T;
 
     template <class Found>
-    std::size_t answer(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options,
+    std::size_t answer(const I& index, const Vec<T, 3>& point, const NearLimits<T>& limits,
                        Found& found) const {
-        return this->template answer_of<Within<Set>>(index, point, options, options, found);
+        return this->template answer_of<Within<Set>>(index, point, limits, limits, found);
     }
 };
 
@@ -184,72 +188,71 @@ template <class Set, detail::ClosestForKernels I>
 struct Kernel<ClosestPoint<Set>, I> : detail::PointKernel<I> {
     using typename detail::PointKernel<I>::T;
 
-    Near<T, 3> answer(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
-        if (!this->takes(index, point, options)) [[unlikely]]
-            return this->template answer_of_walk<ClosestPoint<Set>>(index, point, options);
+    Near<T, 3> answer(const I& index, const Vec<T, 3>& point, const NearLimits<T>& limits) const {
+        if (!this->takes(index, point, limits)) [[unlikely]]
+            return this->template answer_of_walk<ClosestPoint<Set>>(index, point, limits);
         if constexpr (detail::CloudForKernels<I>)
             if (index.structure().tree().crowded) [[unlikely]]
-                return closest_of_crowd(index, point, options);
-        return this->kernels().closest(this->scene(index), point, options.max_distance2());
+                return closest_of_crowd(index, point, limits);
+        return this->kernels().closest(this->scene(index), point, limits.distance2);
     }
-    bool answer_many(const I& index, const PointBatch<T, 3>& points, const NearOptions<T>& options,
+    bool answer_many(const I& index, const PointBatch<T, 3>& points, const NearLimits<T>& limits,
                      Near<T, 3>* found) const {
-        if (!this->takes_all(index, points, options)) return false;
+        if (!this->takes_all(index, points, limits)) return false;
         if constexpr (detail::CloudForKernels<I>)
             if (index.structure().tree().crowded) {
                 for (std::size_t i = 0; i < points.size(); ++i)
-                    found[points.number(i)] = closest_of_crowd(index, points[i], options);
+                    found[points.number(i)] = closest_of_crowd(index, points[i], limits);
                 return true;
             }
-        this->kernels().closest_of_many(this->scene(index), points, options.max_distance2(), found);
+        this->kernels().closest_of_many(this->scene(index), points, limits.distance2, found);
         return true;
     }
 
 private:
     /// The first of the one nearest, since that search gives up where many points are at one place.
-    Near<T, 3> closest_of_crowd(const I& index, const Vec<T, 3>& point, const NearOptions<T>& options) const {
+    Near<T, 3> closest_of_crowd(const I& index, const Vec<T, 3>& point, const NearLimits<T>& limits) const {
         const Scratch<std::vector<Near<T, 3>>> found;
         found->reserve(1);
         const Kernel<Nearest<Set>, I> nearest;
-        return nearest.answer(index, point, 1, options, *found) == 0 ? Near<T, 3>() : found->front();
+        return nearest.answer(index, point, 1, limits, *found) == 0 ? Near<T, 3>() : found->front();
     }
 };
 
 template <class Set, detail::NearForKernels I>
 struct Kernel<Nearest<Set>, I> : detail::PointKernel<I> {
     std::size_t answer(const I& index, const Vec<float, 3>& point, std::size_t k,
-                       const NearOptions<float>& options, std::vector<Near<float, 3>>& found) const {
-        if (k > most_nearest || !this->takes(index, point, options)) [[unlikely]]
-            return this->template answer_of_walk<Nearest<Set>>(index, point, k, options, found);
+                       const NearLimits<float>& limits, std::vector<Near<float, 3>>& found) const {
+        if (k > most_nearest || !this->takes(index, point, limits)) [[unlikely]]
+            return this->template answer_of_walk<Nearest<Set>>(index, point, k, limits, found);
         alignas(64) NearKey keys[most_nearest];
         const std::size_t count =
-            this->kernels().nearest(this->scene(index), point, k, options.max_distance2(), keys);
+            this->kernels().nearest(this->scene(index), point, k, limits.distance2, keys);
         if constexpr (detail::CloudForKernels<I>)
             if (count == gave_up) [[unlikely]]
-                return this->template answer_of_walk<NearestAmongTies<Set>>(index, point, k, options, found);
+                return this->template answer_of_walk<NearestAmongTies<Set>>(index, point, k, limits, found);
         return this->read(index, point, {keys, count}, found);
     }
     bool answer_many(const I& index, const PointBatch<float, 3>& points, std::size_t k,
-                     const NearOptions<float>& options, PrimitiveId* ids, float* distances2) const {
-        if (k > most_nearest || !this->takes_all(index, points, options)) return false;
-        this->kernels().nearest_of_many(this->scene(index), points, k, options.max_distance2(), ids,
-                                        distances2);
+                     const NearLimits<float>& limits, PrimitiveId* ids, float* distances2) const {
+        if (k > most_nearest || !this->takes_all(index, points, limits)) return false;
+        this->kernels().nearest_of_many(this->scene(index), points, k, limits.distance2, ids, distances2);
         if constexpr (detail::CloudForKernels<I>)
             if (k > 0 && index.structure().tree().crowded)
-                answer_given_up(index, points, k, options, ids, distances2);
+                answer_given_up(index, points, k, limits, ids, distances2);
         return true;
     }
 
 private:
     /// Answers the points whose rows the kernel has marked.
     void answer_given_up(const I& index, const PointBatch<float, 3>& points, std::size_t k,
-                         const NearOptions<float>& options, PrimitiveId* ids, float* distances2) const {
+                         const NearLimits<float>& limits, PrimitiveId* ids, float* distances2) const {
         const Scratch<std::vector<Near<float, 3>>> kept;
         std::vector<Near<float, 3>>& found = *kept;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const std::size_t first = k * points.number(i);
             if (ids != nullptr ? ids[first] != gave_up_id : distances2[first] != gave_up_distance2) continue;
-            this->template answer_of_walk<NearestAmongTies<Set>>(index, points[i], k, options, found);
+            this->template answer_of_walk<NearestAmongTies<Set>>(index, points[i], k, limits, found);
             found.resize(k);
             for (std::size_t j = 0; j < k; ++j) {
                 if (ids != nullptr) ids[first + j] = found[j].element;
@@ -261,27 +264,28 @@ private:
 
 template <class Set, detail::NearForKernels I>
 struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
-    std::size_t answer(const I& index, const Vec<float, 3>& point, const NearOptions<float>& options,
+    std::size_t answer(const I& index, const Vec<float, 3>& point, const NearLimits<float>& limits,
                        std::vector<Near<float, 3>>& found) const {
-        if (!this->takes(index, point, options)) [[unlikely]]
-            return this->template answer_of_walk<Within<Set>>(index, point, options, found);
-        return this->read(index, point, sorted_keys(index, point, options), found);
+        if (!this->takes(index, point, limits)) [[unlikely]]
+            return this->template answer_of_walk<Within<Set>>(index, point, limits, found);
+        return this->read(index, point, sorted_keys(index, point, limits), found);
     }
-    /// Appends what is within the options' distance of each point, and where each list ends. False, and
+    /// Appends the list of what is within the limits of each point. False, and
     /// nothing is written, where a point is none for the kernels.
-    bool answer_many(const I& index, const PointBatch<float, 3>& points, const NearOptions<float>& options,
-                     std::vector<std::size_t>& offsets, std::vector<PrimitiveId>& ids,
-                     std::vector<float>& distances2) const {
-        if (!this->takes_all(index, points, options)) return false;
+    bool answer_many(const I& index, const PointBatch<float, 3>& points, const NearLimits<float>& limits,
+                     NearLists<float>& lists) const {
+        if (!this->takes_all(index, points, limits)) return false;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const auto keys = sorted_keys(index, points[i], options);
-            const std::size_t first = ids.size();
-            ids.resize(first + keys.size()), distances2.resize(first + keys.size());
+            const auto keys = sorted_keys(index, points[i], limits);
+            const std::size_t first = lists.ids.size();
+            lists.ids.resize(first + keys.size()), lists.distances2.resize(first + keys.size());
+            PrimitiveId* const ids = lists.ids.data() + first;
+            float* const distances2 = lists.distances2.data() + first;
             for (std::size_t k = 0; k < keys.size(); ++k) {
-                ids[first + k] = element_of(keys[k]);
-                distances2[first + k] = distance2_of(keys[k]);
+                ids[k] = element_of(keys[k]);
+                distances2[k] = distance2_of(keys[k]);
             }
-            offsets.push_back(ids.size());
+            lists.offsets.push_back(lists.ids.size());
         }
         return true;
     }
@@ -289,14 +293,14 @@ struct Kernel<Within<Set>, I> : detail::PointKernel<I> {
 private:
     /// The keys of one query, in memory that the thread keeps until the next.
     std::span<const NearKey> sorted_keys(const I& index, const Vec<float, 3>& point,
-                                         const NearOptions<float>& options) const {
+                                         const NearLimits<float>& limits) const {
         std::vector<NearKey>& kept = kept_by_thread();
         kept.resize(std::max<std::size_t>(kept.capacity(), 64));
         NearKeys keys{kept.data(), 0, kept.size(), [](NearKeys& full) {
                           kept_by_thread().resize(2 * full.room);
                           full.keys = kept_by_thread().data(), full.room = kept_by_thread().size();
                       }};
-        this->kernels().within(this->scene(index), point, options.max_distance2(), keys);
+        this->kernels().within(this->scene(index), point, limits.distance2, keys);
         static thread_local std::vector<NearKey> other;
         sort_keys({keys.keys, keys.size}, other);
         return {keys.keys, keys.size};

@@ -103,7 +103,7 @@ requires std::same_as<Set, typename I::Primitives>
 struct Kernel<FirstHits<Set, Filter>, I> {
     explicit operator bool() const { return kernels_ != nullptr; }
     std::size_t answer(const I& index, const Ray<float, 3>& ray, std::span<Hit<float>> hits,
-                       const AfterHit<float>& after, const Filter& filter = {}) const {
+                       const PlaceOfHit<float>& after, const Filter& filter = {}) const {
         return kernels_->first_hits(detail::kernel_scene(index, ray, hit_filter(filter)), ray, hits, after);
     }
 

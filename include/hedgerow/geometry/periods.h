@@ -11,6 +11,14 @@ namespace hedgerow {
 template <int D>
 using Periods = Vec<double, D>;
 
+/// Periods of the plane, or of space, as those of space: the third is 0 in the plane.
+template <int D>
+Periods<3> periods_in_space(const Periods<D>& periods) {
+    Periods<3> all;
+    for (int k = 0; k < D; ++k) all[k] = periods[k];
+    return all;
+}
+
 /// The difference of two coordinates to the nearest image: exact, once the difference itself is rounded. A
 /// period of 0 leaves it as it is.
 inline double nearest_image(double difference, double period) {

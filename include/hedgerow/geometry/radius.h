@@ -17,6 +17,19 @@ bool within_radius(T distance2, T radius) {
     return std::sqrt(distance2) <= radius;
 }
 
+/// The greatest number of T, or infinity, that is at most a number; NaN of NaN. A distance in T is at most a
+/// radius if it is at most that.
+template <std::floating_point T>
+T greatest_at_most(double number) {
+    if constexpr (std::same_as<T, double>) return number;
+    if (number >= std::numeric_limits<T>::infinity()) return std::numeric_limits<T>::infinity();
+    return in_ieee_mode([&] {
+        const T nearest = rounded_to<T>(number);
+        const bool above = static_cast<double>(nearest) > number;
+        return above ? std::nextafter(nearest, -std::numeric_limits<T>::infinity()) : nearest;
+    });
+}
+
 /// The largest finite squared distance within a radius, and −1 if none is: `within_radius(d2, r)` is
 /// `d2 <= largest_square_within(r)` for every finite d2.
 template <std::floating_point T>

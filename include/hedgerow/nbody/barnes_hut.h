@@ -130,6 +130,7 @@ struct BarnesHutOptions {
     double opening_angle = 0.5;
     /// By its quadrupole too; else as one charge.
     bool quadrupoles = true;
+    Threads threads = {};
 };
 /// Writes the potential Σ q/r, or that of softened charges, and its gradient at each charge, of all others,
 /// by the method of Barnes and Hut in vectors: one walk for each leaf of an octree, with about 48 targets, in
@@ -141,6 +142,6 @@ struct BarnesHutOptions {
 /// or double.
 template <std::floating_point T>
 void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found,
-                const BarnesHutOptions& options = {}, Threads threads = {});
+                const BarnesHutOptions& options = {});
 
 }  // namespace hedgerow

@@ -42,6 +42,11 @@ struct Targets {
     requires std::convertible_to<const R&, std::span<const Vec<T, 3>>> Targets(const R& at) : places(at) {}
 };
 
+/// By which threads pairs are summed.
+struct SumOptions {
+    Threads threads = {};
+};
+
 /// Writes the potential Σ q/r, or that of softened charges, and its gradient at each target. A bare charge at
 /// a target's own place does nothing there; a softened one has its potential there, which is finite.
 ///
@@ -59,18 +64,18 @@ struct Targets {
 /// In the library `nbody`; T is float or double.
 template <std::floating_point T>
 void direct_sum(const Charges<T>& sources, const Targets<T>& targets, std::span<PotentialAt<T>> found,
-                Threads threads = {});
+                const SumOptions& options = {});
 
 /// The same at the charges themselves, or at as many of the first ones as `found` has room for: what all
 /// others do.
 template <std::floating_point T>
-void direct_sum(const Charges<T>& charges, std::span<PotentialAt<T>> found, Threads threads = {});
+void direct_sum(const Charges<T>& charges, std::span<PotentialAt<T>> found, const SumOptions& options = {});
 
 /// Writes the tidal tensor of the charges at each target, likewise, pair by pair in double. A softened charge
 /// acts at its own place too, unless the target says that it is the charge (`Targets::charges`). O(sources ·
 /// targets), some ten times as slow: what those of `forces` are compared with.
 template <std::floating_point T>
 void direct_tides(const Charges<T>& sources, const Targets<T>& targets, std::span<Tides> found,
-                  Threads threads = {});
+                  const SumOptions& options = {});
 
 }  // namespace hedgerow

@@ -19,6 +19,7 @@ struct ForceOptions {
     /// Room for the tidal tensor at each target, if it is wanted. Its errors, as shares of Σ |q|/r³, are
     /// about those of gradients as shares of Σ |q|/r². It takes about half as long again.
     std::span<Tides> tides = {};
+    Threads threads = {};
 };
 
 /// Writes the potential Σ q/r, or that of softened charges, and its gradient at each charge, of all others,
@@ -40,13 +41,12 @@ struct ForceOptions {
 ///
 /// In the library `nbody`; T is float or double.
 template <std::floating_point T>
-void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options = {},
-            Threads threads = {});
+void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options = {});
 
 /// The same at other places, which may be few: a target costs about as much as a charge, and charges cost
 /// little beside. A charge at a target's own place does nothing there.
 template <std::floating_point T>
 void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<PotentialAt<T>> found,
-            const ForceOptions& options = {}, Threads threads = {});
+            const ForceOptions& options = {});
 
 }  // namespace hedgerow

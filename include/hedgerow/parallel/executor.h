@@ -2,6 +2,7 @@
 /// pool.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
@@ -73,24 +74,37 @@ inline SerialExecutor& serial_executor() {
 /// library `core`.
 Executor& default_executor();
 
+/// The executor that uses at most so many threads of those of `default_executor()`; 0 means all of them. It
+/// lives as long as the program. In the library `core`.
+Executor& executor_of(std::size_t threads);
+
 /// Whether the calling thread is running a task of `default_executor()`. In the library `core`.
 bool is_worker();
 
-/// Chooses the executor of a call: the caller's own, if one is given. Otherwise all cores for at least
-/// `worth_a_task` items; the calling thread for fewer items, and inside a worker, since other workers have
-/// the other cores.
+/// Which threads a call runs on: those of the caller's executor, or at most so many, or all. A call uses
+/// the caller's executor for whatever work. Without one, it uses other threads for at least `worth_a_task`
+/// items; it stays in the calling thread for fewer items, and inside a worker, since other workers have the
+/// other cores.
+///
+///   closest_hits(index, rays, hits, {.threads = 4});
+///   closest_hits(index, rays, hits, {.threads = my_pool});
 class Threads {
 public:
     Threads() = default;
     Threads(Executor& given) : given_(&given) {}  // NOLINT(google-explicit-constructor): an executor will do
+    /// At most so many threads; 0 or less means all.
+    template <std::integral Number>
+    Threads(Number most) : most_(most > 0 ? static_cast<std::size_t>(most) : 0) {}  // NOLINT: a number too
 
     Executor& over(std::size_t items) const {
         if (given_ != nullptr) return *given_;
-        return items >= worth_a_task && !is_worker() ? default_executor() : serial_executor();
+        if (items < worth_a_task || is_worker()) return serial_executor();
+        return most_ == 0 ? default_executor() : executor_of(most_);
     }
 
 private:
     Executor* given_ = nullptr;
+    std::size_t most_ = 0;
 };
 
 /// Limits oneTBB to a number of threads for as long as the object lives; 0 means all cores. Has no effect if

@@ -9,7 +9,10 @@
 #include <cassert>
 #include <limits>
 #include <span>
+#include <string>
 
+#include <hedgerow/base/error.h>
+#include <hedgerow/geometry/radius.h>
 #include <hedgerow/primitives/boundary.h>
 #include <hedgerow/queries/ray_query.h>
 
@@ -22,17 +25,58 @@ constexpr bool hit_before(const A& a, const B& b) {
     return a.t != b.t ? a.t < b.t : comes_before(a, b);
 }
 
-/// The place of a hit among the hits of a ray, from which a list of hits goes on. The default is before all
-/// hits. After the place of a Hit that is false (where a list has ended) there are no hits, nor after a t
-/// that is NaN.
-template <std::floating_point T>
+/// A place among the hits of a ray, in the order of (t, instance, element), after which a list of hits goes
+/// on: that of a hit. The default is before all hits. After the place of a Hit that is false (where a list
+/// has ended) there are no hits, nor after a t that is NaN.
 struct AfterHit {
-    T t = -std::numeric_limits<T>::infinity();
+    double t = -std::numeric_limits<double>::infinity();
     std::uint32_t instance = 0, element = 0;
 
     constexpr AfterHit() = default;
-    constexpr AfterHit(T at, std::uint32_t in, std::uint32_t of) : t(at), instance(in), element(of) {}
-    constexpr AfterHit(const Hit<T>& hit) : AfterHit(hit.t, hit.instance, hit.element) {}
+    constexpr AfterHit(double at, std::uint32_t in, std::uint32_t of) : t(at), instance(in), element(of) {}
+    template <std::floating_point T>
+    constexpr AfterHit(const Hit<T>& hit)  // NOLINT(google-explicit-constructor)
+        : AfterHit(static_cast<double>(hit.t), hit.instance, hit.element) {}
+};
+
+/// Where lists of hits go on: after no hit, after one place for all rays, or after one for each of a batch.
+class AfterHits {
+public:
+    AfterHits() = default;
+    AfterHits(const AfterHit& place) : place_(place) {}  // NOLINT(google-explicit-constructor)
+    template <std::floating_point T>
+    AfterHits(const Hit<T>& hit) : place_(hit) {}  // NOLINT(google-explicit-constructor)
+    /// Views an array: a vector, a span, or Strided.
+    template <class Each>
+    requires std::convertible_to<const Each&, Strided<AfterHit>> AfterHits(const Each& each)
+        : each_(each), of_each_(true) {}  // NOLINT(google-explicit-constructor)
+
+    AfterHit of(std::size_t ray) const { return of_each_ ? each_[ray] : place_; }
+    /// Throws InputError if there is an array that is shorter than the batch.
+    void expect(std::size_t rays) const {
+        if (of_each_ && each_.size() < rays)
+            throw InputError("there are " + std::to_string(rays) + " rays, but places to go on from for " +
+                             std::to_string(each_.size()) + ": give one for each ray, or none");
+    }
+
+private:
+    AfterHit place_;
+    Strided<AfterHit> each_;
+    bool of_each_ = false;
+};
+
+/// A place as a walk compares it with hits, whose t is a T.
+template <std::floating_point T>
+struct PlaceOfHit {
+    T t = -std::numeric_limits<T>::infinity();
+    std::uint32_t instance = 0, element = 0;
+
+    constexpr PlaceOfHit() = default;
+    PlaceOfHit(const AfterHit& after)  // NOLINT(google-explicit-constructor)
+        : t(greatest_at_most<T>(after.t)), instance(after.instance), element(after.element) {
+        // No hit of a lesser t is after the place, whatever its number.
+        if (static_cast<double>(t) < after.t) instance = element = no_primitive;
+    }
 
     /// Whether no hit can come after the place, since t of a hit is finite.
     constexpr bool at_end() const { return !(t < std::numeric_limits<T>::infinity()); }
@@ -43,7 +87,7 @@ struct AfterHit {
 template <std::floating_point T>
 class SortedHits {
 public:
-    SortedHits(std::span<Hit<T>> hits, const AfterHit<T>& after) : hits_(hits), after_(after) {}
+    SortedHits(std::span<Hit<T>> hits, const PlaceOfHit<T>& after) : hits_(hits), after_(after) {}
 
     std::size_t size() const { return size_; }
     bool full() const { return size_ == hits_.size(); }
@@ -70,7 +114,7 @@ public:
 
 private:
     std::span<Hit<T>> hits_;
-    AfterHit<T> after_;
+    PlaceOfHit<T> after_;
     std::size_t size_ = 0;
 };
 
@@ -102,8 +146,8 @@ public:
     static constexpr Order order = Order::nearest;
 
     template <class Index, class Ray>
-    FirstHits(const Index& index, const Ray& ray, std::span<Hit<Scalar>> hits, const AfterHit<Scalar>& after,
-              const Filter& filter = {})
+    FirstHits(const Index& index, const Ray& ray, std::span<Hit<Scalar>> hits,
+              const PlaceOfHit<Scalar>& after, const Filter& filter = {})
         : Base(index, part_after(index.primitives(), ray, after), filter),
           hits_(hits, after),
           limit_(hits.empty() || after.at_end() ? Scalar(-1) : Base::first_limit()) {}
@@ -122,7 +166,7 @@ public:
 private:
     /// The part of the ray in which hits after the place are.
     template <class Ray>
-    static Ray part_after(const Set& set, Ray ray, const AfterHit<Scalar>& after) {
+    static Ray part_after(const Set& set, Ray ray, const PlaceOfHit<Scalar>& after) {
         if (detail::hit_at_one_t(set)) ray.t_min = std::max(ray.t_min, after.t);
         return ray;
     }

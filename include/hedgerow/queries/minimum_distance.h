@@ -58,7 +58,7 @@ bool surely_farther(const Triangle<T, 3>& a, const Triangle<T, 3>& b, const Vec3
 }
 }  // namespace detail
 
-/// Finds the closest pair within the options' distance.
+/// Finds the closest pair within the limits.
 template <class A, class B>
 class MinimumDistance {
 public:
@@ -68,11 +68,13 @@ public:
     using Boxed = BoxedLeaf<Scalar, dimension>;
     static constexpr Order order = Order::nearest;
 
-    MinimumDistance(const A& a, const B& b, const NearOptions<Scalar>& options)
-        : a_(a), b_(b), options_(options), max_(options.max_distance2()) {}
+    MinimumDistance(const A& a, const B& b, const NearLimits<Scalar>& limits)
+        : a_(a), b_(b), limits_(limits) {}
 
     static Scalar bound(const BoxType& a, const BoxType& b) { return distance2(a, b); }
-    Scalar limit() const { return limit_of_boxes(best_ ? options_.limit(best_.distance2) : max_); }
+    Scalar limit() const {
+        return limit_of_boxes(best_ ? limits_.after(best_.distance2) : limits_.distance2);
+    }
     Flow offer(const Boxed& a, const Boxed& b) {
         for (std::uint32_t i = a.items.first; i < a.items.first + a.items.count; ++i) {
             const PrimitiveId of_a = a.items.ids[i];
@@ -94,7 +96,7 @@ private:
         if constexpr (TriangleSet<A> && TriangleSet<B>)
             if (best_ && surely_farther(a_.triangle(i), b_.triangle(j))) return;
         const auto gap = gap_between(a_, i, b_, j);
-        if (!(gap.distance2 <= max_)) return;
+        if (!(gap.distance2 <= limits_.distance2)) return;
         if (gap.distance2 < best_.distance2 || (gap.distance2 == best_.distance2 && lower))
             best_ = {gap.distance2, i, j, gap.a, gap.b};
     }
@@ -111,8 +113,7 @@ private:
 
     const A& a_;
     const B& b_;
-    NearOptions<Scalar> options_;
-    Scalar max_;
+    NearLimits<Scalar> limits_;
     Apart<Scalar, dimension> best_;
 };
 

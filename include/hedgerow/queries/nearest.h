@@ -11,28 +11,30 @@ namespace hedgerow {
 /// Stores the k nearest so far as a heap in the caller's vector, which is cleared and whose capacity is
 /// reused. A candidate that counts costs O(log k) for the heap, and a search through the k, since structures
 /// may offer a primitive twice.
-template <class Set>
-class Nearest : public PointQuery<Set> {
+template <class Set, class Filter = KeepAll>
+class Nearest : public PointQuery<Set, Filter> {
 public:
-    using Base = PointQuery<Set>;
+    using Base = PointQuery<Set, Filter>;
     using typename Base::Candidate, typename Base::Found, typename Base::Scalar;
     static constexpr Order order = Order::nearest;
 
     template <class Index>
     Nearest(const Index& index, const Vec<Scalar, Base::dimension>& p, std::size_t k,
-            const NearOptions<Scalar>& options, std::vector<Found>& found)
-        : Base(index, p), k_(k), options_(options), max_(options.max_distance2()), found_(found) {
+            const NearLimits<Scalar>& limits, std::vector<Found>& found, const Filter& filter = {})
+        : Base(index, p, limits, filter), k_(k), found_(found) {
         found_.clear();
     }
 
     Scalar limit() const {
         if (k_ == 0) return Scalar(-1);
-        return limit_of_boxes(found_.size() < k_ ? max_ : options_.limit(found_.front().distance2));
+        return limit_of_boxes(found_.size() < k_ ? this->limits().distance2
+                                                 : this->limits().after(found_.front().distance2));
     }
     Flow offer(const Candidate& c) {
         const Found f = this->found(c);
-        if (k_ == 0 || !(c.distance2 <= max_)) return Flow::go_on;
+        if (k_ == 0 || !(c.distance2 <= this->limits().distance2)) return Flow::go_on;
         if (found_.size() == k_ && !nearer(f, found_.front())) return Flow::go_on;
+        if (!this->counts(c)) return Flow::go_on;
         for (const Found& g : found_)
             if (same_primitive(g, c)) return Flow::go_on;
         if (found_.size() == k_) {
@@ -45,7 +47,7 @@ public:
     }
     /// Whether `offer` would keep a candidate that it has not seen.
     bool would_keep(const Candidate& c) const {
-        return c.distance2 <= max_ && (found_.size() < k_ || nearer(c, found_.front()));
+        return c.distance2 <= this->limits().distance2 && (found_.size() < k_ || nearer(c, found_.front()));
     }
     std::size_t answer() {
         std::sort_heap(found_.begin(), found_.end(), nearer<Found, Found>);
@@ -54,8 +56,6 @@ public:
 
 private:
     std::size_t k_;
-    NearOptions<Scalar> options_;
-    Scalar max_;
     std::vector<Found>& found_;
 };
 
@@ -69,9 +69,9 @@ public:
 
     template <class Index>
     NearestAmongTies(const Index& index, const Vec<typename Base::Scalar, Base::dimension>& p, std::size_t k,
-                     const NearOptions<typename Base::Scalar>& options,
+                     const NearLimits<typename Base::Scalar>& limits,
                      std::vector<typename Base::Found>& found)
-        : Base(index, p, k, options, found), set_(index.primitives()) {}
+        : Base(index, p, k, limits, found), set_(index.primitives()) {}
 
     template <class Node>
     Verdict accept(const Node& node) {

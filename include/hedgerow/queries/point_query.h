@@ -3,6 +3,9 @@
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/radius.h>
+#include <hedgerow/parallel/executor.h>
+#include <hedgerow/queries/filter.h>
+#include <hedgerow/queries/leave_out.h>
 #include <hedgerow/walks/query.h>
 
 namespace hedgerow {
@@ -36,34 +39,47 @@ T limit_of_boxes(T distance2) {
     return distance2 + product(distance2, more) + 4 * std::numeric_limits<T>::denorm_min();
 }
 
-/// How far questions of a point look, and how exactly: `closest_point(index, p, {.radius = 2})`.
-template <std::floating_point T>
-struct NearOptions {
-    static constexpr T anywhere = std::numeric_limits<T>::max();
+/// How far questions of a point look, how exactly, and by which threads: `closest_point(index, p, {.radius =
+/// 2})`.
+struct PointOptions {
+    static constexpr double anywhere = std::numeric_limits<double>::infinity();
 
     /// The largest distance, included, by the rule of geometry/radius.h; and the largest squared one. Both
     /// hold. Nothing is within what is negative or NaN.
-    T radius = anywhere, radius2 = anywhere;
+    double radius = anywhere, radius2 = anywhere;
     /// At least 1. The closest point, and each of the k nearest, is at most this many times as far away as
     /// the exact one of its place; distances are those of what is found. Parts that could only improve on an
     /// answer by less are not looked at (Arya et al. 1998). The answer depends on the structure alone, and is
     /// found by a walk.
-    T factor = 1;
+    double factor = 1;
+    LeaveOut leave_out = {};
+    Threads threads = {};  ///< of a batch
+};
 
-    /// The largest squared distance. Throws InputError for a factor that is not at least 1.
-    T max_distance2() const {
+/// The options of one query, as its walk reads them.
+template <std::floating_point T>
+struct NearLimits {
+    T distance2;  ///< the largest squared distance, finite; nothing is within what is negative or NaN
+    T factor;
+    PrimitiveId leave_out;
+
+    /// Throws InputError for a factor that is not at least 1.
+    explicit NearLimits(const PointOptions& options = {}, std::size_t query = 0)
+        : distance2(largest_square_within(greatest_at_most<T>(options.radius))),
+          factor(options.factor == 1 ? T(1) : greatest_at_most<T>(options.factor)),
+          leave_out(options.leave_out.of(query)) {
         if (!(factor >= 1)) throw InputError("the factor of a point's question is below 1: give 1 or more");
-        const T squared = largest_square_within(radius);
-        return squared < radius2 ? squared : radius2;
+        if (!(static_cast<double>(distance2) < options.radius2))
+            distance2 = greatest_at_most<T>(options.radius2);
     }
     /// The limit of a walk that has found something at a squared distance.
-    T limit(T found_distance2) const {
+    T after(T found_distance2) const {
         return factor == 1 ? found_distance2 : found_distance2 / product(factor, factor);
     }
 };
 
-/// `Set` gives the ids that answers report.
-template <class Set>
+/// `Set` gives the ids that answers report; the filter may refuse answers (queries/hit.h).
+template <class Set, class Filter = KeepAll>
 class PointQuery {
 public:
     using Scalar = typename Set::Scalar;
@@ -73,18 +89,33 @@ public:
     using Found = Near<Scalar, dimension>;
 
     template <class Index>
-    PointQuery(const Index& index, const Vec<Scalar, dimension>& p) : probe_(p), set_(index.primitives()) {}
+    PointQuery(const Index& index, const Vec<Scalar, dimension>& p, const NearLimits<Scalar>& limits,
+               const Filter& filter)
+        : probe_(p), set_(index.primitives()), limits_(limits), filter_(filter) {}
 
     const Probe& probe() const { return probe_; }
+    /// Whether the filter lets an instance with this mask be queried.
+    bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
 
 protected:
+    const NearLimits<Scalar>& limits() const { return limits_; }
     Found found(const Candidate& c) const {
         return {c.distance2, reported_id(set_, c.element, c.instance), c.element, c.point, c.instance};
+    }
+    /// Whether a candidate counts that is near enough.
+    bool counts(const Candidate& c) const {
+        if (c.element == limits_.leave_out) return false;
+        if constexpr (std::same_as<Filter, KeepAll>)
+            return true;
+        else
+            return keeps(filter_, 0, found(c));
     }
 
 private:
     Probe probe_;
     const Set& set_;
+    NearLimits<Scalar> limits_;
+    [[no_unique_address]] Filter filter_;
 };
 
 }  // namespace hedgerow

@@ -10,23 +10,23 @@ namespace hedgerow {
 
 /// Collects primitives in the caller's vector, which is cleared and whose capacity is reused. O(k log k) for
 /// k found, beyond the walk.
-template <class Set>
-class Within : public PointQuery<Set> {
+template <class Set, class Filter = KeepAll>
+class Within : public PointQuery<Set, Filter> {
 public:
-    using Base = PointQuery<Set>;
+    using Base = PointQuery<Set, Filter>;
     using typename Base::Candidate, typename Base::Found, typename Base::Scalar;
     static constexpr Order order = Order::none;
 
     template <class Index>
-    Within(const Index& index, const Vec<Scalar, Base::dimension>& p, const NearOptions<Scalar>& options,
-           std::vector<Found>& found)
-        : Base(index, p), max_(options.max_distance2()), found_(found) {
+    Within(const Index& index, const Vec<Scalar, Base::dimension>& p, const NearLimits<Scalar>& limits,
+           std::vector<Found>& found, const Filter& filter = {})
+        : Base(index, p, limits, filter), found_(found) {
         found_.clear();
     }
 
-    Scalar limit() const { return limit_of_boxes(max_); }
+    Scalar limit() const { return limit_of_boxes(this->limits().distance2); }
     Flow offer(const Candidate& c) {
-        if (c.distance2 <= max_) found_.push_back(this->found(c));
+        if (c.distance2 <= this->limits().distance2 && this->counts(c)) found_.push_back(this->found(c));
         return Flow::go_on;
     }
     std::size_t answer() {
@@ -37,7 +37,6 @@ public:
     }
 
 private:
-    Scalar max_;
     std::vector<Found>& found_;
 };
 

@@ -59,9 +59,9 @@ public:
         keep(any_, true, rays, hits);
         return use;
     }
-    void first_hits(const RayArray<T, 3>& rays, std::size_t k, const FirstHitsColumns<T>& columns,
-                    std::span<const AfterHit<T>> after, const Filter& filter) const override {
-        tracer_.first_hits(rays, k, columns, after, filter);
+    void first_hits(const RayArray<T, 3>& rays, std::size_t k, HitLists<T>& lists, const AfterHits& after,
+                    const Filter& filter) const override {
+        tracer_.first_hits(rays, k, lists, after, filter);
     }
 
 private:

@@ -28,9 +28,9 @@ public:
                                    std::span<Visits> visits, const Filter& filter) const = 0;
     virtual KernelUse any_hits(const RayArray<T, 3>& rays, std::span<bool> hits, std::span<Visits> visits,
                                const Filter& filter) const = 0;
-    /// Writes the next k hits of each ray after a place, as the function of this name in ask/rays.h does.
-    virtual void first_hits(const RayArray<T, 3>& rays, std::size_t k, const FirstHitsColumns<T>& columns,
-                            std::span<const AfterHit<T>> after, const Filter& filter) const = 0;
+    /// Lists the next k hits of each ray after a place, as the function of this name in ask/rays.h does.
+    virtual void first_hits(const RayArray<T, 3>& rays, std::size_t k, HitLists<T>& lists,
+                            const AfterHits& after, const Filter& filter) const = 0;
 
     KernelUse closest_hits(const RayArray<T, 3>& rays, std::span<Hit<T>> hits,
                            std::span<Visits> visits = {}) const {
@@ -56,54 +56,25 @@ public:
     Box<T, 3> bounds() const override { return index_.bounds(); }
     KernelUse closest_hits(const RayArray<T, 3>& rays, std::span<Hit<T>> hits, std::span<Visits> visits,
                            const Filter& filter) const override {
-        return answer<ClosestHit>(rays, hits, visits, filter, [&](const auto&... filters) {
-            if constexpr (requires { index_.closest_hits(rays, hits); })
-                return index_.closest_hits(rays, hits);
-            else
-                return hedgerow::closest_hits(index_, rays, hits, serial_executor(), filters...);
-        });
+        if (filter) return hedgerow::closest_hits(index_, rays, hits, alone, filter, visits);
+        return hedgerow::closest_hits(index_, rays, hits, alone, KeepAll(), visits);
     }
     KernelUse any_hits(const RayArray<T, 3>& rays, std::span<bool> hits, std::span<Visits> visits,
                        const Filter& filter) const override {
-        return answer<AnyHit>(rays, hits, visits, filter, [&](const auto&... filters) {
-            if constexpr (requires { index_.any_hits(rays, hits); })
-                return index_.any_hits(rays, hits);
-            else
-                return hedgerow::any_hits(index_, rays, hits, serial_executor(), filters...);
-        });
+        if (filter) return hedgerow::any_hits(index_, rays, hits, alone, filter, visits);
+        return hedgerow::any_hits(index_, rays, hits, alone, KeepAll(), visits);
     }
-
-    void first_hits(const RayArray<T, 3>& rays, std::size_t k, const FirstHitsColumns<T>& columns,
-                    std::span<const AfterHit<T>> after, const Filter& filter) const override {
+    void first_hits(const RayArray<T, 3>& rays, std::size_t k, HitLists<T>& lists, const AfterHits& after,
+                    const Filter& filter) const override {
+        const HitsOptions options{.after = after, .threads = serial_executor()};
         if (filter)
-            hedgerow::first_hits(index_, rays, k, columns, after, serial_executor(), filter);
+            hedgerow::first_hits(index_, rays, k, lists, options, filter);
         else
-            hedgerow::first_hits(index_, rays, k, columns, after, serial_executor());
+            hedgerow::first_hits(index_, rays, k, lists, options);
     }
 
 private:
-    /// Whether the index answers batches with a filter: an AnyIndex does not.
-    static constexpr bool filters_batches = !requires(const I& index, const RayArray<T, 3>& rays) {
-        index.closest_hits(rays, std::span<Hit<T>>());
-    };
-
-    /// Answers by `batch`, or ray by ray where that counts no visits or takes no filter.
-    template <template <class, class> class Q, class Answer, class Batch>
-    KernelUse answer(const RayArray<T, 3>& rays, std::span<Answer> answers, std::span<Visits> visits,
-                     const Filter& filter, Batch batch) const {
-        if (visits.empty() && !filter) return batch();
-        if constexpr (filters_batches)
-            if (visits.empty()) return batch(filter);
-        const auto one = [&](std::size_t i, const auto& of_ray) {
-            using OfRay = std::remove_cvref_t<decltype(of_ray)>;
-            using Query = Q<typename I::Primitives, OfRay>;
-            return visits.empty() ? index_.template answer<Query>(no_visits, rays[i], of_ray)
-                                  : index_.template answer<Query>(visits[i], rays[i], of_ray);
-        };
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            answers[i] = filter ? one(i, filter_of_ray(filter, i)) : one(i, KeepAll());
-        return {rays.size(), 0, 0};
-    }
+    inline static const RayOptions alone{.threads = serial_executor()};
 
     const I& index_;
 };

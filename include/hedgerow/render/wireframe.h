@@ -28,7 +28,7 @@ std::vector<float> depths(const AnyIndex<T, 3>& index, const RayMaker& maker, in
         for (std::size_t y = begin; y < end; ++y) {
             for (std::size_t x = 0; x < rays.size(); ++x)
                 rays[x] = maker.ray<T>(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-            index.closest_hits(rays, hits);
+            closest_hits(index, rays, hits);
             for (std::size_t x = 0; x < rays.size(); ++x)
                 all[y * rays.size() + x] =
                     hits[x] ? static_cast<float>(hits[x].t) * maker.forward_of(Vec3f(rays[x].direction))

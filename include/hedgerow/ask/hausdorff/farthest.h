@@ -30,7 +30,7 @@ public:
     /// Finds the point of B that is closest to each of some points.
     const std::vector<Near<T, dimension>>& ask(const std::vector<Point>& points) {
         near_.resize(points.size());
-        closest_points(b_, Strided<Point>(points), std::span(near_), threads_);
+        closest_points(b_, points, near_, {.threads = threads_});
         return near_;
     }
     /// Takes note of a point of an element of A that was rounded to `query`, which is `away` from it.

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <cstddef>
 
+#include <hedgerow/parallel/executor.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/queries/crossings.h>
 
@@ -17,6 +18,7 @@ struct HausdorffOptions {
     /// Parts of triangles that may wait to be divided, beyond the triangles themselves; they take up to 160
     /// bytes each. If there would be more, the interval is returned as wide as it is then.
     std::size_t most_parts = std::size_t(1) << 22;
+    Threads threads = {};
 };
 
 /// The distance lies in [lower, upper]. The witnesses are a point of one set that is at least `lower` away

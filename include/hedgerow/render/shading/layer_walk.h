@@ -54,30 +54,31 @@ public:
     explicit LayerWalk(const TransparencyOptions& options)
         : o_(options), k_(std::clamp<std::size_t>(options.batch, 1, 256)) {}
 
-    /// Follows rays `first` to `last − 1` front to back. `find(rays, k, columns, after, number)` finds hits
-    /// as the batch `first_hits` does: number(i) is the number of rays[i] in the batch. `shade(steps)` shades
+    /// Follows rays `first` to `last − 1` front to back. `find(rays, k, lists, after, number)` lists hits as
+    /// the batch `first_hits` does: number(i) is the number of rays[i] in the batch. `shade(steps)` shades
     /// a wave. `known` has the first hit of each ray, or is empty.
     template <class Find, class Shade>
     TransparencyCounts follow(const RayArray<T, D>& rays, std::size_t first, std::size_t last,
                               std::span<const Hit<T>> known, const Find& find, const Shade& shade) {
-        active_.clear(), rays_.clear(), after_.clear(), hits_.clear();
+        active_.clear(), rays_.clear(), after_.clear(), lists_.clear();
         for (std::size_t i = first; i < last; ++i)
             active_.push_back({i, 1.0, false}), rays_.push_back(rays[i]);
         after_.resize(active_.size());
-        found_.resize(active_.size());
         counts_ = {};
         std::size_t k = k_;
         if (!known.empty()) {
             k = 1;
-            hits_.assign(known.begin(), known.end());
-            for (std::size_t r = 0; r < hits_.size(); ++r) found_[r] = hits_[r] ? 1 : 0;
+            for (const Hit<T>& hit : known) {
+                if (hit) lists_.hits.push_back(hit);
+                lists_.offsets.push_back(lists_.hits.size());
+            }
         }
         for (bool finds = known.empty(); !active_.empty(); finds = true, k = k_) {
             if (finds) find_hits(find);
-            for (std::size_t j = 0; j < k; ++j) wave(k, j, shade);
+            for (std::size_t j = 0; j < k; ++j) wave(j, shade);
             std::size_t left = 0;
             for (std::size_t r = 0; r < active_.size(); ++r)
-                if (found_[r] == k && (!active_[r].ended || o_.counts_saved)) keep(r, k, left++);
+                if (lists_[r].size() == k && (!active_[r].ended || o_.counts_saved)) keep(r, left++);
             active_.resize(left), rays_.resize(left), after_.resize(left);
         }
         return counts_;
@@ -93,21 +94,20 @@ private:
     template <class Find>
     void find_hits(const Find& find) {
         counts_.calls += active_.size();
-        hits_.resize(k_ * active_.size());
-        find(RayArray<T, D>(rays_), k_, FirstHitsColumns<T>{hits_, found_},
-             std::span<const AfterHit<T>>(after_), [&](std::size_t r) { return active_[r].ray; });
+        find(RayArray<T, D>(rays_), k_, lists_, AfterHits(after_),
+             [&](std::size_t r) { return active_[r].ray; });
     }
     /// Shades hit j of each ray that has it and has not ended.
     template <class Shade>
-    void wave(std::size_t k, std::size_t j, const Shade& shade) {
+    void wave(std::size_t j, const Shade& shade) {
         steps_.clear(), places_.clear();
         for (std::size_t r = 0; r < active_.size(); ++r) {
-            if (j >= found_[r]) continue;
+            if (j >= lists_[r].size()) continue;
             if (active_[r].ended) {
                 counts_.saved += o_.counts_saved;
                 continue;
             }
-            steps_.push_back({active_[r].ray, hits_[k * r + j], active_[r].through});
+            steps_.push_back({active_[r].ray, lists_[r][j], active_[r].through});
             places_.push_back(r);
         }
         if (steps_.empty()) return;
@@ -121,8 +121,8 @@ private:
         }
     }
     /// Moves ray r to place `to` among those that go on, after its last hit.
-    void keep(std::size_t r, std::size_t k, std::size_t to) {
-        after_[to] = hits_[k * r + k - 1];
+    void keep(std::size_t r, std::size_t to) {
+        after_[to] = lists_[r].back();
         active_[to] = active_[r];
         rays_[to] = rays_[r];
     }
@@ -131,9 +131,8 @@ private:
     const std::size_t k_;
     std::vector<Active> active_;
     std::vector<Ray<T, D>> rays_;
-    std::vector<AfterHit<T>> after_;
-    std::vector<Hit<T>> hits_;
-    std::vector<std::uint32_t> found_;
+    std::vector<AfterHit> after_;
+    HitLists<T> lists_;
     std::vector<Step> steps_;
     std::vector<std::size_t> places_;  // of the steps' rays among the active
     TransparencyCounts counts_;
@@ -146,12 +145,13 @@ TransparencyCounts follow_layers(const I& index, const RayArray<typename I::Scal
                                  const TransparencyOptions& options, Threads threads, const Filter& filter,
                                  const OpacityOf& opacity) {
     using Walk = LayerWalk<typename I::Scalar, I::dimension>;
-    const auto find = [&](const auto& some, std::size_t k, const auto& columns, auto after,
+    const auto find = [&](const auto& some, std::size_t k, auto& lists, const AfterHits& after,
                           const auto& number) {
+        const HitsOptions alone{.after = after, .threads = serial_executor()};
         if constexpr (std::same_as<Filter, KeepAll>)
-            first_hits(index, some, k, columns, after, serial_executor());
+            first_hits(index, some, k, lists, alone);
         else
-            first_hits(index, some, k, columns, after, serial_executor(),
+            first_hits(index, some, k, lists, alone,
                        [&](std::size_t r, const HitOf<I>& hit) { return keeps(filter, number(r), hit); });
     };
     const auto shade = [&](std::span<typename Walk::Step> wave) {

@@ -105,7 +105,7 @@ BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samp
             return sum;
         }
     }
-    closest_hits(index, samples.rays(), hits.first(samples.size()), executor);
+    closest_hits(index, samples.rays(), hits.first(samples.size()), {.threads = executor});
     return sum;
 }
 
@@ -122,7 +122,7 @@ public:
         if constexpr (std::same_as<T, float>)
             costs.beams += beam_hits(index_, samples, hits, executor);
         else
-            closest_hits(index_, samples.rays(), hits, executor);
+            closest_hits(index_, samples.rays(), hits, {.threads = executor});
         costs.rays += samples.size();
     }
 

@@ -6,6 +6,7 @@
 #include <hedgerow/scenes/random.h>
 
 #include "every_structure.h"
+#include "lists.h"
 
 using namespace hedgerow;
 
@@ -42,8 +43,8 @@ void expect_within_factor(const I& index, typename I::Scalar factor) {
     Visits needed, spent;
     for (std::uint64_t i = 0; i < 200; ++i) {
         const auto p = question(index, i);
-        const auto best = closest_point(index, p, {}, needed),
-                   near = closest_point(index, p, {.factor = factor}, spent);
+        const auto best = closest_point(index, p, {}, KeepAll(), needed),
+                   near = closest_point(index, p, {.factor = factor}, KeepAll(), spent);
         ASSERT_TRUE(near);
         EXPECT_LE(near.distance2, best.distance2 * bound);
         const auto alone = closest_point(index, p, {.radius2 = near.distance2, .factor = factor});
@@ -69,24 +70,28 @@ void expect_radii(const I& index) {
     const T middle = all[index.size() / 2].distance2;
     std::size_t want = 0;
     while (want < all.size() && all[want].distance2 <= middle) ++want;
-    EXPECT_EQ(within(index, p, {.radius2 = middle}, some), want);
+    EXPECT_EQ(within(index, p, PointOptions::anywhere, some, {.radius2 = middle}), want);
     EXPECT_EQ(nearest(index, p, index.size(), some, {.radius2 = middle}), want);
     const T radius = T(0.4);
-    EXPECT_EQ(within(index, p, {.radius = radius}, some),
-              within(index, p, {.radius2 = largest_square_within(radius)}, all));
+    EXPECT_EQ(within(index, p, radius, some),
+              within(index, p, PointOptions::anywhere, all, {.radius2 = largest_square_within(radius)}));
     EXPECT_EQ(some, all);
     // Both hold.
-    EXPECT_EQ(within(index, p, {.radius = radius, .radius2 = 0}, some), 0u);
+    EXPECT_EQ(within(index, p, radius, some, {.radius2 = 0}), 0u);
+    EXPECT_EQ(within(index, p, radius, some, {.radius = 0}), within(index, p, 0, all, {.radius = radius}));
+    EXPECT_EQ(some, all);
     EXPECT_FALSE(closest_point(index, p, {.radius = 0, .radius2 = 1}));
     constexpr T nan = std::numeric_limits<T>::quiet_NaN();
-    for (const NearOptions<T>& nothing : {NearOptions<T>{.radius = -1}, NearOptions<T>{.radius2 = -1},
-                                          NearOptions<T>{.radius = nan}, NearOptions<T>{.radius2 = nan}}) {
+    for (const PointOptions& nothing : {PointOptions{.radius = -1}, PointOptions{.radius2 = -1},
+                                        PointOptions{.radius = nan}, PointOptions{.radius2 = nan}}) {
         EXPECT_FALSE(closest_point(index, p, nothing));
         EXPECT_EQ(nearest(index, p, 3, some, nothing), 0u);
-        EXPECT_EQ(within(index, p, nothing, some), 0u);
+        EXPECT_EQ(within(index, p, PointOptions::anywhere, some, nothing), 0u);
     }
+    EXPECT_EQ(within(index, p, -1, some), 0u);
+    EXPECT_EQ(within(index, p, nan, some), 0u);
     constexpr T infinity = std::numeric_limits<T>::infinity();
-    EXPECT_EQ(within(index, p, {.radius = infinity}, some), index.size());
+    EXPECT_EQ(within(index, p, infinity, some), index.size());
     for (const T factor : {T(0.99), T(-1), nan}) {
         EXPECT_THROW(closest_point(index, p, {.factor = factor}), InputError);
         EXPECT_THROW(nearest(index, p, 3, some, {.factor = factor}), InputError);
@@ -103,14 +108,14 @@ void expect_options(const Set& set) {
     });
 }
 
-TEST(NearOptions, CloudsInSpace) {
+TEST(PointOptions, CloudsInSpace) {
     expect_options(some_points<float, 3>(600));
     expect_options(some_points<double, 3>(600));
 }
-TEST(NearOptions, CloudsInThePlane) {
+TEST(PointOptions, CloudsInThePlane) {
     expect_options(some_points<float, 2>(400));
 }
-TEST(NearOptions, Meshes) {
+TEST(PointOptions, Meshes) {
     expect_options(soup<float>(300));
     expect_options(soup<double>(300));
 }
@@ -145,7 +150,7 @@ void expect_rule_of_radii() {
     EXPECT_EQ(largest_square_within(limits::quiet_NaN()), -1);
     EXPECT_EQ(largest_square_within(-limits::denorm_min()), -1);
 }
-TEST(NearOptions, RadiiBoundRoundedDistances) {
+TEST(PointOptions, RadiiBoundRoundedDistances) {
     expect_rule_of_radii<float>();
     expect_rule_of_radii<double>();
 }
@@ -172,29 +177,29 @@ void expect_distances_are_radii(const Set& set) {
             for (const auto& near : all)
                 if (std::sqrt(near.distance2) <= radius) wanted.push_back(near.element);
             ASSERT_GT(wanted.size(), i % 20);
-            ASSERT_EQ(within(index, p, {.radius = radius}, found), wanted.size());
+            ASSERT_EQ(within(index, p, radius, found), wanted.size());
             EXPECT_EQ(nearest(index, p, set.size(), found, {.radius = radius}), wanted.size());
             std::sort(wanted.begin(), wanted.end());
             const Sphere<T, D> ball{p, radius};
             EXPECT_EQ(overlapping(index, ball, ids), wanted.size());
             EXPECT_EQ(ids, wanted);
-            EXPECT_EQ(count_overlapping(index, ball), wanted.size());
+            EXPECT_EQ(overlap_count(index, ball), wanted.size());
             const T first = std::sqrt(all[0].distance2);
             EXPECT_TRUE(closest_point(index, p, {.radius = first}));
-            EXPECT_TRUE(any_overlapping(index, Sphere<T, D>{p, first}));
+            EXPECT_TRUE(any_overlap(index, Sphere<T, D>{p, first}));
             if (!(first > 0)) continue;
             EXPECT_FALSE(closest_point(index, p, {.radius = std::nextafter(first, T(0))}));
-            EXPECT_FALSE(any_overlapping(index, Sphere<T, D>{p, std::nextafter(first, T(0))}));
-            EXPECT_LT(within(index, p, {.radius = less}, found), wanted.size());
+            EXPECT_FALSE(any_overlap(index, Sphere<T, D>{p, std::nextafter(first, T(0))}));
+            EXPECT_LT(within(index, p, less, found), wanted.size());
         }
         if constexpr (PointSet<ViewOf<Set>>) {
             // Pairs: those that single points find.
             nearest(oracle, set.points[5], 8, all);
             const T radius = std::sqrt(all[7].distance2);
             std::vector<PairWithin<T>> pairs;
-            pairs_within(index, {.radius = radius}, pairs);
+            pairs_within(index, radius, pairs);
             std::size_t want = 0;
-            for (const auto& p : set.points) want += within(oracle, p, {.radius = radius}, found) - 1;
+            for (const auto& p : set.points) want += within(oracle, p, radius, found) - 1;
             EXPECT_EQ(2 * pairs.size(), want);
             EXPECT_GE(std::count_if(pairs.begin(), pairs.end(),
                                     [](const auto& pair) { return pair.a == 5 || pair.b == 5; }),
@@ -203,7 +208,7 @@ void expect_distances_are_radii(const Set& set) {
     });
     EXPECT_GT(rounded_up, 0u);
 }
-TEST(NearOptions, DistancesThatWereAnsweredAreRadii) {
+TEST(PointOptions, DistancesThatWereAnsweredAreRadii) {
     expect_distances_are_radii(some_points<float, 3>(300));
     expect_distances_are_radii(some_points<double, 3>(300));
     expect_distances_are_radii(some_points<float, 2>(200));
@@ -212,37 +217,29 @@ TEST(NearOptions, DistancesThatWereAnsweredAreRadii) {
 }
 
 /// A primitive at exactly the radius is within it.
-TEST(NearOptions, RadiusIsIncluded) {
+TEST(PointOptions, RadiusIsIncluded) {
     const PointCloud<float, 3> cloud{{{3, 4, 0}, {0.1f, 0, 0}, {0, 7, 0}}};
     for_each_index(cloud, [](const char* name, const auto& index) {
         SCOPED_TRACE(name);
         std::vector<Near<float, 3>> found;
-        EXPECT_EQ(within(index, Vec3f(0, 0, 0), {.radius = 5}, found), 2u);
-        EXPECT_EQ(within(index, Vec3f(0, 0, 0), {.radius = std::nextafter(5.0f, 0.0f)}, found), 1u);
-        EXPECT_EQ(within(index, Vec3f(0, 0, 0), {.radius = 0.1f}, found), 1u);
+        EXPECT_EQ(within(index, Vec3f(0, 0, 0), 5, found), 2u);
+        EXPECT_EQ(within(index, Vec3f(0, 0, 0), std::nextafter(5.0f, 0.0f), found), 1u);
+        EXPECT_EQ(within(index, Vec3f(0, 0, 0), 0.1f, found), 1u);
     });
 }
 
 /// Columns of k nearest are those of single queries, for every structure.
-TEST(NearOptions, ColumnsOfNearest) {
+TEST(PointOptions, ColumnsOfNearest) {
     const auto cloud = some_points<double, 2>(50);
     for_each_index(cloud, [](const char* name, const auto& index) {
         SCOPED_TRACE(name);
         std::vector<Vec2d> points;
         for (std::uint64_t i = 0; i < 30; ++i) points.push_back(question(index, i));
         points[7][0] = std::numeric_limits<double>::quiet_NaN();
-        std::vector<PrimitiveId> ids(60 * points.size());
-        std::vector<double> distances2(ids.size());
-        nearest(index, points, 60, {ids, distances2}, {}, {.radius = 0.5});
-        std::vector<Near<double, 2>> found;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            nearest(index, points[i], 60, found, {.radius = 0.5});
-            found.resize(60);
-            for (std::size_t j = 0; j < 60; ++j) {
-                ASSERT_EQ(ids[60 * i + j], found[j].element);
-                ASSERT_EQ(distances2[60 * i + j], found[j].distance2);
-            }
-        }
+        const auto lists = nearest(index, points, 60, {.radius = 0.5});
+        ASSERT_EQ(lists.size(), points.size());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            ASSERT_TRUE(same_list(lists[i], nearest(index, points[i], 60, {.radius = 0.5}))) << i;
     });
 }
 
@@ -252,30 +249,22 @@ void expect_lists_in_columns(const Set& set, const Points& points, typename Set:
     for_each_index(set, [&](const char* name, const auto& index) {
         SCOPED_TRACE(name);
         using I = std::decay_t<decltype(index)>;
-        ListColumns<typename I::Primitives> serial, parallel;
-        serial.ids.resize(3);  // what the columns hold is replaced
-        const std::size_t all = within(index, points, {.radius = radius}, serial, serial_executor());
-        EXPECT_EQ(within(index, points, {.radius = radius}, parallel), all);
-        EXPECT_EQ(serial.offsets, parallel.offsets);
-        EXPECT_EQ(serial.ids, parallel.ids);
-        EXPECT_EQ(serial.distances2, parallel.distances2);
-        ASSERT_EQ(serial.offsets.size(), points.size() + 1);
-        EXPECT_EQ(serial.offsets.back(), all);
+        NearListsOf<I> serial, parallel;
+        serial.ids.resize(3);  // what the lists hold is replaced
+        within(index, points, radius, serial, {.threads = serial_executor()});
+        within(index, points, radius, parallel);
+        EXPECT_EQ(serial, parallel);
+        ASSERT_EQ(serial.size(), points.size());
+        EXPECT_EQ(serial.ids.size(), serial.count());
         std::vector<NearOf<I>> found;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const std::size_t count = within(index, points[i], {.radius = radius}, found);
-            ASSERT_EQ(serial.offsets[i + 1] - serial.offsets[i], count);
-            for (std::size_t j = 0; j < count; ++j) {
-                ASSERT_EQ(serial.ids[serial.offsets[i] + j], found[j].element);
-                ASSERT_EQ(serial.distances2[serial.offsets[i] + j], found[j].distance2);
-                if (j > 0) {
-                    ASSERT_TRUE(nearer(found[j - 1], found[j]));
-                }
-            }
+            within(index, points[i], radius, found);
+            ASSERT_TRUE(same_list(serial[i], found)) << i;
+            ASSERT_TRUE(std::is_sorted(found.begin(), found.end(), nearer<NearOf<I>, NearOf<I>>));
         }
     });
 }
-TEST(NearOptions, ListsInColumns) {
+TEST(PointOptions, ListsInColumns) {
     const auto questions_of = [](const auto& set) {
         const auto index = build<BruteForce>(set);
         std::vector<PointOf<std::decay_t<decltype(index)>>> points;
@@ -297,7 +286,7 @@ TEST(NearOptions, ListsInColumns) {
     expect_lists_in_columns(triangles, questions_of(triangles), 0.3f);
 }
 /// Long lists of many equal distances: a lattice, each point of it three times.
-TEST(NearOptions, LongListsOfTies) {
+TEST(PointOptions, LongListsOfTies) {
     PointCloud<float, 3> lattice;
     for (int copy = 0; copy < 3; ++copy)
         for (int x = 0; x < 9; ++x)
