@@ -62,6 +62,16 @@ auto with_filter(const LeaveOut& leave_out, const Filter& filter, F f) {
     const auto enters = [&](std::uint32_t mask) { return hedgerow::enters(filter, mask); };
     return f(LeavingOut<T>{leave_out, keeps, enters});
 }
+template <class I, class Filter, class Count>
+std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits,
+                       const PlaceOfHit<typename I::Scalar>& after, const Filter& filter, Count& count) {
+    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
+                  requires { Uncounted::first_hits(index, ray, hits, after); })
+        return Uncounted::first_hits(index, ray, hits, after);
+    else
+        return index.template answer<FirstHits<typename I::Primitives, Filter>>(count, ray, hits, after,
+                                                                                filter);
+}
 }  // namespace detail
 
 // The first queries are declared inline so that an optimising compiler can inline those that `core` has
@@ -144,15 +154,8 @@ std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> 
                        const HitsOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
     using T = typename I::Scalar;
     const PlaceOfHit<T> after(options.after.of(0));
-    return detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) -> std::size_t {
-        const auto of_ray = filter_of_ray(all, 0);
-        using Kept = std::remove_const_t<decltype(of_ray)>;
-        if constexpr (std::same_as<Kept, KeepAll> && std::same_as<Count, const NoVisits> &&
-                      requires { detail::Uncounted::first_hits(index, ray, hits, after); })
-            return detail::Uncounted::first_hits(index, ray, hits, after);
-        else
-            return index.template answer<FirstHits<typename I::Primitives, Kept>>(count, ray, hits, after,
-                                                                                  of_ray);
+    return detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) {
+        return detail::first_hits(index, ray, hits, after, filter_of_ray(all, 0), count);
     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
