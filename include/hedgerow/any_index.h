@@ -107,14 +107,8 @@ public:
     virtual bool erase(PrimitiveId id) = 0;
     virtual double refit(Threads threads = {}) = 0;
 
-protected:
-    friend struct detail::Uncounted;
-
-    /// To be called where the primitives change.
-    void forget_solid() { solid_.reset(); }
-
-    // What a structure answers by itself, without filters and visits. A batch of lists returns false where
-    // the queries are to be asked one by one.
+    // What the functions of ask/ ask: what a structure answers by itself, without filters and visits. A batch
+    // of lists returns false where the queries are to be asked one by one.
     virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, Hit<T>* hits, Executor& executor) const = 0;
     virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, bool* hits, Executor& executor) const = 0;
     virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const {
@@ -162,19 +156,10 @@ protected:
     virtual bool any_uncounted(const Sphere<T, D>& region) const {
         return ask_region<AnyOverlap>(region, no_visits);
     }
-    virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
-    virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
-    virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
-    virtual void walk(VirtualQuery<RegionProbe<AnyRegion<T, D>>>& query, Visits& count) const = 0;
-
-private:
-    mutable std::mutex making_solid_;
-    mutable std::unique_ptr<const AnySolid<T, D>> solid_;
-
     /// Answers a query of a region: of boxes and balls by the structure, where nothing is counted. Other
     /// shapes share one walk.
     template <template <class, class> class Q, class R, class Count, class... Arguments>
-    auto region(const R& region, Count& count, Arguments&&... arguments) const {
+    auto answer_region(const R& region, Count& count, Arguments&&... arguments) const {
         constexpr bool by_structure = std::same_as<Count, const NoVisits> &&
                                       (std::same_as<R, Box<T, D>> || std::same_as<R, Sphere<T, D>>);
         using Query = Q<AnyIndex, R>;
@@ -187,6 +172,19 @@ private:
         else
             return ask_region<Q>(region, count, arguments...);
     }
+
+protected:
+    /// To be called where the primitives change.
+    void forget_solid() { solid_.reset(); }
+    virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
+    virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
+    virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
+    virtual void walk(VirtualQuery<RegionProbe<AnyRegion<T, D>>>& query, Visits& count) const = 0;
+
+private:
+    mutable std::mutex making_solid_;
+    mutable std::unique_ptr<const AnySolid<T, D>> solid_;
+
     template <template <class, class> class Q, class R, class Count, class... Arguments>
     auto ask_region(const R& region, Count& count, Arguments&&... arguments) const {
         if constexpr (!std::same_as<R, Box<T, D>> && !std::same_as<R, AnyRegion<T, D>>)

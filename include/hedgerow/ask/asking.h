@@ -46,6 +46,22 @@ auto with_visits(std::span<Visits> visits, std::size_t i, F f) {
 inline void expect_visits(std::span<Visits> visits, std::size_t queries) {
     if (!visits.empty()) expect_room("queries", queries, visits.size());
 }
+/// Calls one(i, count) for each of `queries`, in pieces over the executor.
+template <class One>
+void ask_each(std::size_t queries, Executor& executor, std::span<Visits> visits, One one) {
+    executor.for_each_piece(queries, 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            with_visits(visits, i, [&](auto& count) { return one(i, count); });
+    });
+}
+/// Fills lists of one column: one(i, list, count) replaces what a vector holds by the list of query i.
+template <class C, class T, class One>
+void list_each(std::size_t queries, Executor& executor, Lists<C>& lists, Buffer<T> C::*column,
+               std::span<Visits> visits, One one) {
+    list_one_by_one(queries, executor, lists, column, [&](std::size_t i, std::vector<T>& list) {
+        with_visits(visits, i, [&](auto& count) { return one(i, list, count); });
+    });
+}
 
 /// The number of primitives that a query may answer.
 template <class P>
@@ -70,46 +86,6 @@ bool offers_each_once(const I& index) {
     else
         return index.exclusive();
 }
-
-/// The way of the functions of ask/ to what an AnyIndex answers by its structure, without filters and visits.
-struct Uncounted {
-    template <class I, class... Arguments>
-    static auto closest_points(const I& index, Arguments&&... arguments)
-        -> decltype(index.closest_points_uncounted(arguments...)) {
-        return index.closest_points_uncounted(arguments...);
-    }
-    template <class I, class... Arguments>
-    static auto nearest(const I& index, Arguments&&... arguments)
-        -> decltype(index.nearest_uncounted(arguments...)) {
-        return index.nearest_uncounted(arguments...);
-    }
-    template <class I, class... Arguments>
-    static auto within(const I& index, Arguments&&... arguments)
-        -> decltype(index.within_uncounted(arguments...)) {
-        return index.within_uncounted(arguments...);
-    }
-    template <class I, class... Arguments>
-    static auto all_hits(const I& index, Arguments&&... arguments)
-        -> decltype(index.all_hits_uncounted(arguments...)) {
-        return index.all_hits_uncounted(arguments...);
-    }
-    template <class I, class... Arguments>
-    static auto first_hits(const I& index, Arguments&&... arguments)
-        -> decltype(index.first_hits_uncounted(arguments...)) {
-        return index.first_hits_uncounted(arguments...);
-    }
-    /// Closest hits or any hits, by the type of the answers.
-    template <class I, class... Arguments>
-    static auto rays(const I& index, Arguments&&... arguments)
-        -> decltype(index.rays_uncounted(arguments...)) {
-        return index.rays_uncounted(arguments...);
-    }
-    template <template <class, class> class Q, class I, class R, class... Arguments>
-    static auto region(const I& index, const R& region, Arguments&&... arguments)
-        -> decltype(index.template region<Q>(region, arguments...)) {
-        return index.template region<Q>(region, arguments...);
-    }
-};
 }  // namespace detail
 
 }  // namespace hedgerow

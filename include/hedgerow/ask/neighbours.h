@@ -82,16 +82,14 @@ Strided<V> points_of(const P& set, std::vector<V>& copies) {
 template <std::floating_point T, int D>
 void neighbours_within(const Strided<Vec<T, D>>& points, double radius, NearLists<T>& lists,
                        const NeighbourOptions& options = {}) {
-    detail::CellNeighbours<T, D>::list(points, largest_square_within(greatest_at_most<T>(radius)), lists,
-                                       options);
+    detail::CellNeighbours<T, D>::list(points, square_within<T>(radius), lists, options);
 }
 /// Lists for each point of `asking` all `points` within a radius of it, in the order of `asking`. Throws
 /// UsageError also for the options `once` and `order`.
 template <std::floating_point T, int D>
 void neighbours_within(const Strided<Vec<T, D>>& points, const Strided<Vec<T, D>>& asking, double radius,
                        NearLists<T>& lists, const NeighbourOptions& options = {}) {
-    detail::CellNeighbours<T, D>::list(points, asking, largest_square_within(greatest_at_most<T>(radius)),
-                                       lists, options);
+    detail::CellNeighbours<T, D>::list(points, asking, square_within<T>(radius), lists, options);
 }
 /// Of vectors of points.
 template <std::floating_point T, int D>

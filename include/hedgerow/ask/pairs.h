@@ -192,8 +192,7 @@ std::size_t pairs_within(const Index<S, P>& index, double radius,
     using T = typename P::Scalar;
     std::vector<Vec<T, P::dimension>> copies;
     return detail::CellNeighbours<T, P::dimension>::pairs(detail::points_of(index.primitives(), copies),
-                                                          largest_square_within(greatest_at_most<T>(radius)),
-                                                          found, options.threads);
+                                                          square_within<T>(radius), found, options.threads);
 }
 template <class S, PointSet P>
 std::vector<PairWithin<typename P::Scalar>> pairs_within(const Index<S, P>& index, double radius,
@@ -209,9 +208,9 @@ std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b, double ra
                          const PairOptions& options = {}) {
     using T = typename A::Scalar;
     std::vector<Vec<T, A::dimension>> copies_of_a, copies_of_b;
-    return detail::CellNeighbours<T, A::dimension>::pairs(
-        detail::points_of(a.primitives(), copies_of_a), detail::points_of(b.primitives(), copies_of_b),
-        largest_square_within(greatest_at_most<T>(radius)), found, options.threads);
+    return detail::CellNeighbours<T, A::dimension>::pairs(detail::points_of(a.primitives(), copies_of_a),
+                                                          detail::points_of(b.primitives(), copies_of_b),
+                                                          square_within<T>(radius), found, options.threads);
 }
 template <class SA, PointSet A, class SB, PointSet B>
 std::vector<PairWithin<typename A::Scalar>> pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,

@@ -43,8 +43,8 @@ template <class I, class Filter, class Count>
 std::size_t nearest(const I& index, const PointOf<I>& point, std::size_t k, std::vector<NearOf<I>>& found,
                     const NearLimits<typename I::Scalar>& limits, const Filter& filter, Count& count) {
     if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
-                  requires { Uncounted::nearest(index, point, k, limits, found); })
-        return Uncounted::nearest(index, point, k, limits, found);
+                  requires { index.nearest_uncounted(point, k, limits, found); })
+        return index.nearest_uncounted(point, k, limits, found);
     else
         return answer_near<Nearest>(index, filter, count, point, k, limits, found);
 }
@@ -52,8 +52,8 @@ template <class I, class Filter, class Count>
 std::size_t within(const I& index, const PointOf<I>& point, std::vector<NearOf<I>>& found,
                    const NearLimits<typename I::Scalar>& limits, const Filter& filter, Count& count) {
     if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
-                  requires { Uncounted::within(index, point, limits, found); })
-        return Uncounted::within(index, point, limits, found);
+                  requires { index.within_uncounted(point, limits, found); })
+        return index.within_uncounted(point, limits, found);
     else
         return answer_near<Within>(index, filter, count, point, limits, found);
 }
@@ -151,47 +151,50 @@ inline PrimitiveId element_of(const PlacedId& id) {
     return id.element;
 }
 
-/// Packs rows of `width` places, which end at the first without a primitive: each becomes a list, of at most
-/// `most` and without the element that its query leaves out.
-template <std::floating_point T, class Id>
-void pack_rows(NearLists<T, Id>& rows, std::size_t count, std::size_t width, std::size_t most,
-               const LeaveOut& leave_out) {
+/// Moves rows together to lists, of at most `most` elements each and without those that their queries leave
+/// out. begin_end(i) says where row i stands; it is called in the order of the rows, before list i is
+/// written.
+template <std::floating_point T, class Id, class Row>
+void pack_rows(NearLists<T, Id>& rows, std::size_t count, std::size_t most, const LeaveOut& leave_out,
+               Row begin_end) {
     rows.offsets.resize(count + 1);
     std::size_t* const offsets = rows.offsets.data();
     Id* const ids = rows.ids.data();
     T* const distances2 = rows.distances2.data();
-    std::size_t end = offsets[0] = 0, i = 0;
-    // Rows that are full stay where they are.
-    if (leave_out.none())
-        while (i < count && (width == 0 || element_of(ids[(i + 1) * width - 1]) != no_primitive))
-            offsets[++i] = end += width;
-    for (; i < count; ++i) {
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < count; ++i) {
         const PrimitiveId without = leave_out.of(i);
-        for (std::size_t k = i * width; k < (i + 1) * width && element_of(ids[k]) != no_primitive; ++k) {
+        const std::size_t first = end;
+        for (auto [k, last] = begin_end(i); k < last && end - first < most; ++k) {
             if (element_of(ids[k]) == without) continue;
-            if (end - offsets[i] == most) break;
-            ids[end] = ids[k], distances2[end] = distances2[k];
+            if (end != k) ids[end] = ids[k], distances2[end] = distances2[k];
             ++end;
         }
         offsets[i + 1] = end;
     }
+    offsets[0] = 0;
     rows.ids.resize(end), rows.distances2.resize(end);
+}
+/// Packs rows of `width` places, which end at the first without a primitive.
+template <std::floating_point T, class Id>
+void pack_rows_of_places(NearLists<T, Id>& rows, std::size_t count, std::size_t width, std::size_t most,
+                         const LeaveOut& leave_out) {
+    pack_rows(rows, count, most, leave_out, [&](std::size_t i) {
+        const std::size_t first = i * width;
+        std::size_t last = first + width;  // rows are full, but for a few
+        while (last > first && element_of(rows.ids[last - 1]) == no_primitive) --last;
+        return std::pair(first, last);
+    });
 }
 /// Takes the elements that queries leave out from their lists.
 template <std::floating_point T, class Id>
 void leave_out_of(NearLists<T, Id>& lists, const LeaveOut& leave_out) {
     if (leave_out.none()) return;
-    std::size_t end = 0, begin = 0;
-    for (std::size_t i = 0; i < lists.size(); ++i) {
-        const PrimitiveId without = leave_out.of(i);
-        for (std::size_t k = std::exchange(begin, lists.offsets[i + 1]), last = begin; k < last; ++k) {
-            if (element_of(lists.ids[k]) == without) continue;
-            lists.ids[end] = lists.ids[k], lists.distances2[end] = lists.distances2[k];
-            ++end;
-        }
-        lists.offsets[i + 1] = end;
-    }
-    lists.ids.resize(end), lists.distances2.resize(end);
+    std::size_t begin = 0;
+    pack_rows(lists, lists.size(), lists.count(), leave_out, [&](std::size_t i) {
+        const std::size_t end = lists.offsets[i + 1];
+        return std::pair(std::exchange(begin, end), end);
+    });
 }
 /// Lists the points of a set within the options' distance of each of `points`, in the order of (distance²,
 /// element), by cells that are sorted for it. Returns false, and lists nothing, where a walk may be faster,
@@ -223,9 +226,8 @@ void closest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<
     detail::expect_visits(visits, points.size());
     options.leave_out.expect(points.size());
     constexpr bool unfiltered = std::same_as<Filter, KeepAll>;
-    if constexpr (unfiltered &&
-                  requires { detail::Uncounted::closest_points(index, points, found, options); })
-        if (visits.empty()) return detail::Uncounted::closest_points(index, points, found, options);
+    if constexpr (unfiltered && requires { index.closest_points_uncounted(points, found, options); })
+        if (visits.empty()) return index.closest_points_uncounted(points, found, options);
     const auto one = [&](std::size_t i) {
         const NearLimits<T> limits(options, i);
         found[i] = detail::with_visits(visits, i, [&](auto& count) {
@@ -258,17 +260,16 @@ void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearLists
     detail::expect_visits(visits, points.size());
     options.leave_out.expect(points.size());
     constexpr bool unfiltered = std::same_as<Filter, KeepAll>;
-    const NearLimits<T> of_one(options);
     k = std::min(k, detail::primitives_in(index.primitives()));
     // A kernel leaves nothing out, so it finds one more.
     const bool one_by_one =
         !unfiltered || !visits.empty() || (Instanced<P> && !options.leave_out.none()) || k == 0;
     const std::size_t width = options.leave_out.none() ? k : k + 1;
-    NearLimits<T> of_kernel = of_one;
+    NearLimits<T> of_kernel(options);
     of_kernel.leave_out = no_primitive;
     detail::list_in_own_memory(lists, [&](NearListsOf<I>& rows) {
-        if constexpr (unfiltered && requires { detail::Uncounted::nearest(index, points, k, rows, options); })
-            if (visits.empty() && detail::Uncounted::nearest(index, points, k, rows, options)) return;
+        if constexpr (unfiltered && requires { index.nearest_uncounted(points, k, rows, options); })
+            if (visits.empty() && index.nearest_uncounted(points, k, rows, options)) return;
         rows.ids.resize(width * points.size()), rows.distances2.resize(width * points.size());
         detail::ask_in_parts<Nearest<P>>(
             index, points, detail::executor_for<Filter>(options.threads, points.size()), one_by_one,
@@ -289,7 +290,7 @@ void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearLists
                     rows.distances2[i * width + j] = (*found)[j].distance2;
                 }
             });
-        detail::pack_rows(rows, points.size(), width, k, options.leave_out);
+        detail::pack_rows_of_places(rows, points.size(), width, k, options.leave_out);
     });
 }
 template <class I, NearFilterOf<I> Filter>
@@ -323,8 +324,8 @@ void within(const I& index, const PointsOf<I>& points, double radius, NearListsO
     limits.leave_out = no_primitive;  // they are taken from the lists
     const bool one_by_one = !unfiltered || !visits.empty();
     detail::list_in_own_memory(lists, [&](NearListsOf<I>& rows) {
-        if constexpr (unfiltered && requires { detail::Uncounted::within(index, points, rows, both); })
-            if (visits.empty() && detail::Uncounted::within(index, points, rows, both)) return;
+        if constexpr (unfiltered && requires { index.within_uncounted(points, rows, both); })
+            if (visits.empty() && index.within_uncounted(points, rows, both)) return;
         if (!one_by_one && detail::listed_by_cells(index.primitives(), points, rows, both)) return;
         const auto answer = [&](std::size_t begin, std::size_t end, NearListsOf<I>& to) {
             const auto part = PointBatch<T, I::dimension>(points).part(begin, end - begin);

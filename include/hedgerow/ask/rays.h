@@ -66,8 +66,8 @@ template <class I, class Filter, class Count>
 std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits,
                        const PlaceOfHit<typename I::Scalar>& after, const Filter& filter, Count& count) {
     if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
-                  requires { Uncounted::first_hits(index, ray, hits, after); })
-        return Uncounted::first_hits(index, ray, hits, after);
+                  requires { index.first_hits_uncounted(ray, hits, after); })
+        return index.first_hits_uncounted(ray, hits, after);
     else
         return index.template answer<FirstHits<typename I::Primitives, Filter>>(count, ray, hits, after,
                                                                                 filter);
@@ -90,9 +90,8 @@ inline HitOf<I> closest_hit(const I& index, const RayOf<I>& ray) {
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 HitOf<I> closest_hit(const I& index, const RayOf<I>& ray, const RayOptions& options,
                      const Filter& filter = {}, Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        return closest_hit(index, ray, filter_of_ray(all, 0), count);
-    });
+    return detail::with_filter<typename I::Scalar>(
+        options.leave_out, filter, [&](const auto& all) { return closest_hit(index, ray, all, count); });
 }
 
 /// Whether the ray hits anything in [t_min, t_max].
@@ -107,9 +106,8 @@ inline bool any_hit(const I& index, const RayOf<I>& ray) {
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const I& index, const RayOf<I>& ray, const RayOptions& options, const Filter& filter = {},
              Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        return any_hit(index, ray, filter_of_ray(all, 0), count);
-    });
+    return detail::with_filter<typename I::Scalar>(
+        options.leave_out, filter, [&](const auto& all) { return any_hit(index, ray, all, count); });
 }
 
 /// Writes every hit to `hits`, each primitive once, in the order of (t, instance, element). Returns how many
@@ -118,17 +116,16 @@ template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVi
 std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits, const Filter& filter,
                      Count& count = no_visits) {
     if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
-                  requires { detail::Uncounted::all_hits(index, ray, hits); })
-        return detail::Uncounted::all_hits(index, ray, hits);
+                  requires { index.all_hits_uncounted(ray, hits); })
+        return index.all_hits_uncounted(ray, hits);
     else
         return index.template answer<AllHits<typename I::Primitives, Filter>>(count, ray, hits, filter);
 }
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits,
                      const RayOptions& options, const Filter& filter = {}, Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        return all_hits(index, ray, hits, filter_of_ray(all, 0), count);
-    });
+    return detail::with_filter<typename I::Scalar>(
+        options.leave_out, filter, [&](const auto& all) { return all_hits(index, ray, hits, all, count); });
 }
 template <class I>
 std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits) {
@@ -155,7 +152,7 @@ std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> 
     using T = typename I::Scalar;
     const PlaceOfHit<T> after(options.after.of(0));
     return detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) {
-        return detail::first_hits(index, ray, hits, after, filter_of_ray(all, 0), count);
+        return detail::first_hits(index, ray, hits, after, all, count);
     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
@@ -182,9 +179,8 @@ std::size_t hit_count(const I& index, const RayOf<I>& ray) {
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t hit_count(const I& index, const RayOf<I>& ray, const RayOptions& options,
                       const Filter& filter = {}, Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        return hit_count(index, ray, filter_of_ray(all, 0), count);
-    });
+    return detail::with_filter<typename I::Scalar>(
+        options.leave_out, filter, [&](const auto& all) { return hit_count(index, ray, all, count); });
 }
 
 namespace detail {
@@ -214,8 +210,8 @@ KernelUse answer_each(const I& index, const RaysOf<I>& rays, Answer* answers, Ex
                       const Filter& filter, std::span<Visits> visits = {}) {
     using P = typename I::Primitives;
     if constexpr (std::same_as<Filter, KeepAll> &&
-                  requires { Uncounted::rays(index, rays, answers, executor); })
-        if (visits.empty()) return Uncounted::rays(index, rays, answers, executor);
+                  requires { index.rays_uncounted(rays, answers, executor); })
+        if (visits.empty()) return index.rays_uncounted(rays, answers, executor);
     return answer_rays<Q<P, Filter>>(
         index, rays, answers, executor, !visits.empty(), filter, [&](std::size_t i) {
             const auto of_ray = filter_of_ray(filter, i);
@@ -285,12 +281,10 @@ void all_hits(const I& index, const RaysOf<I>& rays, HitListsOf<I>& lists, const
     options.leave_out.expect(rays.size());
     Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
     detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        detail::list_one_by_one(rays.size(), executor, lists, &HitListsOf<I>::hits,
-                                [&](std::size_t i, auto& hits) {
-                                    detail::with_visits(visits, i, [&](auto& count) {
-                                        return all_hits(index, rays[i], hits, filter_of_ray(all, i), count);
-                                    });
-                                });
+        detail::list_each(rays.size(), executor, lists, &HitListsOf<I>::hits, visits,
+                          [&](std::size_t i, auto& hits, auto& count) {
+                              return all_hits(index, rays[i], hits, filter_of_ray(all, i), count);
+                          });
     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
@@ -319,17 +313,19 @@ void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf
     options.after.expect(rays.size());
     options.leave_out.expect(rays.size());
     Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
+    using T = typename I::Scalar;
     // A ray has no more hits than there are primitives.
     k = std::min(k, detail::primitives_in(index.primitives()));
-    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+    detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) {
         detail::list_in_pieces(
             rays.size(), executor, lists, [&](std::size_t begin, std::size_t end, HitListsOf<I>& to) {
                 for (std::size_t i = begin; i < end; ++i) {
                     const std::size_t before = to.hits.size();
                     to.hits.resize(before + k);
                     const std::size_t found = detail::with_visits(visits, i, [&](auto& count) {
-                        return first_hits(index, rays[i], std::span(to.hits.data() + before, k),
-                                          {.after = options.after.of(i)}, filter_of_ray(all, i), count);
+                        return detail::first_hits(index, rays[i], std::span(to.hits.data() + before, k),
+                                                  PlaceOfHit<T>(options.after.of(i)), filter_of_ray(all, i),
+                                                  count);
                     });
                     to.hits.resize(before + found);
                     to.offsets.push_back(to.hits.size());
@@ -360,11 +356,8 @@ void hit_counts(const I& index, const RaysOf<I>& rays, std::span<std::size_t> co
     options.leave_out.expect(rays.size());
     Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
     detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        executor.for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                counts[i] = detail::with_visits(visits, i, [&](auto& count) {
-                    return hit_count(index, rays[i], filter_of_ray(all, i), count);
-                });
+        detail::ask_each(rays.size(), executor, visits, [&](std::size_t i, auto& count) {
+            return counts[i] = hit_count(index, rays[i], filter_of_ray(all, i), count);
         });
     });
 }

@@ -35,8 +35,8 @@ struct RegionOptions {
 namespace detail {
 template <template <class, class> class Q, class I, class R, class Count, class... Arguments>
 auto answer_region(const I& index, const R& region, Count& count, Arguments&&... arguments) {
-    if constexpr (requires { Uncounted::template region<Q>(index, region, count, arguments...); })
-        return Uncounted::template region<Q>(index, region, count, arguments...);
+    if constexpr (requires { index.template answer_region<Q>(region, count, arguments...); })
+        return index.template answer_region<Q>(region, count, arguments...);
     else
         return index.template answer<Q<typename I::Primitives, R>>(count, region, arguments...);
 }
@@ -103,40 +103,41 @@ requires requires(const Rs& rs) {
 struct RegionOf<Rs> {
     using Type = std::remove_const_t<typename decltype(std::span(std::declval<const Rs&>()))::element_type>;
 };
-/// Calls one(i, region, count) for each region of a batch, in pieces over the threads.
-template <class R, class One>
-void ask_each(const Strided<R>& regions, const RegionOptions& options, std::span<Visits> visits, One one) {
-    expect_visits(visits, regions.size());
-    options.threads.over(regions.size())
-        .for_each_piece(regions.size(), 256, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                with_visits(visits, i, [&](auto& count) { return one(i, regions[i], count); });
-        });
-}
-/// The same where one(region, list, count) lists ids.
-template <class Id, class R, class One>
-void list_each(const Strided<R>& regions, IdLists<Id>& lists, const RegionOptions& options,
-               std::span<Visits> visits, One one) {
-    expect_visits(visits, regions.size());
-    list_one_by_one(regions.size(), options.threads.over(regions.size()), lists, &IdLists<Id>::ids,
-                    [&](std::size_t i, auto& found) {
-                        with_visits(visits, i, [&](auto& count) { return one(regions[i], found, count); });
-                    });
-}
 }  // namespace detail
 /// An array of regions that an index can be asked.
 template <class Rs, class I>
 concept RegionsFor = RegionFor<typename detail::RegionOf<Rs>::Type, I> &&
     std::convertible_to<const Rs&, Strided<typename detail::RegionOf<Rs>::Type>>;
 
+namespace detail {
+/// Lists what one(region, found, count) finds of each region of a batch.
+template <class I, class Rs, class One>
+void list_regions(const I&, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options,
+                  std::span<Visits> visits, One one) {
+    const Strided<typename RegionOf<Rs>::Type> all(regions);
+    expect_visits(visits, all.size());
+    list_each(all.size(), options.threads.over(all.size()), lists, &IdListsOf<I>::ids, visits,
+              [&](std::size_t i, auto& found, auto& count) { return one(all[i], found, count); });
+}
+/// Sets answers[i] to what one(region, count) answers of region i.
+template <class Rs, class Answer, class One>
+void answer_regions(const Rs& regions, Answer* answers, const RegionOptions& options,
+                    std::span<Visits> visits, One one) {
+    const Strided<typename RegionOf<Rs>::Type> all(regions);
+    expect_visits(visits, all.size());
+    ask_each(all.size(), options.threads.over(all.size()), visits,
+             [&](std::size_t i, auto& count) { return answers[i] = one(all[i], count); });
+}
+}  // namespace detail
+
 /// Writes a list of primitives for each of many regions.
 template <class I, RegionsFor<I> Rs>
 void overlapping(const I& index, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options = {},
                  std::span<Visits> visits = {}) {
-    detail::list_each(Strided<typename detail::RegionOf<Rs>::Type>(regions), lists, options, visits,
-                      [&](const auto& region, auto& found, auto& count) {
-                          return overlapping(index, region, found, {}, count);
-                      });
+    detail::list_regions(index, regions, lists, options, visits,
+                         [&](const auto& region, auto& found, auto& count) {
+                             return overlapping(index, region, found, {}, count);
+                         });
 }
 template <class I, RegionsFor<I> Rs>
 IdListsOf<I> overlapping(const I& index, const Rs& regions, const RegionOptions& options = {},
@@ -148,10 +149,10 @@ IdListsOf<I> overlapping(const I& index, const Rs& regions, const RegionOptions&
 template <class I, RegionsFor<I> Rs>
 void contained(const I& index, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options = {},
                std::span<Visits> visits = {}) {
-    detail::list_each(Strided<typename detail::RegionOf<Rs>::Type>(regions), lists, options, visits,
-                      [&](const auto& region, auto& found, auto& count) {
-                          return contained(index, region, found, {}, count);
-                      });
+    detail::list_regions(index, regions, lists, options, visits,
+                         [&](const auto& region, auto& found, auto& count) {
+                             return contained(index, region, found, {}, count);
+                         });
 }
 template <class I, RegionsFor<I> Rs>
 IdListsOf<I> contained(const I& index, const Rs& regions, const RegionOptions& options = {},
@@ -164,10 +165,9 @@ IdListsOf<I> contained(const I& index, const Rs& regions, const RegionOptions& o
 template <class I, RegionsFor<I> Rs>
 void overlap_counts(const I& index, const Rs& regions, std::span<std::size_t> counts,
                     const RegionOptions& options = {}, std::span<Visits> visits = {}) {
-    const Strided<typename detail::RegionOf<Rs>::Type> all(regions);
-    detail::expect_room("regions", all.size(), counts.size());
-    detail::ask_each(all, options, visits, [&](std::size_t i, const auto& region, auto& count) {
-        return counts[i] = overlap_count(index, region, {}, count);
+    detail::expect_room("regions", std::size(regions), counts.size());
+    detail::answer_regions(regions, counts.data(), options, visits, [&](const auto& region, auto& count) {
+        return overlap_count(index, region, {}, count);
     });
 }
 /// Writes whether any primitive overlaps region i to place i of `found`: an array of bool or of bytes, or a
@@ -175,11 +175,10 @@ void overlap_counts(const I& index, const Rs& regions, std::span<std::size_t> co
 template <class I, RegionsFor<I> Rs>
 void any_overlaps(const I& index, const Rs& regions, const Truths& found, const RegionOptions& options = {},
                   std::span<Visits> visits = {}) {
-    const Strided<typename detail::RegionOf<Rs>::Type> all(regions);
-    detail::expect_room("regions", all.size(), found.size());
-    found.written(all.size(), [&](bool* answers) {
-        detail::ask_each(all, options, visits, [&](std::size_t i, const auto& region, auto& count) {
-            return answers[i] = any_overlap(index, region, {}, count);
+    detail::expect_room("regions", std::size(regions), found.size());
+    found.written(std::size(regions), [&](bool* answers) {
+        detail::answer_regions(regions, answers, options, visits, [&](const auto& region, auto& count) {
+            return any_overlap(index, region, {}, count);
         });
         return true;
     });

@@ -20,8 +20,6 @@ class Buffer {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    using value_type = T;
-
     Buffer() = default;
     /// An empty buffer in the caller's array.
     Buffer(std::span<T> callers)

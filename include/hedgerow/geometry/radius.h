@@ -50,4 +50,10 @@ T largest_square_within(T radius) {
     });
 }
 
+/// The same for distances of T and a radius of double.
+template <std::floating_point T>
+T square_within(double radius) {
+    return largest_square_within(greatest_at_most<T>(radius));
+}
+
 }  // namespace hedgerow

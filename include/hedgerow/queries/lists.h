@@ -68,7 +68,6 @@ struct NearColumns {
 ///   for (const Hit<float>& hit : lists[7]) ...
 template <class C>
 struct Lists : C {
-    using Columns = C;
     Buffer<std::size_t> offsets;
 
     /// The number of lists.

@@ -65,7 +65,7 @@ struct NearLimits {
 
     /// Throws InputError for a factor that is not at least 1.
     explicit NearLimits(const PointOptions& options = {}, std::size_t query = 0)
-        : distance2(largest_square_within(greatest_at_most<T>(options.radius))),
+        : distance2(square_within<T>(options.radius)),
           factor(options.factor == 1 ? T(1) : greatest_at_most<T>(options.factor)),
           leave_out(options.leave_out.of(query)) {
         if (!(factor >= 1)) throw InputError("the factor of a point's question is below 1: give 1 or more");
