@@ -51,7 +51,7 @@ Errors errors_of(const PathBenchmarkScene& scene, PathPictureOptions options, Sa
     PathPicture picture(options.width, options.height);
     Errors errors;
     for (const std::uint32_t samples : counts) {
-        add_samples(picture, samples, scene.with(scene.tracer()), options, default_executor());
+        add_samples(picture, samples, scene.with(scene.tracer()), by(default_executor(), options));
         errors.emplace_back(samples, error_of(picture, right).root);
     }
     return errors;
@@ -61,7 +61,7 @@ void measure_scene(const std::string& name, int size, cli::LinePlot& plot) {
     const PathBenchmarkScene scene(name);
     PathPictureOptions options = scene.options(size, of_right_picture);
     options.paths.seed = 1;
-    const PathPicture right = trace_paths(scene.with(scene.tracer()), options, default_executor());
+    const PathPicture right = trace_paths(scene.with(scene.tracer()), by(default_executor(), options));
     options.paths.seed = 0;
     const std::size_t colour = plot.series.size() / 2;
     for (const Sampler sampler : {Sampler::sobol, Sampler::independent}) {

@@ -97,7 +97,7 @@ double two_threads(const PathBenchmarkScene& scene, int size) {
     Contest contest;
     for (Executor* const executor : {static_cast<Executor*>(&serial_executor()), &default_executor()})
         contest.add("threads", [&, executor] {
-            return trace_paths(scene.with(scene.tracer()), options, *executor).light.size();
+            return trace_paths(scene.with(scene.tracer()), by(*executor, options)).light.size();
         });
     const auto times =
         measured_in_turn(rounds_of_threads, contest, Clock::wall, [](const std::string&) { return true; });
@@ -108,7 +108,7 @@ Ratios measure_scene(const std::string& name, int size) {
     const PathBenchmarkScene scene(name);
     const PathPictureOptions options = scene.options(size, samples_a_pixel);
     const auto picture = [&](const Tracer<float>& tracer) {
-        return trace_paths(scene.with(tracer), options, serial_executor()).light.size();
+        return trace_paths(scene.with(tracer), by(serial_executor(), options)).light.size();
     };
     const RecordingTracer<float> recorded(scene.tracer());
     picture(recorded);
@@ -134,8 +134,9 @@ Ratios measure_scene(const std::string& name, int size) {
     const auto times =
         measured_in_turn(rounds, contest, Clock::thread, [](const std::string&) { return true; });
     PathPicture film(size, size);
-    const std::size_t bytes = most_bytes_of(
-        [&] { add_samples(film, samples_a_pixel, scene.with(scene.tracer()), options, serial_executor()); });
+    const std::size_t bytes = most_bytes_of([&] {
+        add_samples(film, samples_a_pixel, scene.with(scene.tracer()), by(serial_executor(), options));
+    });
 
     std::printf("%s: %zu triangles; %.0f samples, %.2f vertices and %.2f + %.2f rays a sample, %.0f a call\n",
                 name.c_str(), scene.mesh().size(), samples, double(vertices) / samples,

@@ -37,14 +37,14 @@ constexpr Ending endings[] = {{"to the end", PathOptions::never, 0},
 double rays_a_sample(const PathBenchmarkScene& scene, PathPictureOptions options) {
     options.samples = 1;
     const RecordingTracer<float> recorded(scene.tracer());
-    const PathPicture picture = trace_paths(scene.with(recorded), options, serial_executor());
+    const PathPicture picture = trace_paths(scene.with(recorded), by(serial_executor(), options));
     return double(recorded.closest().rays.size() + recorded.any().rays.size()) / double(picture.light.size());
 }
 
 void measure_scene(const std::string& name, int size) {
     const PathBenchmarkScene scene(name);
     const auto picture = [&](const PathPictureOptions& options, Executor& executor) {
-        return trace_paths(scene.with(scene.tracer()), options, executor);
+        return trace_paths(scene.with(scene.tracer()), by(executor, options));
     };
     PathPictureOptions options = scene.options(size, samples * times_the_samples);
     options.paths.seed = 1, options.paths.roulette_from = PathOptions::never;

@@ -51,7 +51,8 @@ void measure_shading(const TriangleMesh<float>& mesh, const PictureSamples<float
         colours[i] = surfaces.normal(rays[i], hit);
     };
     const auto draw = [&](Coverage coverage) {
-        return rasteriser.draw(mesh.view(), hits, serial_executor(), {coverage, false, true});
+        return rasteriser.draw(mesh.view(), hits,
+                               by(serial_executor(), RasterOptions{coverage, false, true}));
     };
     Contest contest;
     std::size_t forward[2]{};
@@ -61,7 +62,9 @@ void measure_shading(const TriangleMesh<float>& mesh, const PictureSamples<float
                     [&draw, coverage] { return draw(coverage).triangles; });
         contest.add("with forward shading", [&, coverage, sorted] {
             return forward[sorted] =
-                       rasteriser.draw(mesh.view(), hits, serial_executor(), {coverage, false, true}, shade)
+                       rasteriser
+                           .draw(mesh.view(), hits,
+                                 by(serial_executor(), RasterOptions{coverage, false, true}), shade)
                            .nearest;
         });
     }
@@ -116,7 +119,7 @@ void measure_mirror(const MeshIndex<float>& index, const PictureSamples<float>& 
         return rays.size();
     });
     contest.add("beams",
-                [&] { return beam_hits(index, reflected, beamed, serial_executor(), options).beams; });
+                [&] { return beam_hits(index, reflected, beamed, by(serial_executor(), options)).beams; });
     const auto times =
         measured_in_turn(rounds, contest, Clock::thread, [](const std::string&) { return true; });
     std::size_t differ = 0, next = 0;
@@ -151,8 +154,11 @@ Ratios measure_scene(const std::string& name, int size) {
         rasteriser.resolve(mesh.view(), visible, resolved, serial_executor());
         return rays.size();
     });
-    contest.add("hits", [&] { return rasteriser.draw(mesh.view(), drawn, serial_executor()).triangles; });
-    contest.add("beams", [&] { return beam_hits(index, samples, beamed, serial_executor()).beams; });
+    contest.add("hits", [&] {
+        return rasteriser.draw(mesh.view(), drawn, {.threads = serial_executor()}).triangles;
+    });
+    contest.add("beams",
+                [&] { return beam_hits(index, samples, beamed, {.threads = serial_executor()}).beams; });
     contest.add("build and cast", [&] {
         closest_hits(build<WideBvh>(mesh, {}, serial_executor()), rays, std::span(cast),
                      {.threads = serial_executor()});
@@ -176,8 +182,8 @@ Ratios measure_scene(const std::string& name, int size) {
     for (std::size_t i = 0; i < times.size(); ++i)
         std::printf("    %-16s %9.2f ms\n", contest.names[i].c_str(), times[i].median * 1e3);
     // Beams beside rays.
-    const BeamCounts packets = beam_hits(index, samples, beamed, serial_executor(), {.widest = 0}),
-                     beams = beam_hits(index, samples, beamed, serial_executor());
+    const BeamCounts packets = beam_hits(index, samples, beamed, {.widest = 0, .threads = serial_executor()}),
+                     beams = beam_hits(index, samples, beamed, {.threads = serial_executor()});
     const auto time_of = [&](std::string_view way) {
         return times[static_cast<std::size_t>(std::ranges::find(contest.names, way) - contest.names.begin())]
             .median;

@@ -212,7 +212,7 @@ TEST(BadPaths, HitsThatAreNoNumbersLeaveNoneInThePicture) {
         const SceneLights<float> lights(scene);
         const FaultyTracer faulty(scene.tracer());
         expect_finite(trace_paths(PathScene<float>{scene, lights, faulty},
-                                  few_pixels(camera_at({3, 2, 1.5f}, {0, 0, 0}), 64), serial_executor()));
+                                  by(serial_executor(), few_pixels(camera_at({3, 2, 1.5f}, {0, 0, 0}), 64))));
     }
 }
 

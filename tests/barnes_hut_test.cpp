@@ -30,7 +30,7 @@ template <class Kernel, class Cloud>
 void expect_near_direct_sums(const Cloud& cloud) {
     const auto charges = some_charges(cloud.size(), false);
     int summed = 0;
-    for_each_index(cloud, [&](const char* name, const auto& index) {
+    for_each_type(cloud, [&](const char* name, const auto& index) {
         SCOPED_TRACE(name);
         if (!index.structure().exclusive()) {
             EXPECT_THROW((BarnesHut<std::decay_t<decltype(index)>, Kernel>(index, charges)), InputError);

@@ -36,7 +36,8 @@ BeamCounts expect_hits_of_rays(const Mesh& mesh, const PictureSamples<float>& sa
                 const Using use(name);
                 // What the buffer held does not matter.
                 std::vector<Hit<float>> hits(samples.size(), Hit<float>{1e-30f, 2, 3, 4, 5, 6, 7});
-                const auto counts = beam_hits(index, samples, hits, default_executor(), {.widest = widest});
+                const auto counts =
+                    beam_hits(index, samples, hits, {.widest = widest, .threads = default_executor()});
                 expect_same(want, hits);
                 if (widest == 64) sum += counts;
             }
@@ -189,7 +190,7 @@ TEST(Beams, SeeInAMirrorWhatReflectedRaysSee) {
     const Camera camera = *camera_for("cornell-box");
     const PictureSamples<float> samples(camera, 200, 150);
     std::vector<Hit<float>> first(samples.size()), seen(samples.size());
-    beam_hits(index, samples, first, default_executor());
+    beam_hits(index, samples, first, {.threads = default_executor()});
     // The mirror is what lies in the plane of the triangle in the middle: the back wall or a side of a block.
     const auto middle = mesh.view().triangle(first[samples.number(100, 75)].element);
     const FlatMirror mirror = FlatMirror::through(middle);
@@ -204,10 +205,10 @@ TEST(Beams, SeeInAMirrorWhatReflectedRaysSee) {
         on_mirror += wanted[i] = first[i] && is_mirror(first[i].element);
     ASSERT_GT(on_mirror, 1000u);
     const auto reflected = samples.in_mirror(mirror);
-    beam_hits(index, reflected, seen, default_executor(),
-              {.wanted = std::span<const bool>(wanted.get(), samples.size())});
+    beam_hits(index, reflected, seen,
+              {.wanted = std::span<const bool>(wanted.get(), samples.size()), .threads = default_executor()});
     std::vector<Hit<float>> all(samples.size());
-    beam_hits(index, reflected, all, default_executor());
+    beam_hits(index, reflected, all, {.threads = default_executor()});
     const auto rays = samples.rays();
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (!wanted[i]) continue;
@@ -238,7 +239,7 @@ TEST(Beams, RefuseMirrorsThatCannotBeSeen) {
     std::vector<Hit<float>> hits(samples.size());
     const auto index = build<WideBvh>(cornell_box<float>(0));
     const bool few[3] = {};
-    EXPECT_THROW(beam_hits(index, samples, hits, serial_executor(), {.wanted = few}), InputError);
+    EXPECT_THROW(beam_hits(index, samples, hits, {.wanted = few, .threads = serial_executor()}), InputError);
 }
 
 TEST(Beams, OfCamerasThatSeeNothing) {
@@ -257,8 +258,10 @@ TEST(Beams, OfCamerasThatSeeNothing) {
     // Wrong widths, and too little room.
     std::vector<Hit<float>> hits(99);
     const auto index = build<WideBvh>(mesh);
-    EXPECT_THROW(beam_hits(index, PictureSamples<float>(box, 10, 10), hits, serial_executor()), InputError);
-    EXPECT_THROW(beam_hits(index, PictureSamples<float>(box, 9, 9), hits, serial_executor(), {.widest = 24}),
+    EXPECT_THROW(beam_hits(index, PictureSamples<float>(box, 10, 10), hits, {.threads = serial_executor()}),
+                 InputError);
+    EXPECT_THROW(beam_hits(index, PictureSamples<float>(box, 9, 9), hits,
+                           {.widest = 24, .threads = serial_executor()}),
                  UsageError);
 }
 
@@ -269,7 +272,7 @@ TEST(Beams, OfAnyIndexAndByAnyExecutor) {
     closest_hits(build<BruteForce>(mesh), samples.rays(), std::span(want));
     const auto expect = [&](const auto& index, Executor& executor) {
         std::fill(hits.begin(), hits.end(), Hit<float>{1, 2, 3, 4, 5, 6, 7});
-        beam_hits(index, samples, hits, executor);
+        beam_hits(index, samples, hits, {.threads = executor});
         expect_same(want, hits);
     };
     expect(build<KdTree>(mesh), default_executor());
@@ -294,7 +297,7 @@ TEST(Beams, OfScans) {
         const PictureSamples<float> samples(seen_from(scan, i, i % 2 == 1), 300, 200);
         std::vector<Hit<float>> want(samples.size()), hits(samples.size());
         closest_hits(index, samples.rays(), std::span(want));
-        beam_hits(index, samples, hits, default_executor());
+        beam_hits(index, samples, hits, {.threads = default_executor()});
         expect_same(want, hits);
     }
 }

@@ -89,7 +89,7 @@ TEST_F(Compare, TellsWhatEachStructureCosts) {
     EXPECT_EQ(j["structures"][0]["structure"], "brute-force");
     EXPECT_EQ(j["primitive"], "triangles");
     for (const auto& s : j["structures"]) {
-        EXPECT_EQ(s["queries"].size(), 27u);
+        EXPECT_EQ(s["queries"].size(), 31u);
         EXPECT_GT(s["build_seconds"], 0);
         for (const auto& q : s["queries"]) EXPECT_GT(q["primitives"], 0);
     }
@@ -110,7 +110,7 @@ TEST_F(Compare, HasTheSameCountsEachTime) {
         return all;
     };
     const json first = counts();
-    EXPECT_EQ(first.size(), 3u * 27);
+    EXPECT_EQ(first.size(), 3u * 31);
     EXPECT_EQ(first, counts());
 }
 std::ptrdiff_t lines_of(const std::string& text) {

@@ -46,7 +46,7 @@ template <class T>
 Picture by_cones(const TriangleMesh<T>& mesh, RenderOptions options) {
     ConeScene<T> scene(mesh);
     options.cones = true;
-    return render(scene.parts(), options, default_executor());
+    return render(scene.parts(), by(default_executor(), options));
 }
 float difference(const Vec3f& a, const Vec3f& b) {
     return max_component(abs(a - b));
@@ -65,9 +65,9 @@ TYPED_TEST(ConePictures, HaveTheEdgesOfManySamples) {
             const Picture cones = by_cones(mesh, options);
             EXPECT_EQ(cones.costs.cones, cones.image.pixels.size());
             const auto index = build<WideBvh>(mesh);
-            const Picture one = render(index, mesh, options, default_executor());
+            const Picture one = render(index, mesh, by(default_executor(), options));
             options.samples = 1024;  // 256 err by 1% themselves
-            const Picture many = render(index, mesh, options, default_executor());
+            const Picture many = render(index, mesh, by(default_executor(), options));
             double edges = 0, even = 0;
             std::size_t on_edges = 0, others = 0;
             for (std::size_t i = 0; i < many.light.size(); ++i) {
@@ -144,7 +144,7 @@ TYPED_TEST(ConePictures, ShadowsAreSoftAtTheirEdges) {
     options.camera.height = 0.002f;  // x from -0.2 to 0.2
     options.camera.light = {0, 0, 1};
     options.light_degrees = 10;
-    const Picture soft = render(scene.parts(), options, serial_executor());
+    const Picture soft = render(scene.parts(), by(serial_executor(), options));
     const PlainShading shading(options.camera, 0);
     const float reach = std::tan(5 * 3.14159265f / 180);  // of the penumbra, to either side
     for (std::size_t i = 0; i < 200; ++i) {
@@ -168,7 +168,7 @@ TYPED_TEST(ConePictures, RefuseWhatTheyCannotSee) {
         RenderOptions options = options_for(mesh, "cornell-box");
         options.cones = true;
         change(options);
-        EXPECT_THROW(render(parts, options, serial_executor()), InputError);
+        EXPECT_THROW(render(parts, by(serial_executor(), options)), InputError);
     };
     refused(nullptr, [](RenderOptions&) {});
     refused(answering, [](RenderOptions& o) { o.samples = 2; });

@@ -1,6 +1,7 @@
 /// Queries of every kind, and the answers of an index to compare with those of another index.
 #pragma once
 
+#include <hedgerow/any_structure.h>
 #include <hedgerow/hedgerow.h>
 
 #include "matrix.h"
@@ -62,15 +63,13 @@ Answers<T, D> answers(const I& index, const Questions<T, D>& questions) {
     return said;
 }
 
-/// Calls f with an index of each kind.
+/// Calls f with an index of each kind: by its own type, and behind one.
 template <class P, class F>
 void with_each_structure(const P& set, F f) {
     f(build<Bvh>(set));
     f(build<WideBvh>(set));
-    f(build<KdTree>(set));
-    f(build<Grid>(set));
-    f(build<Orthtree>(set));
-    f(build<BruteForce>(set));
+    for (const char* spec : {"kdtree", "grid", P::dimension == 3 ? "octree" : "quadtree", "brute-force"})
+        f(build<AnyStructure>(set, {spec}));
 }
 
 }  // namespace hedgerow::contract

@@ -59,7 +59,7 @@ Case noisy(int width, int height, const Truth& truth, float noise = 1) {
     return made;
 }
 std::vector<Vec3f> denoised(const Case& c, const DenoiserOptions& o = {}) {
-    return denoised(c.picture(), o, serial_executor());
+    return denoised(c.picture(), by(serial_executor(), o));
 }
 std::vector<Vec3f> raw(const Case& c) {
     std::vector<Vec3f> all;
@@ -209,8 +209,8 @@ TEST(Denoiser, HasTheSameBitsWithAnyThreads) {
     const Case c = everything(150, 70);
     const auto alone = denoised(c);
     Backwards backwards;
-    EXPECT_EQ(alone, denoised(c.picture(), {}, backwards));
-    EXPECT_EQ(alone, denoised(c.picture(), {}, default_executor()));
+    EXPECT_EQ(alone, denoised(c.picture(), {.threads = backwards}));
+    EXPECT_EQ(alone, denoised(c.picture(), {.threads = default_executor()}));
 }
 
 TEST(Denoiser, TakesPicturesOfAnySizeAndLight) {
@@ -270,11 +270,11 @@ TEST(Denoiser, TellsHowFarItIsAndStops) {
     std::uint64_t last = 0, whole = 0;
     const Progress progress{[&](std::uint64_t done, std::uint64_t total) { last = done, whole = total; },
                             nullptr};
-    denoised(c.picture(), {}, serial_executor(), progress);
+    denoised(c.picture(), {.threads = serial_executor()}, progress);
     EXPECT_EQ(whole, 4000u);
     EXPECT_EQ(last, 4000u);
     const std::atomic<bool> stop{true};
-    EXPECT_THROW(denoised(c.picture(), {}, serial_executor(), {{}, &stop}), Cancelled);
+    EXPECT_THROW(denoised(c.picture(), {.threads = serial_executor()}, {{}, &stop}), Cancelled);
 }
 
 /// The Cornell box below its lamp at 32 samples, held against 512. (Pixels that show a sliver of the lamp
@@ -291,15 +291,15 @@ TEST(Denoiser, HalvesTheErrorOfAPathPicture) {
     Case c{40, 40, {}, {}, {}, {}, {}, {}};
     for (std::size_t h = 0; h < 2; ++h) {
         options.paths.seed = 1 + h;
-        const PathPicture half = trace_paths(parts, options, default_executor());
+        const PathPicture half = trace_paths(parts, by(default_executor(), options));
         c.light[h] = half.means();
         for (std::size_t i = 0; i < half.light.size(); ++i)
             c.variance[h].push_back(half.light.standard_error(i) * half.light.standard_error(i));
     }
-    for (const FirstSurface& first : first_surfaces(parts, options, 16, default_executor()))
+    for (const FirstSurface& first : first_surfaces(parts, 16, by(default_executor(), options)))
         c.albedo.push_back(first.albedo), c.normal.push_back(first.normal), c.depth.push_back(first.depth);
     options.paths.seed = 3, options.samples = 512;
-    c.truth = trace_paths(parts, options, default_executor()).means();
+    c.truth = trace_paths(parts, by(default_executor(), options)).means();
     const auto less = denoised(c);
     EXPECT_LT(error(less, c.truth), 0.5 * error(raw(c), c.truth));
     EXPECT_NEAR(mean(less) / mean(c.truth), 1, 0.015);

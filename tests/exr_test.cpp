@@ -378,9 +378,9 @@ TEST(RenderedLayers, OfManySamplesTheFirstIsSeenAndCountsAreMeans) {
     options.width = 40, options.height = 30, options.samples = 4, options.seed = 5;
     options.shading = Shading::normals;  // without rays to the light
     options.camera = automatic_camera(index->bounds());
-    EXPECT_TRUE(render(*index, mesh, options, serial_executor()).seen.empty()) << "not asked for";
+    EXPECT_TRUE(render(*index, mesh, by(serial_executor(), options)).seen.empty()) << "not asked for";
     options.layers = true;
-    const Picture picture = render(*index, mesh, options, default_executor());
+    const Picture picture = render(*index, mesh, by(default_executor(), options));
 
     // Make the rays of the first of four samples as the renderer does.
     std::vector<Ray3f> rays;
@@ -412,7 +412,7 @@ TEST(RenderedLayers, APictureThatIsCancelledSawNothing) {
     options.camera = automatic_camera(index->bounds());
     std::atomic<bool> cancelled = false;
     const Progress progress{[&](std::uint64_t done, std::uint64_t) { cancelled = done >= 10; }, &cancelled};
-    const Picture picture = render(*index, mesh, options, serial_executor(), progress);
+    const Picture picture = render(*index, mesh, by(serial_executor(), options), progress);
     for (std::size_t i = 0; i < 40 * 30; ++i) {
         const bool done = i < 40 * 16;  // rows are cast eight at a time
         EXPECT_EQ(picture.seen[i].nodes > 0, done) << i;

@@ -15,8 +15,8 @@ namespace {
 
 /// Calls f(name, index) for every structure, and for BVHs of every volume.
 template <class P, class F>
-void for_each_index_and_volume(const P& set, F f) {
-    for_each_index(set, f);
+void for_each_type_and_volume(const P& set, F f) {
+    for_each_type(set, f);
     constexpr bool space = P::dimension == 3;
     for (const Volume volume :
          {Volume::obb, space ? Volume::kdop14 : Volume::kdop8, space ? Volume::cylinder : Volume::kdop4,
@@ -122,7 +122,7 @@ void expect_nothing_missed(const P& set, const Rays& rays, const std::vector<Ray
     std::vector<std::vector<Hit<T>>> hits(some.size());
     const auto oracle = build<BruteForce>(set);
     for (std::size_t i = 0; i < some.size(); ++i) all_hits(oracle, some[i], hits[i]), hit += hits[i].size();
-    for_each_index_and_volume(set, [&](const char* name, const auto& index) {
+    for_each_type_and_volume(set, [&](const char* name, const auto& index) {
         if (const auto fault = wrong(index, rays, some, hits); !fault.empty())
             RC_FAIL(std::string(name) + " " + fault);
     });
@@ -200,7 +200,7 @@ TEST(Beams, TilesOfPicturesMissNothing) {
         const auto index = build<WideBvh>(mesh);
         const RayMaker make(camera_for(spec.name).value_or(automatic_camera(index.bounds())), 64, 64);
         std::size_t hit = 0, offered = 0, beams = 0;
-        for_each_index(mesh, [&](const char* structure, const auto& other) {
+        for_each_type(mesh, [&](const char* structure, const auto& other) {
             SCOPED_TRACE(structure);
             std::vector<FamilyCandidate<float>> found;
             for (int y = 0; y < 64; y += 8)
@@ -300,7 +300,7 @@ TEST(Families, PointsInACone) {
     PointCloud<float, 3> cloud;
     Random random(5, 0);
     for (int i = 0; i < 2000; ++i) cloud.points.push_back(Vec3f(random.in_cube<3>()));
-    for_each_index(cloud, [&](const char* name, const auto& index) {
+    for_each_type(cloud, [&](const char* name, const auto& index) {
         const auto box = index.bounds();
         const Ray<float, 3> axis{box.low, box.high - box.low};
         const ConeRays<float, 3> cone(axis, 0, 0.2f);
@@ -394,7 +394,7 @@ TEST(ConeFragments, AreWhatTheRaysOfTheSamplesHitByEveryStructure) {
         EXPECT_GT(hit, 500u);
         EXPECT_GT(several, 10u);
         EXPECT_LE(differ, hit / 1000);
-        for_each_index(mesh, [&](const char* structure, const auto& index) {
+        for_each_type(mesh, [&](const char* structure, const auto& index) {
             for (std::size_t i = 0; i < cones.size(); ++i) {
                 std::vector<ConeFragment<double>> found;
                 cone_fragments(index, cones[i], found);

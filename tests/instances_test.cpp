@@ -1,5 +1,6 @@
 /// Two-level scenes: any structure over instances of any structure gives the bits of brute force over brute
 /// force.
+#include <hedgerow/any_structure.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
@@ -77,8 +78,9 @@ struct Scene {
     std::vector<I> indexes;
     std::vector<Instance<I>> instances;
 
-    Scene(const std::vector<P>& sets, const std::vector<Transform<P::dimension>>& transforms) {
-        for (const P& set : sets) indexes.push_back(build<Inner>(set));
+    Scene(const std::vector<P>& sets, const std::vector<Transform<P::dimension>>& transforms,
+          const typename I::Structure::Options& options = {}) {
+        for (const P& set : sets) indexes.push_back(build<Inner>(set, options));
         for (std::size_t i = 0; i < transforms.size(); ++i)
             instances.emplace_back(indexes[i % indexes.size()], transforms[i]);
     }
@@ -114,34 +116,32 @@ struct Case {
     template <template <class, int> class Inner>
     using InnerSet = InstanceSet<typename Scene<Inner, P>::I>;
 
+    template <template <class, int> class S>
+    using Options = typename S<T, D>::Options;
+
     template <template <class, int> class Outer, template <class, int> class Inner>
-    void expect(const char* name) const {
+    void expect(const std::string& name, const Options<Outer>& outer = {},
+                const Options<Inner>& inner = {}) const {
         SCOPED_TRACE(name);
-        const Scene<Inner, P> scene(sets, transforms);
-        const auto index = build<Outer>(InnerSet<Inner>(scene.instances));
+        const Scene<Inner, P> scene(sets, transforms, inner);
+        const auto index = build<Outer>(InnerSet<Inner>(scene.instances), outer);
         EXPECT_EQ(index.validate(), "");
         expect_same(want, ask(index, questions, regions));
     }
-    void expect_some() const {
-        if constexpr (std::is_same_v<T, float>)
-            expect<Bvh, Grid>("grid in bvh");
-        else
-            expect<KdTree, Bvh>("bvh in kdtree");
-    }
-    /// In float, many pairs of an outer and an inner structure. In double only one pair, which spares the
-    /// compiler some minutes.
+    /// Pairs of an outer and an inner structure: of each kind of walk in each, and the engine by its type.
     void expect_all() const {
-        expect_some();
-        if constexpr (std::is_same_v<T, float>) {
-            expect<KdTree, Bvh>("bvh in kdtree");
-            expect<WideBvh, WideBvh>("wide in wide");
-            expect<BruteForce, Bvh>("bvh in brute force");
-            expect<Bvh, BruteForce>("brute force in bvh");
-            expect<KdTree, KdTree>("kdtree in kdtree");
-            expect<Grid, Bvh>("bvh in grid");
-            expect<Orthtree, Grid>("grid in octree");
-            expect<BspTree, KdTree>("kdtree in bsp");
-        }
+        for (const auto& [outer, inner] : {std::pair{"bvh", "grid"},
+                                           {"kdtree", "bvh"},
+                                           {"brute-force", "bvh"},
+                                           {"bvh", "brute-force"},
+                                           {"kdtree", "kdtree"},
+                                           {"grid", "bvh"},
+                                           {"octree", "grid"},
+                                           {"bsp", "kdtree"},
+                                           {"wide", "two-level-grid"}})
+            expect<AnyStructure, AnyStructure>(std::string(inner) + " in " + outer,
+                                               {matrix::named_for<P>(outer)}, {matrix::named_for<P>(inner)});
+        expect<WideBvh, WideBvh>("wide in wide, by their types");
     }
 };
 
@@ -187,10 +187,10 @@ TYPED_TEST(Instances, TinyAndHuge) {
 
 TYPED_TEST(Instances, OfOtherPrimitives) {
     using T = TypeParam;
-    Case<SphereSet<T, 3>>({spheres<T>(60)}, transforms<3>(20, Scales::even, 4), true, 500).expect_some();
-    Case<SphereSet<T, 3>>({spheres<T>(60)}, transforms<3>(20, Scales::any, 4), false, 500).expect_some();
-    Case<PointCloud<T, 3>>({points<T>(60)}, transforms<3>(20, Scales::any, 4), true, 100).expect_some();
-    Case<SegmentSet<T>>({segments2d<T>(60)}, transforms<2>(20, Scales::any, 4), true, 500).expect_some();
+    Case<SphereSet<T, 3>>({spheres<T>(60)}, transforms<3>(20, Scales::even, 4), true, 500).expect_all();
+    Case<SphereSet<T, 3>>({spheres<T>(60)}, transforms<3>(20, Scales::any, 4), false, 500).expect_all();
+    Case<PointCloud<T, 3>>({points<T>(60)}, transforms<3>(20, Scales::any, 4), true, 100).expect_all();
+    Case<SegmentSet<T>>({segments2d<T>(60)}, transforms<2>(20, Scales::any, 4), true, 500).expect_all();
 }
 
 /// A mesh that is translated by whole numbers is hit exactly as if its vertices were there.

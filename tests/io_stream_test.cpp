@@ -119,7 +119,7 @@ TYPED_TEST(Streams, AreDrawnInBoundedMemory) {
         options.camera = automatic_camera({Vec3f(box.low), Vec3f(box.high)}, 2);
         Picture picture;
         const std::size_t most = most_bytes_of([&] {
-            picture = render(PictureParts<T>{rasterising, rasterising}, options, serial_executor());
+            picture = render(PictureParts<T>{rasterising, rasterising}, by(serial_executor(), options));
         });
         const std::size_t pixels = 300 * 300;
         EXPECT_LT(most, (std::size_t(64) << 20) + pixels * (sizeof(Hit<T>) + 200));

@@ -41,7 +41,7 @@ TEST(Measure, CountsWhatIsVisited) {
         EXPECT_EQ(s.items, index->item_count());
         EXPECT_EQ(s.depth, index->depth());
         EXPECT_EQ(s.builds, 1);
-        ASSERT_EQ(s.queries.size(), 27u) << "12 of rays, 4 of points, 8 of regions, 3 of insides";
+        ASSERT_EQ(s.queries.size(), 31u) << "15 of rays, 5 of points, 8 of regions, 3 of insides";
         for (const auto& q : s.queries) {
             EXPECT_EQ(q.asked, 64u) << q.kind;
             EXPECT_GT(q.seconds, 0) << q.kind;
@@ -198,15 +198,16 @@ TEST(Measure, StopsWhenItIsTold) {
     progress.report = [&](std::uint64_t done, std::uint64_t) { cancel = done >= 1; };
     const Strings structures = {"bvh", "kdtree", "grid"};
     const Comparison c =
-        compare(points<float>(1000), structures, quick_options(), serial_executor(), progress);
+        compare(points<float>(1000), structures, by(serial_executor(), quick_options()), progress);
     EXPECT_FALSE(c.finished);
     EXPECT_LT(c.structures.size(), 3u);
 
     cancel = false;
     MeasureOptions counts = quick_options();
     counts.rounds = 0;
-    EXPECT_EQ(compare(points<float>(1000), structures, counts, serial_executor(), progress).structures.size(),
-              1u)
+    EXPECT_EQ(
+        compare(points<float>(1000), structures, by(serial_executor(), counts), progress).structures.size(),
+        1u)
         << "its counts are whole";
 }
 TEST(Measure, StopsBetweenTheQueriesOfOneKind) {

@@ -65,8 +65,8 @@ Picture cast(const ModelScene<T>& scene, const RenderOptions& options) {
     RayCasting<T> casting(scene.tracer(), looks.has_masks()
                                               ? [&](const Hit<T>& hit) { return looks.is_there(hit); }
                                               : std::function<bool(const Hit<T>&)>());
-    return render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer(), &looks}, options,
-                  serial_executor());
+    return render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer(), &looks},
+                  by(serial_executor(), options));
 }
 Vec3f light_at(const Picture& picture, int x, int y) {
     return picture.light[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.image.width) +
@@ -223,7 +223,7 @@ TYPED_TEST(ModelPictures, ByTrianglesAreThoseByRays) {
         Rasterising<T, InstanceSetView<MeshIndex<T>>> rasterising(scene.instances().view());
         const Picture by_triangles =
             render(PictureParts<T>{rasterising, scene.surfaces(), &scene.tracer(), &scene.appearances()},
-                   options, default_executor());
+                   by(default_executor(), options));
         EXPECT_EQ(by_rays.image, by_triangles.image);
         EXPECT_EQ(by_rays.light, by_triangles.light);
     }
@@ -300,7 +300,7 @@ TYPED_TEST(ModelPictures, ConesSeeLooks) {
         options.cones = options.footprints = true;
         const Picture by_cones =
             render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer(), &scene.appearances(), &cones},
-                   options, default_executor());
+                   by(default_executor(), options));
         EXPECT_EQ(by_cones.costs.cones, by_cones.image.pixels.size());
         options.cones = options.footprints = false;
         const Picture one = cast(scene, options);
@@ -325,9 +325,9 @@ TYPED_TEST(ModelPictures, NeedLooksAndTriangles) {
     auto model = textured_square<T>();
     const ModelScene<T> scene(model, serial_executor());
     RayCasting<T> casting(scene.tracer());
-    EXPECT_THROW(
-        render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer()}, from_above(), serial_executor()),
-        InputError);
+    EXPECT_THROW(render(PictureParts<T>{casting, scene.surfaces(), &scene.tracer()},
+                        by(serial_executor(), from_above())),
+                 InputError);
     model.objects[0].mesh.triangles.clear();
     EXPECT_THROW(ModelScene<T>(model, serial_executor()), InputError);
 }

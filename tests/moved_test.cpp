@@ -88,13 +88,45 @@ void expect_moved(I index) {
 TEST(Moved, IsEmpty) {
     const auto mesh = teapot<float>(200);
     contract::with_each_structure(mesh, [](auto index) { expect_moved(std::move(index)); });
-    expect_moved(build<TwoLevelGrid>(mesh));
-    expect_moved(build<BspTree>(mesh));
-    expect_moved(build<VolumeBvh>(mesh));
     const auto balls = spheres<double>(100);
-    expect_moved(build<KdTree>(balls));
+    expect_moved(build<AnyStructure>(balls, {"kdtree"}));
     const auto segments = segments2d<float>(100);
-    expect_moved(build<Orthtree>(segments));
+    expect_moved(build<AnyStructure>(segments, {"quadtree"}));
+}
+/// The same for one question to a structure of each type.
+template <template <class, int> class S, class P>
+void expect_left_empty(const P& set) {
+    const auto one = view_of(set).bounds(0).low;
+    auto from = build<S>(set);
+    const auto want = closest_point(from, one);
+    EXPECT_TRUE(want);
+    const auto to = std::move(from);
+    EXPECT_EQ(closest_point(to, one), want);
+    EXPECT_FALSE(closest_point(from, one));
+    EXPECT_EQ(from.size(), 0u);
+    EXPECT_TRUE(from.bounds().empty());
+    EXPECT_TRUE(from.structure().items().empty());
+    EXPECT_EQ(from.structure().leaf_count(), 0u);
+    EXPECT_EQ(from.validate(), "");
+}
+TEST(Moved, LeavesAStructureOfEachTypeEmpty) {
+    const auto cloud = points<float>(100);
+    expect_left_empty<BruteForce>(cloud);
+    expect_left_empty<Grid>(cloud);
+    expect_left_empty<TwoLevelGrid>(cloud);
+    expect_left_empty<HashGrid>(cloud);
+    expect_left_empty<KdTree>(cloud);
+    expect_left_empty<PointKdTree>(cloud);
+    expect_left_empty<Orthtree>(cloud);
+    expect_left_empty<PointOrthtree>(cloud);
+    expect_left_empty<BspTree>(cloud);
+    expect_left_empty<Bvh>(cloud);
+    expect_left_empty<VolumeBvh>(cloud);
+    expect_left_empty<WideBvh>(cloud);
+    expect_left_empty<AnyStructure>(cloud);
+}
+
+TEST(Moved, FindsTheNearestWhereItWent) {
     const auto cloud = points<float>(100);
     const auto index = build<PointKdTree>(cloud);
     std::vector<Near<float, 3>> near;

@@ -32,6 +32,14 @@ struct Discs {
         const T away = length(from);
         return clamped(away <= radius ? p : centers[i] + from * (radius / away), bounds(i));
     }
+    Foot<T, 3> farthest_point(std::size_t i, const Vec<T, 3>& p) const {
+        const Vec<T, 3> from = from_axis(i, p);
+        const T away = length(from);
+        const Vec<T, 3> beyond =
+            away > 0 ? centers[i] - from * (radius / away) : centers[i] + Vec<T, 3>(radius, T(0), T(0));
+        const Vec<T, 3> farthest = clamped(beyond, bounds(i));
+        return {distance2(p, farthest), farthest};
+    }
     bool overlaps(std::size_t i, const Box<T, 3>& box) const {
         return overlap(box, bounds(i)) && holds(i, clamped(centers[i], box));
     }

@@ -40,7 +40,7 @@ struct Box {
         options.width = 24, options.height = 20, options.samples = 12;
         options.keeps_direct = true;
     }
-    PathPicture picture() const { return trace_paths(parts, options, default_executor()); }
+    PathPicture picture() const { return trace_paths(parts, by(default_executor(), options)); }
 
 private:
     static Model<T> changed_box() {
@@ -170,11 +170,11 @@ TYPED_TEST(DirectLight, HasTheSameBitsHoweverPathsAreFollowed) {
         }
         PathPicture in_steps(box.options.width, box.options.height, true);
         for (const std::uint32_t until : {1u, 33u})
-            add_samples(in_steps, until, box.parts, box.options, default_executor());
+            add_samples(in_steps, until, box.parts, by(default_executor(), box.options));
         box.options.keeps_direct = false;  // goes on all the same
         while (in_steps.samples < 40) {
             std::atomic<bool> stop{false};
-            add_samples(in_steps, 40, box.parts, box.options, serial_executor(),
+            add_samples(in_steps, 40, box.parts, by(serial_executor(), box.options),
                         {[&](std::uint64_t done, std::uint64_t) { stop = done > 0; }, &stop});
         }
         expect_same(one_by_one, in_steps);
@@ -194,7 +194,7 @@ TEST(PathPictures, DropSamplesThatAreNotFiniteFromDirectLight) {
 TEST(PathPictures, ThatHaveNoDirectLightAreNotGivenSome) {
     Box<float> box;
     PathPicture picture(box.options.width, box.options.height);
-    EXPECT_THROW(add_samples(picture, 1, box.parts, box.options, serial_executor()), InputError);
+    EXPECT_THROW(add_samples(picture, 1, box.parts, by(serial_executor(), box.options)), InputError);
     EXPECT_EQ(picture.samples, 0u);
 }
 

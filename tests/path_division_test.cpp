@@ -74,7 +74,7 @@ struct Box {
         options.width = width, options.height = height, options.division = division;
         options.samples = samples;
     }
-    PathPicture picture() const { return trace_paths(parts, options, default_executor()); }
+    PathPicture picture() const { return trace_paths(parts, by(default_executor(), options)); }
 };
 
 class Divisions : public testing::TestWithParam<Division> {};
@@ -91,11 +91,11 @@ TEST_P(Divisions, HaveTheSameBitsInWhateverSteps) {
     box.options.in_flight = 0;
     PathPicture in_steps(box.options.width, box.options.height);
     for (const std::uint32_t until : {1u, 3u, 31u, 50u})
-        add_samples(in_steps, until, box.parts, box.options, default_executor());
+        add_samples(in_steps, until, box.parts, by(default_executor(), box.options));
     box.options.in_flight = 7;
     while (in_steps.samples < 90) {
         std::atomic<bool> stop{false};
-        add_samples(in_steps, 90, box.parts, box.options, serial_executor(),
+        add_samples(in_steps, 90, box.parts, by(serial_executor(), box.options),
                     {[&](std::uint64_t done, std::uint64_t) { stop = done > 5000; }, &stop});
     }
     for (std::size_t i = 0; i < at_once.light.size(); ++i) {
@@ -173,9 +173,9 @@ TEST(AdaptivePictures, HaveLessNoise) {
     options.camera = automatic_camera(scene.bounds());
     options.width = options.height = 64, options.samples = 128;
     options.division = Division::halves;
-    const double halves = trace_paths(parts, options, default_executor()).light.noise();
+    const double halves = trace_paths(parts, by(default_executor(), options)).light.noise();
     options.division = Division::adaptive;
-    const double adaptive = trace_paths(parts, options, default_executor()).light.noise();
+    const double adaptive = trace_paths(parts, by(default_executor(), options)).light.noise();
     EXPECT_LT(adaptive, halves * 0.8) << halves;
 }
 

@@ -34,7 +34,7 @@ template <class T>
 PathPicture picture_of(const Model<T>& model, const PathPictureOptions& options) {
     const ModelScene<T> scene(model, default_executor());
     const SceneLights<T> lights(scene, {.up = options.camera.up});
-    return trace_paths(PathScene<T>{scene, lights, scene.tracer()}, options, default_executor());
+    return trace_paths(PathScene<T>{scene, lights, scene.tracer()}, by(default_executor(), options));
 }
 /// A generated scene by its own camera, after a change of both.
 template <class Change>

@@ -77,7 +77,7 @@ PathPicture trace(const Model<T>& model, const PathPictureOptions& options,
     const ModelScene<T> scene(model, serial_executor());
     of_lights.compensates = options.paths.material_sampling;
     const SceneLights<T> lights(scene, of_lights);
-    return trace_paths(PathScene<T>{scene, lights, scene.tracer()}, options, default_executor());
+    return trace_paths(PathScene<T>{scene, lights, scene.tracer()}, by(default_executor(), options));
 }
 /// The mean of all pixels and samples, and its standard error, of the first colour.
 struct Estimate {

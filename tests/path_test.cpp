@@ -162,11 +162,12 @@ TYPED_TEST(Paths, HaveTheSameBitsWhoeverFindsTheHits) {
     PathPictureOptions options = few_pixels(*camera_for("cornell-box"), 4);
     options.width = 30, options.height = 20;
     const PathPicture one =
-        trace_paths(PathScene<T>{scene, lights, scene.tracer()}, options, serial_executor());
+        trace_paths(PathScene<T>{scene, lights, scene.tracer()}, by(serial_executor(), options));
     const auto expect = [&](const auto& index, const char* name) {
         SCOPED_TRACE(name);
         const IndexTracer tracer(index);
-        expect_same<T>(one, trace_paths(PathScene<T>{scene, lights, tracer}, options, default_executor()));
+        expect_same<T>(one,
+                       trace_paths(PathScene<T>{scene, lights, tracer}, by(default_executor(), options)));
     };
     expect(build<BruteForce>(scene.instances()), "brute force");
     expect(build<KdTree>(scene.instances()), "kd-tree");
@@ -174,7 +175,7 @@ TYPED_TEST(Paths, HaveTheSameBitsWhoeverFindsTheHits) {
     expect(build<Bvh>(scene.instances()), "bvh");
     options.paths.seed = 1;
     const PathPicture other =
-        trace_paths(PathScene<T>{scene, lights, scene.tracer()}, options, serial_executor());
+        trace_paths(PathScene<T>{scene, lights, scene.tracer()}, by(serial_executor(), options));
     EXPECT_NE(other.light.mean(310), one.light.mean(310)) << "another seed is another picture";
 }
 
@@ -191,12 +192,12 @@ TYPED_TEST(Paths, HaveTheSameBitsHoweverManyAreFollowedAtOnce) {
         PathPictureOptions options = few_pixels(*camera_for("cornell-box"), samples);
         options.width = width, options.height = height, options.in_flight = 0;
         const PathScene<T> parts{scene, lights, scene.tracer()};
-        const PathPicture one_by_one = trace_paths(parts, options, serial_executor());
+        const PathPicture one_by_one = trace_paths(parts, by(serial_executor(), options));
         EXPECT_EQ(one_by_one.light.samples(0), samples);
         for (const std::size_t in_flight : {1u, 7u, 1024u, 5000u}) {
             SCOPED_TRACE(in_flight);
             options.in_flight = in_flight;
-            expect_same<T>(one_by_one, trace_paths(parts, options, default_executor()));
+            expect_same<T>(one_by_one, trace_paths(parts, by(default_executor(), options)));
         }
     }
 }
@@ -266,16 +267,16 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
     const PathScene<T> parts{scene, lights, scene.tracer()};
     PathPictureOptions options = few_pixels(*camera_for("cornell-box"), 23);
     options.width = 330, options.height = 80;
-    const PathPicture at_once = trace_paths(parts, options, default_executor());
+    const PathPicture at_once = trace_paths(parts, by(default_executor(), options));
     PathPicture in_steps(options.width, options.height);
     for (const std::uint32_t until : {1u, 2u, 2u, 7u, 20u})
-        add_samples(in_steps, until, parts, options, default_executor());
+        add_samples(in_steps, until, parts, by(default_executor(), options));
     EXPECT_EQ(in_steps.samples, 20u);
     std::size_t stops = 0;
     while (in_steps.samples < 23) {
         // Stop at the first report, which is of pixels that had not all samples before.
         std::atomic<bool> stop{false};
-        add_samples(in_steps, 23, parts, options, serial_executor(),
+        add_samples(in_steps, 23, parts, by(serial_executor(), options),
                     {[&](std::uint64_t, std::uint64_t) { stop = true; }, &stop});
         ASSERT_LT(++stops, 100u) << "work that is stopped again and again goes on";
     }
@@ -284,7 +285,7 @@ TYPED_TEST(Paths, GoOnWithTheSameBits) {
     for (std::size_t i = 0; i < at_once.light.size(); ++i)
         ASSERT_EQ(at_once.light.standard_error(i), in_steps.light.standard_error(i));
     options.width = 8;
-    EXPECT_THROW(add_samples(in_steps, 30, parts, options, serial_executor()), InputError);
+    EXPECT_THROW(add_samples(in_steps, 30, parts, by(serial_executor(), options)), InputError);
 }
 
 /// A single tile may take long, so work ends within it, too.
@@ -294,16 +295,16 @@ TEST(PathSteps, EndWithinATile) {
     const SceneLights<float> lights(scene);
     const PathScene<float> parts{scene, lights, scene.tracer()};
     const PathPictureOptions options = few_pixels(camera_at({0, -1, 2}, {0, 0, 0}), 4096);
-    const PathPicture at_once = trace_paths(parts, options, serial_executor());
+    const PathPicture at_once = trace_paths(parts, by(serial_executor(), options));
     PathPicture in_steps(options.width, options.height);
-    add_samples(in_steps, 2048, parts, options, serial_executor());
+    add_samples(in_steps, 2048, parts, by(serial_executor(), options));
     std::atomic<bool> stop{false};
-    add_samples(in_steps, 4096, parts, options, serial_executor(),
+    add_samples(in_steps, 4096, parts, by(serial_executor(), options),
                 {[&](std::uint64_t, std::uint64_t) { stop = true; }, &stop});
     EXPECT_EQ(in_steps.samples, 2048u);
     EXPECT_GT(in_steps.mean_samples(), 2048);
     EXPECT_LT(in_steps.mean_samples(), 4096);
-    add_samples(in_steps, 4096, parts, options, default_executor());
+    add_samples(in_steps, 4096, parts, by(default_executor(), options));
     expect_same<float>(at_once, in_steps);
 }
 
@@ -323,7 +324,7 @@ TYPED_TEST(Paths, FirstSurfacesAreThoseThatScatter) {
     PathPictureOptions options = few_pixels(camera_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}), 4);
     options.width = options.height = 3;
     options.camera.field_of_view = 70;
-    const auto down = first_surfaces(parts, options, 4, default_executor());
+    const auto down = first_surfaces(parts, 4, by(default_executor(), options));
     EXPECT_LT(length(down[4].albedo - Vec3f(0.4f, 0.4f, 0.2f)), 1e-6f)
         << "what the mirror shows, in its colour";
     EXPECT_LT(length(down[4].normal - Vec3f(0, 0, -1)), 1e-6f);
@@ -334,7 +335,7 @@ TYPED_TEST(Paths, FirstSurfacesAreThoseThatScatter) {
     EXPECT_EQ(down[0].normal, Vec3f());
     EXPECT_EQ(down[0].depth, std::numeric_limits<float>::infinity());
     options.camera.target = {0, 0, 8};
-    const auto up = first_surfaces(parts, options, 1, serial_executor());
+    const auto up = first_surfaces(parts, 1, by(serial_executor(), options));
     EXPECT_LT(length(up[4].albedo - Vec3f(0.8f, 0.4f, 0.2f)), 1e-6f);
     EXPECT_EQ(up[4].instance, 1u);
 }

@@ -94,7 +94,7 @@ TEST_F(PeerTracer, MakesTheSamePicture) {
     options.width = 80, options.height = 60;
     const auto picture = [&](const Tracer<float>& tracer) {
         RayCasting<float> cast(tracer);
-        return render(PictureParts<float>{cast, surfaces, &tracer}, options, serial_executor());
+        return render(PictureParts<float>{cast, surfaces, &tracer}, by(serial_executor(), options));
     };
     const Picture a = picture(own), b = picture(*peer);
     ASSERT_TRUE(b.whole);

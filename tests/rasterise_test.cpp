@@ -64,7 +64,8 @@ void expect_hits_of_rays(const TriangleMesh<T>& mesh, const PictureSamples<T>& s
             SCOPED_TRACE(static_cast<int>(coverage));
             // What the buffer held does not matter.
             std::vector<Hit<T>> hits(samples.size(), Hit<T>{T(1e-30), T(2), T(3), 4, 5, 6, 7});
-            const RasterCounts counts = rasteriser.draw(mesh.view(), hits, default_executor(), {coverage});
+            const RasterCounts counts =
+                rasteriser.draw(mesh.view(), hits, by(default_executor(), RasterOptions{coverage}));
             expect_same(want, hits);
             EXPECT_EQ(counts.triangles, mesh.size());
             if (coverage == Coverage::all) {
@@ -150,7 +151,7 @@ void expect_hits_on_two_levels(const InstanceSet<I>& set, const PictureSamples<t
             for (const bool onto : {false, true}) {
                 std::vector<Hit<T>> hits(samples.size(),
                                          onto ? Hit<T>() : Hit<T>{T(1e-30), 2, 3, 4, 5, 6, 7});
-                rasteriser.draw(set.view(), hits, default_executor(), {coverage, onto});
+                rasteriser.draw(set.view(), hits, by(default_executor(), RasterOptions{coverage, onto}));
                 expect_same(want, hits);
             }
     }
@@ -235,7 +236,7 @@ TYPED_TEST(RasterisedHits, OfPartsOfASet) {
                                           mesh.triangles.begin() + first + 100);
                     RasterOptions options{coverage, k > 0};
                     options.first_element = first;
-                    rasteriser.draw(part.view(), hits, default_executor(), options);
+                    rasteriser.draw(part.view(), hits, by(default_executor(), options));
                 }
                 expect_same(want, hits);
             }
@@ -250,7 +251,8 @@ TYPED_TEST(RasterisedHits, AreCountedOnRequest) {
     Rasteriser<T> rasteriser(samples);
     EXPECT_EQ(rasteriser.bytes(), 0u);
     const auto counts = [&](Coverage coverage) {
-        const auto c = rasteriser.draw(mesh.view(), hits, default_executor(), {coverage, false, true});
+        const auto c =
+            rasteriser.draw(mesh.view(), hits, by(default_executor(), RasterOptions{coverage, false, true}));
         expect_same(want, hits);
         return c;
     };
@@ -275,7 +277,7 @@ TYPED_TEST(RasterisedHits, AreShadedWhenTheyAreNearestSoFar) {
             std::vector<Hit<T>> hits(samples.size()), last(samples.size());
             std::vector<std::uint32_t> times(samples.size());
             Rasteriser<T> rasteriser(samples);
-            const auto counts = rasteriser.draw(drawn, hits, default_executor(), {coverage},
+            const auto counts = rasteriser.draw(drawn, hits, by(default_executor(), RasterOptions{coverage}),
                                                 [&](std::size_t i, const Hit<T>& hit) {
                                                     EXPECT_TRUE(hit.t <= last[i].t);
                                                     last[i] = hit;
@@ -314,15 +316,15 @@ TYPED_TEST(RasterisedHits, OntoThoseOfOthersAndByAnyExecutor) {
                 const Using use(name);
                 Rasteriser<T> rasteriser(samples);
                 std::vector<Hit<T>> hits(samples.size());
-                rasteriser.draw(half.view(), hits, *executor, {coverage});
+                rasteriser.draw(half.view(), hits, by(*executor, RasterOptions{coverage}));
                 expect_same(first, hits);
-                rasteriser.draw(mesh.view(), hits, *executor, {coverage, true});
+                rasteriser.draw(mesh.view(), hits, by(*executor, RasterOptions{coverage, true}));
                 expect_same(want, hits);
-                rasteriser.draw(mesh.view(), hits, *executor, {coverage, true});
+                rasteriser.draw(mesh.view(), hits, by(*executor, RasterOptions{coverage, true}));
                 expect_same(want, hits);
-                rasteriser.draw(TriangleMesh<T>().view(), hits, *executor, {coverage, true});
+                rasteriser.draw(TriangleMesh<T>().view(), hits, by(*executor, RasterOptions{coverage, true}));
                 expect_same(want, hits);
-                rasteriser.draw(TriangleMesh<T>().view(), hits, *executor, {coverage});
+                rasteriser.draw(TriangleMesh<T>().view(), hits, by(*executor, RasterOptions{coverage}));
                 expect_same(std::vector<Hit<T>>(samples.size()), hits);
             }
 }
@@ -344,7 +346,7 @@ TYPED_TEST(RasterisedHits, OfTrianglesThatFillThePicture) {
     const auto want = hits_of_rays(mesh, samples);
     Rasteriser<T> rasteriser(samples);
     std::vector<Hit<T>> hits(samples.size());
-    const auto counts = rasteriser.draw(mesh.view(), hits, default_executor());
+    const auto counts = rasteriser.draw(mesh.view(), hits, {.threads = default_executor()});
     expect_same(want, hits);
     EXPECT_EQ(counts.outside, 0u);
     EXPECT_LT(rasteriser.bytes(), std::size_t(64) << 20);
@@ -367,7 +369,7 @@ TYPED_TEST(RasterisedHits, NeedAPlaceForEachSample) {
     Rasteriser<T> rasteriser(PictureSamples<T>(Camera{{0, 0, 1}, {1, 0, 1}}, 5, 4));
     std::vector<Hit<T>> hits(19);
     const auto mesh = soup<T>(5);
-    EXPECT_THROW(rasteriser.draw(mesh.view(), hits, serial_executor()), InputError);
+    EXPECT_THROW(rasteriser.draw(mesh.view(), hits, {.threads = serial_executor()}), InputError);
     std::vector<Visible> visible(19);
     EXPECT_THROW(rasteriser.draw_visible(mesh.view(), visible, serial_executor()), InputError);
     visible.resize(20);

@@ -48,8 +48,8 @@ TYPED_TEST(RecordedRays, ChangeNothingAndHaveTheirHitsWhenTheyAreTracedAgain) {
     using T = TypeParam;
     RecordingTracer<T> recorded(this->scene.tracer());
     const PathPicture plain =
-        trace_paths(this->parts(this->scene.tracer()), this->options, serial_executor());
-    const PathPicture watched = trace_paths(this->parts(recorded), this->options, serial_executor());
+        trace_paths(this->parts(this->scene.tracer()), by(serial_executor(), this->options));
+    const PathPicture watched = trace_paths(this->parts(recorded), by(serial_executor(), this->options));
     for (std::size_t i = 0; i < plain.light.size(); ++i)
         ASSERT_EQ(plain.light.mean(i), watched.light.mean(i)) << i;
     std::size_t closest = 0, any = 0, blocked = 0;
@@ -83,7 +83,7 @@ TYPED_TEST(RecordedRays, ChangeNothingAndHaveTheirHitsWhenTheyAreTracedAgain) {
 TYPED_TEST(RecordedRays, OfAllBouncesAreThoseOfThePicture) {
     using T = TypeParam;
     const RecordingTracer<T> recorded(this->scene.tracer());
-    trace_paths(this->parts(recorded), this->options, default_executor());
+    trace_paths(this->parts(recorded), by(default_executor(), this->options));
     const auto bounces = rays_by_bounce(this->parts(this->scene.tracer()), this->options, 1'000'000);
     std::vector<Ray<T, 3>> rays, shadow_rays;
     for (std::size_t k = 0; k < bounces.size(); ++k) {

@@ -54,15 +54,15 @@ TYPED_TEST(Rendered, RaysAndTrianglesMakeTheSamePicture) {
                 options.camera = *camera_for("teapot-in-stadium");
                 options.samples = samples, options.seed = 7, options.shading = shading;
                 options.layers = true;
-                const Picture cast = render(index, mesh, options, default_executor());
+                const Picture cast = render(index, mesh, by(default_executor(), options));
                 Rasterising<T> rasterising(mesh.view(), coverage);
                 const Picture drawn = render(
                     PictureParts<T>{rasterising, surfaces, shading == Shading::diffuse ? &tracer : nullptr},
-                    options, default_executor());
+                    by(default_executor(), options));
                 expect_same(cast, drawn);
                 BeamTracing beams(index);
                 const Picture beamed =
-                    render(PictureParts<T>{beams, surfaces, &tracer}, options, default_executor());
+                    render(PictureParts<T>{beams, surfaces, &tracer}, by(default_executor(), options));
                 expect_same(cast, beamed);
                 EXPECT_EQ(beamed.costs.rays, cast.costs.rays);
                 EXPECT_EQ(drawn.costs.drawn.triangles, mesh.size() * static_cast<std::size_t>(samples));
@@ -78,12 +78,12 @@ TYPED_TEST(Rendered, AnyIndexAndInstancesAreTracersToo) {
     const auto index = build<WideBvh>(mesh);
     RenderOptions options = options_for(index);
     options.layers = true;
-    const Picture want = render(index, mesh, options, default_executor());
-    expect_same(want, render(*build_any("kdtree", mesh), mesh, options, default_executor()));
+    const Picture want = render(index, mesh, by(default_executor(), options));
+    expect_same(want, render(*build_any("kdtree", mesh), mesh, by(default_executor(), options)));
     // One instance that stays where it is shows the same hits.
     const InstanceSet set{Instance(index)};
     const auto placed = build<Bvh>(set);
-    const Picture instance = render(placed, set, options, default_executor());
+    const Picture instance = render(placed, set, by(default_executor(), options));
     ASSERT_EQ(want.seen.size(), instance.seen.size());
     for (std::size_t i = 0; i < want.seen.size(); ++i) {
         ASSERT_EQ(want.seen[i].id, instance.seen[i].id);
@@ -138,7 +138,7 @@ TYPED_TEST(Rendered, EveryCameraSeesByRays) {
     const auto seen = [&](auto change) {
         RenderOptions changed = options;
         change(changed.camera);
-        const Picture picture = render(index, mesh, changed, default_executor());
+        const Picture picture = render(index, mesh, by(default_executor(), changed));
         std::size_t shown = 0;
         for (const auto& pixel : picture.image.pixels) shown += pixel != picture.image.at(0, 0);
         EXPECT_GT(shown, picture.image.pixels.size() / 8);
@@ -155,8 +155,8 @@ TYPED_TEST(Rendered, EveryCameraSeesByRays) {
         options.camera.projection = projection;
         BeamTracing beams(index);
         const SurfacesOf surfaces(mesh);
-        expect_same(render(index, mesh, options, default_executor()),
-                    render(PictureParts<T>{beams, surfaces}, options, default_executor()));
+        expect_same(render(index, mesh, by(default_executor(), options)),
+                    render(PictureParts<T>{beams, surfaces}, by(default_executor(), options)));
     }
 }
 
@@ -170,7 +170,7 @@ TYPED_TEST(Rendered, LightGoesThroughTransparentSurfaces) {
     RenderOptions options = options_for(index);
     options.layers = options.transparent = true, options.opacity = 0.7f, options.shading = Shading::normals;
     options.camera.field_of_view = 15;
-    const Picture cast = render(index, mesh, options, default_executor());
+    const Picture cast = render(index, mesh, by(default_executor(), options));
     // The same by compositing the rays' layers.
     const PictureSamples<T> samples(options.camera, options.width, options.height);
     const PlainShading shading(options.camera, 0);
@@ -186,21 +186,21 @@ TYPED_TEST(Rendered, LightGoesThroughTransparentSurfaces) {
         ASSERT_LE(length(cast.light[i] - want[i].over(shading.background())), 1e-6f) << i;
     for (const auto lit : {Shading::normals, Shading::diffuse}) {
         options.shading = lit;
-        const Picture by_rays = render(index, mesh, options, default_executor());
+        const Picture by_rays = render(index, mesh, by(default_executor(), options));
         Rasterising<T> rasterising(mesh.view());
         BeamTracing beams(index);
         const PictureParts<T> drawn{rasterising, surfaces, &tracer}, beamed{beams, surfaces, &tracer};
-        expect_same(by_rays, render(drawn, options, default_executor()));
-        expect_same(by_rays, render(beamed, options, default_executor()));
-        expect_same(by_rays, render(*build_any("kdtree", mesh), mesh, options, default_executor()));
+        expect_same(by_rays, render(drawn, by(default_executor(), options)));
+        expect_same(by_rays, render(beamed, by(default_executor(), options)));
+        expect_same(by_rays, render(*build_any("kdtree", mesh), mesh, by(default_executor(), options)));
         // Opaque surfaces hide all, and those without opacity nothing.
         options.opacity = 1;
-        const Picture opaque = render(index, mesh, options, default_executor());
+        const Picture opaque = render(index, mesh, by(default_executor(), options));
         options.opacity = 0;
-        const Picture clear = render(index, mesh, options, default_executor());
+        const Picture clear = render(index, mesh, by(default_executor(), options));
         for (const Vec3f& light : clear.light) ASSERT_EQ(light, shading.background());
         options.transparent = false, options.opacity = 1;
-        expect_same(opaque, render(index, mesh, options, default_executor()));
+        expect_same(opaque, render(index, mesh, by(default_executor(), options)));
         options.transparent = true, options.opacity = 0.7f;
     }
 }
@@ -214,11 +214,11 @@ TYPED_TEST(Rendered, RefinementGivesSamplesWhereLightDiffers) {
     RenderOptions options = options_for(index);
     options.layers = true;
     options.samples = 16;
-    const Picture all = render(index, mesh, options, default_executor());
+    const Picture all = render(index, mesh, by(default_executor(), options));
     options.refines = true;
     for (const bool transparent : {false, true}) {
         options.transparent = transparent;  // though all is opaque
-        const Picture refined = render(index, mesh, options, default_executor());
+        const Picture refined = render(index, mesh, by(default_executor(), options));
         std::size_t equal = 0;
         double off = 0;
         for (std::size_t i = 0; i < all.light.size(); ++i) {
@@ -236,9 +236,9 @@ TYPED_TEST(Rendered, RefinementGivesSamplesWhereLightDiffers) {
         EXPECT_EQ(refined.seen[1500].depth, all.seen[1500].depth);
     }
     options.transparent = false, options.samples = 4;
-    const Picture four = render(index, mesh, options, serial_executor());
+    const Picture four = render(index, mesh, by(serial_executor(), options));
     options.refines = false;
-    expect_same(render(index, mesh, options, default_executor()), four);
+    expect_same(render(index, mesh, by(default_executor(), options)), four);
 }
 
 TYPED_TEST(Rendered, HeatMapsOfAnySize) {
@@ -248,7 +248,7 @@ TYPED_TEST(Rendered, HeatMapsOfAnySize) {
     options.shading = Shading::steps;
     for (options.height = 1; options.height < 300; options.height += options.height < 60 ? 1 : 47)
         for (options.width = 20; options.width < 100; options.width += 37)
-            EXPECT_TRUE(render(index, mesh, options, serial_executor()).whole);
+            EXPECT_TRUE(render(index, mesh, by(serial_executor(), options)).whole);
 }
 
 TYPED_TEST(Rendered, PartsThatDoNotFitAreRefused) {
@@ -262,7 +262,7 @@ TYPED_TEST(Rendered, PartsThatDoNotFitAreRefused) {
     const auto refused = [&](const Tracer<T>* asked, auto change) {
         RenderOptions options = sound;
         change(options);
-        EXPECT_THROW(render(PictureParts<T>{rasterising, surfaces, asked}, options, serial_executor()),
+        EXPECT_THROW(render(PictureParts<T>{rasterising, surfaces, asked}, by(serial_executor(), options)),
                      InputError);
     };
     refused(nullptr, [](RenderOptions& o) { o.shading = Shading::diffuse; });
@@ -279,7 +279,8 @@ TYPED_TEST(Rendered, PartsThatDoNotFitAreRefused) {
     RayCasting<T> casting(tracer);
     RenderOptions steps = sound;
     steps.shading = Shading::steps, steps.transparent = true;
-    EXPECT_THROW(render(PictureParts<T>{casting, surfaces, &tracer}, steps, serial_executor()), InputError);
+    EXPECT_THROW(render(PictureParts<T>{casting, surfaces, &tracer}, by(serial_executor(), steps)),
+                 InputError);
 }
 
 TYPED_TEST(Rendered, AnInterruptedRasterKeepsItsFinishedSamples) {
@@ -298,7 +299,7 @@ TYPED_TEST(Rendered, AnInterruptedRasterKeepsItsFinishedSamples) {
                             },
                             &cancelled};
     const Picture picture =
-        render(PictureParts<T>{rasterising, surfaces}, options, serial_executor(), progress);
+        render(PictureParts<T>{rasterising, surfaces}, by(serial_executor(), options), progress);
     EXPECT_EQ(total, 4u * 41);
     EXPECT_FALSE(picture.whole);
     EXPECT_EQ(picture.pixels, picture.image.pixels.size()) << "each has one or two samples";
@@ -322,17 +323,18 @@ TYPED_TEST(Rendered, AStreamOfTrianglesMakesThePictureOfTheMesh) {
     options.layers = true, options.samples = 2;
     for (const auto shading : {Shading::normals, Shading::depth}) {
         options.shading = shading;
-        const Picture want = render(index, mesh, options, default_executor());
+        const Picture want = render(index, mesh, by(default_executor(), options));
         auto stream = stream_of(mesh);
         RasterisingStream<T> rasterising(stream);
         EXPECT_EQ(rasterising.bounds(), index.bounds());
-        const Picture drawn = render(PictureParts<T>{rasterising, rasterising}, options, default_executor());
+        const Picture drawn =
+            render(PictureParts<T>{rasterising, rasterising}, by(default_executor(), options));
         expect_same(want, drawn);
         EXPECT_EQ(drawn.costs.drawn.triangles, 2 * mesh.size());
     }
     MadeTriangles<T> none(0, {});
     RasterisingStream<T> nothing(none);
-    const Picture empty = render(PictureParts<T>{nothing, nothing}, options, serial_executor());
+    const Picture empty = render(PictureParts<T>{nothing, nothing}, by(serial_executor(), options));
     EXPECT_EQ(empty.seen[5].id, Hit<T>::none);
 }
 

@@ -31,7 +31,7 @@ struct Background {
                const RenderOptions& options)
         : maker(options.camera, options.width, options.height) {
         ProgressLine line("casting rays", a.quiet, "rows");
-        image = render(index, seen, options, interruptible_executor(), line.progress()).image;
+        image = render(index, seen, by(interruptible_executor(), options), line.progress()).image;
         for (auto& pixel : image.pixels)
             for (auto& c : pixel) c = static_cast<std::uint8_t>(255 - (255 - c) * 9 / 20);
         surface = depths(index, maker, options.width, options.height, interruptible_executor());

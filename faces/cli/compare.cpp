@@ -251,7 +251,7 @@ private:
         ProgressLine line(what, a_.quiet);
         measure::Comparison c;
         try {
-            c = measure::compare(primitives, structures, options, executor_, line.progress());
+            c = measure::compare(primitives, structures, by(executor_, options), line.progress());
         } catch (const Cancelled&) {  // comparisons measured before are still shown
             c.finished = false;
         }

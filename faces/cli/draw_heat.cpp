@@ -44,7 +44,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     FinishedPicture finished;
     {
         ProgressLine line("casting rays", a.quiet, "rows");
-        picture = render(*index, set, options, default_executor(), line.progress());
+        picture = render(*index, set, by(default_executor(), options), line.progress());
         finished = finish_picture(a.output, picture.pixels > 0, picture.whole);
     }
     if (options.scale.top == 0)

@@ -314,8 +314,9 @@ Run add_query(CLI::App& verb) {
     verb.add_option("-k,--count", a->count, "nearest, first-hits: how many to find");
     verb.add_option(
         "--radius", a->radius,
-        "the distance, not squared. within, pairs-within and neighbours-within need it; closest-point and "
-        "nearest find nothing beyond it; overlap, contained, count and any-overlap are asked of balls");
+        "the distance, not squared. within, pairs-within and neighbours-within need it; closest-point, "
+        "farthest-point and nearest find nothing beyond it; overlap, contained, count and any-overlap are "
+        "asked of balls");
     verb.add_option(
             "--period", a->periods,
             "pairs-within, neighbours-within: the length after which space repeats, or one for each axis, "
@@ -323,7 +324,8 @@ Run add_query(CLI::App& verb) {
         ->delimiter(',')
         ->expected(1, 3);
     verb.add_option("--factor", a->factor,
-                    "closest-point, nearest: how many times as far away as the exact answer one may be")
+                    "closest-point, nearest: how many times as far away as the exact answer one may be; "
+                    "farthest-point: how many times less")
         ->capture_default_str();
     verb.add_flag(
         "--feature", a->feature,

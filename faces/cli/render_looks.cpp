@@ -102,7 +102,7 @@ int finish_sheet(const RenderArguments& a, const PictureParts<T>& by_looks, cons
         const std::string name(shading_names[static_cast<std::size_t>(of_panel.shading)]);
         ProgressLine line("rendering " + name, a.quiet, "rows");
         Picture panel =
-            render(shows_cost ? by_cost : by_looks, of_panel, default_executor(), line.progress());
+            render(shows_cost ? by_cost : by_looks, by(default_executor(), of_panel), line.progress());
         draw_note(panel.image, 0, 0, {shows_cost ? name + ": " + a.structure : name},
                   std::max(1, options.height / 256));
         paste(panel.image, sheet.image, i % sheet_columns * options.width,

@@ -86,7 +86,7 @@ std::vector<Vec3f> without_noise(const RenderArguments& a, const PathPicture& pi
     ProgressLine line("taking noise out", a.quiet);
     Progress progress = line.progress();
     progress.cancel = nullptr;  // after Ctrl-C, too
-    return denoised(picture, first_surfaces, {}, default_executor(), progress);
+    return denoised(picture, first_surfaces, {.threads = default_executor()}, progress);
 }
 
 /// How many samples a pixel the picture should have next, by its noise; as many as it has if it is finished.
@@ -153,7 +153,7 @@ bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictu
         }
         if (goal == picture.samples || over()) break;
         stops = false;
-        add_samples(picture, goal, scene, options, default_executor(), watched);
+        add_samples(picture, goal, scene, by(default_executor(), options), watched);
         of_state.if_due([&] { state.begin_to_save(picture); });
         of_picture.if_due([&] {
             if (picture.samples > 0) save_picture(a, picture, first);
@@ -196,7 +196,7 @@ int render_paths(const RenderArguments& a) {
     const PathScene<T> scene{shown.scene, lights, shown.scene.tracer()};
     std::vector<FirstSurface> first;
     if (a.layers || a.denoises)
-        first = first_surfaces(scene, options, std::min(options.samples, 16u), default_executor());
+        first = first_surfaces(scene, std::min(options.samples, 16u), by(default_executor(), options));
     const double before = picture.mean_samples();
     const double start = now();
     const bool finished = follow(a, scene, options, first, state, picture);

@@ -68,7 +68,7 @@ int finish(const RenderArguments& a, const PictureParts<T>& parts, const RenderO
            const Progress& progress) {
     o.counted = options.counted(), o.up = options.camera.up;
     const double start = now();
-    o.picture = render(parts, options, default_executor(), progress);
+    o.picture = render(parts, by(default_executor(), options), progress);
     o.seconds = now() - start;
     return save_and_report(a, std::move(o));
 }

@@ -21,10 +21,10 @@
 
 namespace hedgerow {
 
-/// An index of any structure: the functions of ask.h take it as they take an Index. A batch of closest or any
-/// hits or closest points costs one virtual call, inside which the structure is known at compile time. So
-/// does whatever the engine is asked, but for filters and visits. All other queries share one walk a probe,
-/// in which each candidate costs a virtual call. Const use is thread-safe.
+/// An index of any structure over any primitives: the functions of ask.h take it as they take an Index. A
+/// question without filter and visits costs one virtual call, inside which the primitives are known at
+/// compile time, and the engine too; other structures cost a virtual call a leaf (any_structure.h). With a
+/// filter or visits, each candidate costs one. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
@@ -107,55 +107,31 @@ public:
     virtual bool erase(PrimitiveId id) = 0;
     virtual double refit(Threads threads = {}) = 0;
 
-    // What the functions of ask/ ask: what a structure answers by itself, without filters and visits. A batch
-    // of lists returns false where the queries are to be asked one by one.
+    // What the functions of ask/ ask: what is answered by itself, without filters and visits.
+
     virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, Hit<T>* hits, Executor& executor) const = 0;
     virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, bool* hits, Executor& executor) const = 0;
-    virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const {
-        return answer<AllHits<AnyIndex>>(no_visits, ray, hits);
-    }
+    virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const = 0;
     virtual std::size_t first_hits_uncounted(const Ray<T, D>& ray, std::span<Hit<T>> hits,
-                                             const PlaceOfHit<T>& after) const {
-        return answer<FirstHits<AnyIndex>>(no_visits, ray, hits, after);
-    }
+                                             const PlaceOfHit<T>& after) const = 0;
     virtual void closest_points_uncounted(const Strided<Vec<T, D>>& points, std::span<Near<T, D>> found,
                                           const PointOptions& options) const = 0;
     virtual std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearLimits<T>& limits,
-                                          std::vector<Near<T, D>>& found) const {
-        return answer<Nearest<AnyIndex>>(no_visits, point, k, limits, found);
-    }
-    virtual bool nearest_uncounted(const Strided<Vec<T, D>>& /*points*/, std::size_t /*k*/,
-                                   NearLists<T>& /*lists*/, const PointOptions& /*options*/) const {
-        return false;
-    }
+                                          std::vector<Near<T, D>>& found) const = 0;
+    virtual void nearest_uncounted(const Strided<Vec<T, D>>& points, std::size_t k, NearLists<T>& lists,
+                                   const PointOptions& options) const = 0;
     virtual std::size_t within_uncounted(const Vec<T, D>& point, const NearLimits<T>& limits,
-                                         std::vector<Near<T, D>>& found) const {
-        return answer<Within<AnyIndex>>(no_visits, point, limits, found);
-    }
-    virtual bool within_uncounted(const Strided<Vec<T, D>>& /*points*/, NearLists<T>& /*lists*/,
-                                  const PointOptions& /*options*/) const {
-        return false;
-    }
+                                         std::vector<Near<T, D>>& found) const = 0;
+    virtual void within_uncounted(const Strided<Vec<T, D>>& points, NearLists<T>& lists,
+                                  const PointOptions& options) const = 0;
     virtual std::size_t list_uncounted(const Box<T, D>& region, std::vector<PrimitiveId>& found,
-                                       Finds finds) const {
-        return ask_region<Overlapping>(region, no_visits, found, finds);
-    }
+                                       Finds finds) const = 0;
     virtual std::size_t list_uncounted(const Sphere<T, D>& region, std::vector<PrimitiveId>& found,
-                                       Finds finds) const {
-        return ask_region<Overlapping>(region, no_visits, found, finds);
-    }
-    virtual std::size_t count_uncounted(const Box<T, D>& region) const {
-        return ask_region<OverlapCount>(region, no_visits);
-    }
-    virtual std::size_t count_uncounted(const Sphere<T, D>& region) const {
-        return ask_region<OverlapCount>(region, no_visits);
-    }
-    virtual bool any_uncounted(const Box<T, D>& region) const {
-        return ask_region<AnyOverlap>(region, no_visits);
-    }
-    virtual bool any_uncounted(const Sphere<T, D>& region) const {
-        return ask_region<AnyOverlap>(region, no_visits);
-    }
+                                       Finds finds) const = 0;
+    virtual std::size_t count_uncounted(const Box<T, D>& region) const = 0;
+    virtual std::size_t count_uncounted(const Sphere<T, D>& region) const = 0;
+    virtual bool any_uncounted(const Box<T, D>& region) const = 0;
+    virtual bool any_uncounted(const Sphere<T, D>& region) const = 0;
     /// Answers a query of a region: of boxes and balls by the structure, where nothing is counted. Other
     /// shapes share one walk.
     template <template <class, class> class Q, class R, class Count, class... Arguments>
@@ -178,6 +154,7 @@ protected:
     void forget_solid() { solid_.reset(); }
     virtual void walk(VirtualQuery<RayProbe<T, D>>& query, detail::TraceLog<T, D>& log) const = 0;
     virtual void walk(VirtualQuery<PointProbe<T, D>>& query, Visits& count) const = 0;
+    virtual void walk(VirtualQuery<FarProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<RegionProbe<AnyRegion<T, D>>>& query, Visits& count) const = 0;
 

@@ -45,18 +45,9 @@ public:
         Visits nobodys;
         return tell_distance(point, nobodys);
     }
-    virtual void write_sides(const Points& points, std::span<Side> found) const {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            found[points.number(i)] = tell_side(points[i], no_visits);
-    }
-    virtual void write_winding_numbers(const Points& points, std::span<double> found) const {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            found[points.number(i)] = tell_winding_number(points[i], no_visits);
-    }
-    virtual void write_distances(const Points& points, std::span<T> found) const {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            found[points.number(i)] = tell_distance(points[i], no_visits).distance;
-    }
+    virtual void write_sides(const Points& points, std::span<Side> found) const = 0;
+    virtual void write_winding_numbers(const Points& points, std::span<double> found) const = 0;
+    virtual void write_distances(const Points& points, std::span<T> found) const = 0;
 };
 
 }  // namespace hedgerow

@@ -205,7 +205,7 @@ private:
     /// values than there are registers, and a node costs 10% more.
     template <Query Q, class Count>
     [[gnu::noinline]] void walk(Q& query, Count& count) const {
-        structure_.walk(leaves(), query, count);
+        walk_through(structure_, leaves(), query, count);
     }
 
     template <class Set, class F>
@@ -213,12 +213,10 @@ private:
         static_assert(std::same_as<ViewOf<Set>, P>, "the kind of primitives that the index was built over");
         primitives_ = view_of(set);
         if (!in_ieee_mode([&] { return f(primitives_); })) return false;
-        if constexpr (packs && S::packed_order == PackedOrder::of_ids) {
-            if (structure_.holds(id)) primitives_.pack(id, id, leaves_);
-        } else if constexpr (packs) {
-            for (const auto place : structure_.places_changed())
-                primitives_.pack(structure_.items()[place], place, leaves_);
-        }
+        if constexpr (requires { leaves_.change(primitives_, structure_, id); })
+            leaves_.change(primitives_, structure_, id);
+        else if constexpr (packs)
+            detail::pack_changed<S::packed_order>(primitives_, structure_, id, leaves_);
         return true;
     }
 
@@ -237,6 +235,10 @@ private:
             return Nothing{};
         }
     }
+    using Packed = std::conditional_t<
+        packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>(), serial_executor())),
+        Nothing>;
+
     /// Tests leaves: in the packed copy if it has a test for the probe, else in the view.
     struct Tested {
         const Index& index;
@@ -247,19 +249,12 @@ private:
             else
                 return hedgerow::test_leaf(index.primitives_, probe, leaf, query);
         }
+        const Packed& packed() const { return index.leaves_; }
         void prefetch(const Leaf& leaf) const {
             if constexpr (packs && requires { index.leaves_.prefetch(leaf); }) index.leaves_.prefetch(leaf);
         }
-        using Scalar = typename P::Scalar;
-        static constexpr int dimension = P::dimension;
-        std::size_t size() const { return index.size(); }
-        BoxType bounds(std::size_t i) const { return index.primitives_.bounds(i); }
     };
     Tested leaves() const { return {*this}; }
-
-    using Packed = std::conditional_t<
-        packs, decltype(pack(std::declval<const P&>(), std::declval<const S&>(), serial_executor())),
-        Nothing>;
 
     /// An index of parts that belong together.
     Index(P primitives, S structure, Packed leaves, std::shared_ptr<const void> owner)

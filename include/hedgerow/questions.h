@@ -68,6 +68,16 @@ struct AskAnyHit {
     }
 };
 template <std::floating_point T, int D>
+struct AskLastHit {
+    static constexpr std::string_view name = "last-hit", words = "last hit";
+    using Given = Ray<T, D>;
+    using Answer = Hit<T>;
+    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,
+                        std::span<Visits> visits = {}) {
+        last_hits(index, rays, hits, {.threads = serial_executor()}, KeepAll(), visits);
+    }
+};
+template <std::floating_point T, int D>
 struct AskAllHits {
     static constexpr std::string_view name = "all-hits", words = "all hits";
     using Given = Ray<T, D>;
@@ -106,6 +116,16 @@ struct AskClosestPoint {
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
                         std::span<Visits> visits = {}, const PointOptions& options = {}) {
         closest_points(index, points, found, detail::in_this_thread(options), KeepAll(), visits);
+    }
+};
+template <std::floating_point T, int D>
+struct AskFarthestPoint {
+    static constexpr std::string_view name = "farthest-point", words = "farthest point";
+    using Given = Vec<T, D>;
+    using Answer = Near<T, D>;
+    static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
+                        std::span<Visits> visits = {}, const PointOptions& options = {}) {
+        farthest_points(index, points, found, detail::in_this_thread(options), KeepAll(), visits);
     }
 };
 /// A closest point, and where on its triangle or segment it is.
@@ -296,10 +316,12 @@ template <std::floating_point T, int D, class F>
 void for_each_question(F f) {
     f(AskClosestHit<T, D>());
     f(AskAnyHit<T, D>());
+    f(AskLastHit<T, D>());
     f(AskAllHits<T, D>());
     f(AskFirstHits<T, D>());
     f(AskClosestPoint<T, D>());
     f(AskFeature<T, D>());
+    f(AskFarthestPoint<T, D>());
     f(AskNearest<T, D>());
     f(AskWithin<T, D>());
     for_each_question_of_region<Box<T, D>>(f);

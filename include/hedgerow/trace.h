@@ -6,6 +6,7 @@
 
 #include <hedgerow/ask.h>
 #include <hedgerow/walks/outline.h>
+#include <hedgerow/walks/trace_log.h>
 
 namespace hedgerow {
 
@@ -40,64 +41,6 @@ struct Trace {
 };
 
 namespace detail {
-
-/// A Count that records the walk too, unless recording is switched off. The query adds the limit and the
-/// candidates that it is offered.
-template <std::floating_point T, int D>
-class TraceLog {
-public:
-    explicit TraceLog(bool recording = true) : recording_(recording) {}
-
-    struct Entry {
-        Place place;
-        std::optional<Interval<T>> inside;
-        T limit;
-        bool looked_into = false;  // its primitives were tested
-        std::vector<PrimitiveId> skipped = {};
-        std::vector<std::pair<PrimitiveId, T>> offered = {};
-    };
-
-    void node(const Place& place) {
-        visits.node();
-        if (recording_) add(place, std::nullopt);
-    }
-    void node(const Place& place, const Interval<T>& inside) {
-        visits.node();
-        if (recording_) add(place, inside);
-    }
-    void leaf(std::uint64_t count, const Place& place) {
-        visits.leaf(count);
-        if (recording_) look_into(place, std::nullopt);
-    }
-    void leaf(std::uint64_t count, const Place& place, const Interval<T>& inside) {
-        visits.leaf(count);
-        if (recording_) look_into(place, inside);
-    }
-    void own(PrimitiveId id) {
-        visits.own(id);
-        if (recording_) entries.back().looked_into = true;
-    }
-    void skip(PrimitiveId id) {
-        visits.skip(id);
-        if (recording_) entries.back().skipped.push_back(id);
-    }
-
-    Visits visits;
-    T limit = T(0);
-    std::vector<Entry> entries;
-
-private:
-    void add(const Place& place, const std::optional<Interval<T>>& inside) {
-        entries.push_back({place, inside, limit});
-    }
-    /// A grid counts a cell as a node, and again as a leaf if the cell has primitives: both are one entry.
-    void look_into(const Place& place, const std::optional<Interval<T>>& inside) {
-        if (entries.empty() || entries.back().place != place) add(place, inside);
-        entries.back().looked_into = true;
-    }
-
-    bool recording_;
-};
 
 template <class Set>
 class TracedClosestHit : public ClosestHit<Set> {

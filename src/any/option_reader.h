@@ -1,6 +1,7 @@
 /// Reads a structure's options from text: "builder=sweep,max_leaf_size=4".
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <string>
@@ -24,7 +25,9 @@ inline std::string choices(std::span<const std::string_view> all) {
 /// their names are unknown. Throws UsageError for text that is no option or no valid value.
 class OptionReader {
 public:
-    OptionReader(std::string_view structure, std::string_view text) : structure_(structure) {
+    /// Reads "name" or "name:option=value,option=value".
+    explicit OptionReader(std::string_view spec) : structure_(spec.substr(0, spec.find(':'))) {
+        auto text = spec.substr(std::min(structure_.size() + 1, spec.size()));
         while (!text.empty()) {
             const auto comma = text.find(',');
             const std::string_view pair = text.substr(0, comma);
@@ -61,6 +64,7 @@ public:
         (*this)(name, value, flag_names, meaning);
     }
 
+    const std::string& structure() const { return structure_; }
     /// Whether an option is given with another value than `standard`. The option can still be read.
     bool differs(const std::string& name, std::string_view standard) const {
         const auto found = given_.find(name);

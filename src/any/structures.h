@@ -76,4 +76,20 @@ void list_options(typename S::Options& options, Option& option) {
     options.list(option);
 }
 
+/// The nodes and the items that a structure uses, of those that it has room for.
+template <class S>
+std::size_t node_count_of(const S& structure) {
+    if constexpr (requires { structure.used_node_count(); })
+        return structure.used_node_count();
+    else
+        return structure.node_count();
+}
+template <class S>
+std::size_t item_count_of(const S& structure) {
+    if constexpr (requires { structure.item_count(); })
+        return structure.item_count();
+    else
+        return structure.items().size();
+}
+
 }  // namespace hedgerow::detail

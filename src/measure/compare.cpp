@@ -292,13 +292,13 @@ private:
 
 template <class P>
 Comparison compare(const P& primitives, std::span<const std::string> structures,
-                   const MeasureOptions& options, Executor& executor, const Progress& progress) {
+                   const MeasureOptions& options, const Progress& progress) {
     const SceneOf<P> scene(primitives);
-    return Measuring(scene, options, executor, progress).run(structures);
+    return Measuring(scene, options, options.threads.over(primitives.size()), progress).run(structures);
 }
 
-#define HEDGEROW_COMPARE(P)                                                                               \
-    template Comparison compare(const P&, std::span<const std::string>, const MeasureOptions&, Executor&, \
+#define HEDGEROW_COMPARE(P)                                                                    \
+    template Comparison compare(const P&, std::span<const std::string>, const MeasureOptions&, \
                                 const Progress&);
 #define HEDGEROW_COMPARE_ALL(T)       \
     HEDGEROW_COMPARE(TriangleMesh<T>) \

@@ -98,7 +98,9 @@ private:
                 index = std::make_shared<const MeshIndex<T>>(build<WideBvh>(mesh_, serial_executor()));
             }));
         cost.build_seconds = median(builds), cost.bytes = index->bytes();
-        const auto trace = [this, index] { return beam_hits(*index, samples_, hits_, serial_executor()); };
+        const auto trace = [this, index] {
+            return beam_hits(*index, samples_, hits_, {.threads = serial_executor()});
+        };
         cost.nodes = a_sample(trace().visits);
         check(cost.way);
         contest_.add(cost.way, [trace] { return trace().visits; });
@@ -107,7 +109,8 @@ private:
     void add_rasterising(const std::string& way, Coverage coverage) {
         const auto rasteriser = std::make_shared<Rasteriser<T>>(samples_);
         const auto draw = [this, rasteriser, coverage](bool counts) {
-            return rasteriser->draw(mesh_.view(), hits_, serial_executor(), {coverage, false, counts});
+            return rasteriser->draw(mesh_.view(), hits_,
+                                    {.coverage = coverage, .counts = counts, .threads = serial_executor()});
         };
         VisibilityCost cost;
         cost.way = way;

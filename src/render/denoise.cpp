@@ -260,12 +260,11 @@ private:
 
 }  // namespace
 
-std::vector<Vec3f> denoised(const NoisyPicture& p, const DenoiserOptions& o, Executor& executor,
-                            const Progress& progress) {
+std::vector<Vec3f> denoised(const NoisyPicture& p, const DenoiserOptions& o, const Progress& progress) {
     check(p, o);
     const float scale = scale_of(p);
     if (scale == 0) return {p.light[0].begin(), p.light[0].end()};
-    Denoising denoising(p, o, scale, executor);
+    Denoising denoising(p, o, scale, o.threads.over(p.light[0].size()));
     denoising.predict(progress);
     return denoising.mixed();
 }

@@ -262,49 +262,51 @@ FirstSurface first_surface(const PathWorld<T>& world, const Tracer<T>& tracer, c
 }  // namespace
 
 template <std::floating_point T>
-std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPictureOptions& o,
-                                         std::uint32_t samples, Executor& executor) {
+std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, std::uint32_t samples,
+                                         const PathPictureOptions& o) {
     check(samples, o);
     const PathSurfaces<T> surfaces(scene.model);
     const PathWorld<T> world{surfaces, scene.lights, o.paths, nullptr};
     const PathCamera camera(o.camera, o.width, o.height, o.filter, o.paths.sampler, o.paths.seed);
     std::vector<FirstSurface> all(static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height));
-    executor.for_each_piece(static_cast<std::size_t>(o.height), 1, [&](std::size_t begin, std::size_t end) {
-        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-            for (int x = 0; x < o.width; ++x) {
-                FirstSurface& mean = all[camera.number(x, y)];
-                Vec3d albedo, normal;
-                for (std::uint32_t k = 0; k < samples; ++k) {
-                    const auto [half, sample] = half_sample(o.division, k);
-                    const FirstSurface one =
-                        first_surface(world, scene.tracer, camera.start<T>({x, y, half, sample}));
-                    if (k == 0) mean = one;
-                    albedo = albedo + Vec3d(one.albedo), normal = normal + Vec3d(one.normal);
+    o.threads.over(all.size())
+        .for_each_piece(static_cast<std::size_t>(o.height), 1, [&](std::size_t begin, std::size_t end) {
+            for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+                for (int x = 0; x < o.width; ++x) {
+                    FirstSurface& mean = all[camera.number(x, y)];
+                    Vec3d albedo, normal;
+                    for (std::uint32_t k = 0; k < samples; ++k) {
+                        const auto [half, sample] = half_sample(o.division, k);
+                        const FirstSurface one =
+                            first_surface(world, scene.tracer, camera.start<T>({x, y, half, sample}));
+                        if (k == 0) mean = one;
+                        albedo = albedo + Vec3d(one.albedo), normal = normal + Vec3d(one.normal);
+                    }
+                    mean.albedo = Vec3f(albedo / static_cast<double>(samples));
+                    mean.normal = Vec3f(normal / static_cast<double>(samples));
                 }
-                mean.albedo = Vec3f(albedo / static_cast<double>(samples));
-                mean.normal = Vec3f(normal / static_cast<double>(samples));
-            }
-    });
+        });
     return all;
 }
-template std::vector<FirstSurface> first_surfaces(const PathScene<float>&, const PathPictureOptions&,
-                                                  std::uint32_t, Executor&);
-template std::vector<FirstSurface> first_surfaces(const PathScene<double>&, const PathPictureOptions&,
-                                                  std::uint32_t, Executor&);
+template std::vector<FirstSurface> first_surfaces(const PathScene<float>&, std::uint32_t,
+                                                  const PathPictureOptions&);
+template std::vector<FirstSurface> first_surfaces(const PathScene<double>&, std::uint32_t,
+                                                  const PathPictureOptions&);
 
 template <std::floating_point T>
 void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,
-                 const PathPictureOptions& options, Executor& executor, const Progress& progress) {
+                 const PathPictureOptions& options, const Progress& progress) {
     check(samples, options);
     if (picture.width != options.width || picture.height != options.height)
         throw InputError("the picture has another size than its options");
     if (options.keeps_direct && !picture.keeps_direct())
         throw InputError("the picture was begun without its direct light");
-    PathTracing<T>(picture, scene, options).run(samples, executor, progress);
+    PathTracing<T>(picture, scene, options)
+        .run(samples, options.threads.over(picture.light.size()), progress);
 }
 template void add_samples(PathPicture&, std::uint32_t, const PathScene<float>&, const PathPictureOptions&,
-                          Executor&, const Progress&);
+                          const Progress&);
 template void add_samples(PathPicture&, std::uint32_t, const PathScene<double>&, const PathPictureOptions&,
-                          Executor&, const Progress&);
+                          const Progress&);
 
 }  // namespace hedgerow

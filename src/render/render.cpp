@@ -427,12 +427,14 @@ private:
 }  // namespace
 
 template <std::floating_point T>
-Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
-               const Progress& progress) {
+Picture render(const PictureParts<T>& parts, const RenderOptions& options, const Progress& progress) {
     check(parts, options);
-    return Rendering<T>(parts, options).run(executor, progress);
+    return Rendering<T>(parts, options)
+        .run(options.threads.over(static_cast<std::size_t>(std::max(0, options.width)) *
+                                  static_cast<std::size_t>(std::max(0, options.height))),
+             progress);
 }
-template Picture render(const PictureParts<float>&, const RenderOptions&, Executor&, const Progress&);
-template Picture render(const PictureParts<double>&, const RenderOptions&, Executor&, const Progress&);
+template Picture render(const PictureParts<float>&, const RenderOptions&, const Progress&);
+template Picture render(const PictureParts<double>&, const RenderOptions&, const Progress&);
 
 }  // namespace hedgerow

@@ -93,13 +93,13 @@ bool draws(const char* name, const TriangleMesh<float>& mesh) {
     for (const auto set : instruction_sets()) {
         use_instruction_set(set);
         Rasteriser<float> rasteriser(samples);
-        rasteriser.draw(mesh.view(), got, serial_executor());
+        rasteriser.draw(mesh.view(), got, {.threads = serial_executor()});
         std::vector<Visible> visible(rays.size());
         std::vector<Hit<float>> resolved(rays.size());
         rasteriser.draw_visible(mesh.view(), visible, serial_executor());
         rasteriser.resolve(mesh.view(), visible, resolved, serial_executor());
         const bool drawn = got == want && resolved == want;
-        beam_hits(index, samples, got, serial_executor());
+        beam_hits(index, samples, got, {.threads = serial_executor()});
         if (drawn && got == want) continue;
         std::printf("%s, %s: differs with %s\n", name, drawn ? "by beams" : "drawn",
                     std::string(set).c_str());
@@ -169,7 +169,7 @@ bool traces_paths(const char* name) {
     for (const auto set : instruction_sets()) {
         use_instruction_set(set);
         const auto picture =
-            trace_paths(PathScene<float>{scene, lights, scene.tracer()}, options, serial_executor());
+            trace_paths(PathScene<float>{scene, lights, scene.tracer()}, by(serial_executor(), options));
         std::uint64_t sum = 0xCBF29CE484222325u;
         for (std::size_t i = 0; i < picture.light.size(); ++i)
             for (const float x : picture.light.mean(i).data) add(sum, std::bit_cast<std::uint32_t>(x));

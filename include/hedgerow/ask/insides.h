@@ -52,19 +52,10 @@ struct SignedDistance {
 namespace detail {
 template <class I>
 void expect_all_held(const I& index) {
-    std::vector<bool> held(index.size());
-    std::size_t count = 0;
-    const auto& structure = index.structure();
-    // Between the leaves of a tree that has changed, items are words that are no ids.
-    if constexpr (requires { structure.holds(PrimitiveId(0)); }) {
-        for (PrimitiveId id = 0; id < held.size(); ++id) count += structure.holds(id);
-    } else {
-        for (const PrimitiveId id : structure.items())
-            if (id != no_primitive && !held[id]) held[id] = true, ++count;
-    }
-    if (count < held.size())
+    const std::size_t count = held_count(index.structure(), index.size());
+    if (count < index.size())
         throw InputError("a solid is made of all primitives of a set, but the index holds " +
-                         std::to_string(count) + " of " + std::to_string(held.size()) +
+                         std::to_string(count) + " of " + std::to_string(index.size()) +
                          ": build an index of those that it is to have");
 }
 inline void expect_possible_error(double error) {
@@ -267,7 +258,7 @@ private:
         if constexpr (HasKernel<Crossed<J>, J> && std::same_as<Count, const NoVisits>)
             if (const Kernel<Crossed<J>, J> kernel; kernel) return kernel.answer(index, asked, past_surface);
         Crossed<J> query(index, asked, past_surface);
-        index.structure().walk(detail::CrossedLeaves<J>(index), query, count);
+        walk_through(index.structure(), detail::CrossedLeaves<J>(index), query, count);
         return query.answer();
     }
     /// Whether a point is outside without a look at the index.

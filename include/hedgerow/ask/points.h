@@ -11,6 +11,7 @@
 #include <hedgerow/ask/neighbours.h>
 #include <hedgerow/probes/point_batch.h>
 #include <hedgerow/queries/closest_point.h>
+#include <hedgerow/queries/farthest_point.h>
 #include <hedgerow/queries/nearest.h>
 #include <hedgerow/queries/within.h>
 
@@ -76,6 +77,21 @@ template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
 NearOf<I> closest_point(const I& index, const PointOf<I>& point, const Filter& filter,
                         Count& count = no_visits) {
     return closest_point(index, point, PointOptions(), filter, count);
+}
+
+/// The farthest point of any primitive: of triangles and segments a corner, of a sphere the point beyond its
+/// center. With a radius, of those primitives that lie within it wholly; with a factor, at least the farthest
+/// distance over the factor away. Not of instances. Walks a tree, a BVH fastest; a grid looks at all cells.
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+NearOf<I> farthest_point(const I& index, const PointOf<I>& point, const PointOptions& options = {},
+                         const Filter& filter = {}, Count& count = no_visits) {
+    return detail::answer_near<FarthestPoint>(index, filter, count, point,
+                                              NearLimits<typename I::Scalar>(options));
+}
+template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
+NearOf<I> farthest_point(const I& index, const PointOf<I>& point, const Filter& filter,
+                         Count& count = no_visits) {
+    return farthest_point(index, point, PointOptions(), filter, count);
 }
 
 /// Writes the k nearest primitives within the options' distance to `found`, in the order of (distance²,
@@ -250,6 +266,27 @@ void closest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<
     closest_points(index, points, found, PointOptions(), filter, visits);
 }
 
+/// Writes the farthest point for each of `points`, as `farthest_point` finds it.
+template <class I, class Filter = KeepAll>
+void farthest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<I>> found,
+                     const PointOptions& options = {}, const Filter& filter = {},
+                     std::span<Visits> visits = {}) {
+    detail::expect_room("points", points.size(), found.size());
+    detail::expect_visits(visits, points.size());
+    options.leave_out.expect(points.size());
+    detail::ask_each(points.size(), detail::executor_for<Filter>(options.threads, points.size()), visits,
+                     [&](std::size_t i, auto& count) {
+                         found[i] = detail::answer_near<FarthestPoint>(
+                             index, filter_of_ray(filter, i), count, points[i],
+                             NearLimits<typename I::Scalar>(options, i));
+                     });
+}
+template <class I, NearFilterOf<I> Filter>
+void farthest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<I>> found,
+                     const Filter& filter, std::span<Visits> visits = {}) {
+    farthest_points(index, points, found, PointOptions(), filter, visits);
+}
+
 /// Writes the k nearest primitives for each of `points` to lists, as `nearest` finds them: their positions in
 /// the set, or PlacedIds among instances, and their squared distances.
 template <class I, class Filter = KeepAll>
@@ -269,7 +306,7 @@ void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearLists
     of_kernel.leave_out = no_primitive;
     detail::list_in_own_memory(lists, [&](NearListsOf<I>& rows) {
         if constexpr (unfiltered && requires { index.nearest_uncounted(points, k, rows, options); })
-            if (visits.empty() && index.nearest_uncounted(points, k, rows, options)) return;
+            if (visits.empty()) return index.nearest_uncounted(points, k, rows, options);
         rows.ids.resize(width * points.size()), rows.distances2.resize(width * points.size());
         detail::ask_in_parts<Nearest<P>>(
             index, points, detail::executor_for<Filter>(options.threads, points.size()), one_by_one,
@@ -325,7 +362,7 @@ void within(const I& index, const PointsOf<I>& points, double radius, NearListsO
     const bool one_by_one = !unfiltered || !visits.empty();
     detail::list_in_own_memory(lists, [&](NearListsOf<I>& rows) {
         if constexpr (unfiltered && requires { index.within_uncounted(points, rows, both); })
-            if (visits.empty() && index.within_uncounted(points, rows, both)) return;
+            if (visits.empty()) return index.within_uncounted(points, rows, both);
         if (!one_by_one && detail::listed_by_cells(index.primitives(), points, rows, both)) return;
         const auto answer = [&](std::size_t begin, std::size_t end, NearListsOf<I>& to) {
             const auto part = PointBatch<T, I::dimension>(points).part(begin, end - begin);

@@ -16,6 +16,7 @@
 #include <hedgerow/queries/filter.h>
 #include <hedgerow/queries/first_hits.h>
 #include <hedgerow/queries/hit_count.h>
+#include <hedgerow/queries/last_hit.h>
 
 namespace hedgerow {
 
@@ -108,6 +109,18 @@ bool any_hit(const I& index, const RayOf<I>& ray, const RayOptions& options, con
              Count& count = no_visits) {
     return detail::with_filter<typename I::Scalar>(
         options.leave_out, filter, [&](const auto& all) { return any_hit(index, ray, all, count); });
+}
+
+/// The hit of greatest t in [t_min, t_max]; a Hit that is false if nothing is hit.
+template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
+HitOf<I> last_hit(const I& index, const RayOf<I>& ray, const Filter& filter, Count& count = no_visits) {
+    return index.template answer<LastHit<typename I::Primitives, Filter>>(count, ray, filter);
+}
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+HitOf<I> last_hit(const I& index, const RayOf<I>& ray, const RayOptions& options = {},
+                  const Filter& filter = {}, Count& count = no_visits) {
+    return detail::with_filter<typename I::Scalar>(
+        options.leave_out, filter, [&](const auto& all) { return last_hit(index, ray, all, count); });
 }
 
 /// Writes every hit to `hits`, each primitive once, in the order of (t, instance, element). Returns how many
@@ -268,6 +281,26 @@ template <class I, FilterOf<typename I::Scalar> Filter>
 KernelUse any_hits(const I& index, const RaysOf<I>& rays, const Truths& hits, const Filter& filter,
                    std::span<Visits> visits = {}) {
     return any_hits(index, rays, hits, RayOptions(), filter, visits);
+}
+
+/// Writes the last hit of ray i to hits[i], as `last_hit` finds it.
+template <class I, class Filter = KeepAll>
+void last_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits,
+               const RayOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
+    detail::expect_room("rays", rays.size(), hits.size());
+    detail::expect_visits(visits, rays.size());
+    options.leave_out.expect(rays.size());
+    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
+    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
+        detail::ask_each(rays.size(), executor, visits, [&](std::size_t i, auto& count) {
+            hits[i] = last_hit(index, rays[i], filter_of_ray(all, i), count);
+        });
+    });
+}
+template <class I, FilterOf<typename I::Scalar> Filter>
+void last_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits, const Filter& filter,
+               std::span<Visits> visits = {}) {
+    last_hits(index, rays, hits, RayOptions(), filter, visits);
 }
 
 /// Writes a list of all hits for each of many rays.

@@ -123,6 +123,7 @@ protected:
     auto answer_of(const I& index, const Vec<T, 3>& point, const NearLimits<T>& limits,
                    Arguments&&... arguments) const {
         Q query(index, point, arguments...);
+        if (done(query)) return query.answer();
         if (this->takes(index, point, limits))
             walk(index, query);
         else

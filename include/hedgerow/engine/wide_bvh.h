@@ -107,7 +107,6 @@ public:
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
-        if (query.limit() < 0) return;
         walk_volumes(*this, primitives, query, count);
     }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
 #include <type_traits>
@@ -27,6 +28,12 @@ constexpr Vec<T, D> offset_outside(const Vec<T, D>& p, const Box<T, D>& box) {
 template <class T, int D>
 constexpr T distance2(const Vec<T, D>& p, const Box<T, D>& box) {
     return length2(offset_outside(p, box));
+}
+
+/// The squared distance to the farthest corner of a box.
+template <class T, int D>
+constexpr T farthest_distance2(const Vec<T, D>& p, const Box<T, D>& box) {
+    return length2(max(abs(p - box.low), abs(box.high - p)));
 }
 
 template <class T, int D>
@@ -143,6 +150,52 @@ Foot<T, D> closest_point(const Vec<T, D>& query, const Sphere<T, D>& s) {
     if (!(l > 0)) from = {}, from[0] = l = 1;
     return detail::rounded_foot(query, {product(away, away), center + from * (radius / l)}, scale,
                                 s.bounds());
+}
+
+namespace detail {
+/// The farthest of some corners, measured in double and rounded once; of equally far ones the first.
+template <class T, int D, std::size_t n>
+Foot<T, D> farthest_corner(const Vec<T, D>& query, const std::array<Vec<T, D>, n>& corners) {
+    Foot<T, D> farthest{};
+    double most = -1;
+    for (const auto& corner : corners)
+        if (const double d2 = distance2(Vec<double, D>(query), Vec<double, D>(corner)); d2 > most)
+            most = d2, farthest.point = corner;
+    farthest.distance2 = rounded_to<T>(most);
+    return farthest;
+}
+}  // namespace detail
+
+// The farthest point of a shape. The distance is rounded once, and at most that to the farthest corner of the
+// shape's box.
+
+template <class T, int D>
+Foot<T, D> farthest_point(const Vec<T, D>& query, const Vec<T, D>& point) {
+    return detail::farthest_corner(query, std::array{point});
+}
+template <class T, int D>
+Foot<T, D> farthest_point(const Vec<T, D>& query, const Segment<T, D>& s) {
+    return detail::farthest_corner(query, std::array{s.a, s.b});
+}
+template <class T, int D>
+Foot<T, D> farthest_point(const Vec<T, D>& query, const Triangle<T, D>& t) {
+    return detail::farthest_corner(query, std::array{t.a, t.b, t.c});
+}
+/// From a sphere's center all of it is equally far: the answer is along the first axis.
+template <class T, int D>
+Foot<T, D> farthest_point(const Vec<T, D>& query, const Sphere<T, D>& s) {
+    using V = Vec<double, D>;
+    const V p(query), c(s.center);
+    const double r = static_cast<double>(s.radius);
+    V away = c - p;
+    const double scale = max_component(abs(away)), most = scale > 0 ? length(away / scale) : 1;
+    if (!(scale > 0)) away[0] = 1;
+    const double distance = scale * most + r;
+    const Box<T, D> box = s.bounds();
+    const Box<double, D> around{V(box.low), V(box.high)};
+    const V point = c + away * (r / (most * (scale > 0 ? scale : 1)));
+    return {rounded_to<T>(std::min(distance * distance, farthest_distance2(p, around))),
+            clamped(Vec<T, D>(point), box)};
 }
 
 }  // namespace hedgerow

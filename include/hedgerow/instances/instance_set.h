@@ -8,8 +8,7 @@
 #include <hedgerow/instances/placed_index.h>
 #include <hedgerow/queries/filter.h>
 #include <hedgerow/walks/kernel.h>
-#include <hedgerow/walks/query.h>
-#include <hedgerow/walks/visits.h>
+#include <hedgerow/walks/structure.h>
 
 namespace hedgerow {
 
@@ -30,6 +29,7 @@ public:
     const Probe& probe() const { return probe_; }
     const typename Q::Probe& world() const { return std::as_const(query_).probe(); }
     T limit() const { return query_.limit(); }
+    bool done() const { return hedgerow::done(query_); }
     Flow offer(CandidateOf<Probe> c) {
         c.instance = instance_;
         return flow_ = query_.offer(c);
@@ -51,7 +51,7 @@ public:
     RayInside(const PlacedIndex<I>& placed, std::uint32_t instance, const typename Q::Probe& asked, Q& query)
         : Base({placed.inside(asked.ray()), placed.index().bounds()}, instance, query) {}
 
-    T limit() const { return this->probe().usable() ? Base::limit() : T(-1); }
+    bool done() const { return !this->probe().usable() || Base::done(); }
 };
 template <class I, class Q>
 class PointInside : public Inside<Q, PointProbe<typename I::Scalar, I::dimension>> {
@@ -67,7 +67,7 @@ public:
     T limit() const {
         if (const T world = Base::limit(); world != world_limit_) {
             world_limit_ = world;
-            limit_ = world < 0 ? world : ball_.radius2(world);
+            limit_ = ball_.radius2(world);
         }
         return limit_;
     }
@@ -174,7 +174,7 @@ private:
     }
     template <class Inside>
     static Flow walk(const PlacedIndex<I>& placed, Inside inside) {
-        placed.index().structure().walk(placed.primitives(), inside, uncounted);
+        walk_through(placed.index().structure(), placed.primitives(), inside, uncounted);
         return inside.flow();
     }
     static constexpr NoVisits uncounted{};

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <hedgerow/measure/costs.h>
-#include <hedgerow/parallel/executor.h>
+#include <hedgerow/parallel/by.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/primitives/concepts.h>
 #include <hedgerow/render/camera/camera.h>
@@ -32,11 +32,13 @@ struct MeasureOptions {
     std::uint64_t seed = 0;
     /// Camera of the coherent rays; without one they come from an automatic camera outside the scene.
     std::optional<Camera> camera;
+    /// By which threads structures are built. Queries are asked on one.
+    Threads threads = serial_executor();
 };
 
 /// Builds structures, given by names and options, and measures builds, queries and updates. Each round runs
 /// all structures in turn, so that other load on the machine affects them alike; all structures are in memory
-/// at once. Builds run on `executor`, queries on one thread. Answers are compared with those of the default
+/// at once. Answers are compared with those of the default
 /// structure.
 ///
 /// Throws Disagreement, which names structure and query, where an answer differs. Throws InputError for
@@ -56,7 +58,6 @@ struct MeasureOptions {
 /// Defined for TriangleMesh<T>, SphereSet<T, 3>, PointCloud<T, 2 or 3> and SegmentSet<T>, T float or double.
 template <class P>
 Comparison compare(const P& primitives, std::span<const std::string> structures,
-                   const MeasureOptions& options = {}, Executor& executor = serial_executor(),
-                   const Progress& progress = {});
+                   const MeasureOptions& options = {}, const Progress& progress = {});
 
 }  // namespace hedgerow::measure

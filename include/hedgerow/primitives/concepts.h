@@ -1,6 +1,6 @@
 /// What a primitive set is: primitives with boxes, which can be tested against probes. A set of your own
-/// needs `size` and `bounds`; for ray queries also `meet`, for distance queries `closest_point`, for queries
-/// of a region `overlaps` and `lies_within`.
+/// needs `size` and `bounds`; for ray queries also `meet`, for distance queries `closest_point` and
+/// `farthest_point`, for queries of a region `overlaps` and `lies_within`.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 
 #include <hedgerow/geometry/entry.h>
 #include <hedgerow/geometry/overlap.h>
+#include <hedgerow/probes/far_point.h>
 #include <hedgerow/probes/point.h>
 #include <hedgerow/probes/ray.h>
 #include <hedgerow/probes/region.h>
@@ -49,6 +50,12 @@ template <class P>
 concept HasClosestPoint = PrimitiveSet<P> &&
     requires(const P& p, std::size_t i, const Vec<typename P::Scalar, P::dimension>& x) {
     { foot_of(x, p.closest_point(i, x)) } -> std::convertible_to<Foot<typename P::Scalar, P::dimension>>;
+};
+/// A set that tells the farthest point of a primitive, which must lie within the primitive's bounds.
+template <class P>
+concept HasFarthestPoint = PrimitiveSet<P> &&
+    requires(const P& p, std::size_t i, const Vec<typename P::Scalar, P::dimension>& x) {
+    { p.farthest_point(i, x) } -> std::convertible_to<Foot<typename P::Scalar, P::dimension>>;
 };
 /// A set that answers box queries. `overlaps` may be true only if the primitive's bounds overlap the box.
 template <class P>
@@ -110,6 +117,10 @@ struct CandidateOfProbe<RayProbe<T, D>> {
 };
 template <std::floating_point T, int D>
 struct CandidateOfProbe<PointProbe<T, D>> {
+    using Type = PointCandidate<T, D>;
+};
+template <std::floating_point T, int D>
+struct CandidateOfProbe<FarProbe<T, D>> {
     using Type = PointCandidate<T, D>;
 };
 template <Region R>
@@ -208,15 +219,21 @@ Flow test_one(const P& set, const PointProbe<typename P::Scalar, P::dimension>& 
     const auto foot = foot_of(probe.point(), set.closest_point(id, probe.point()));
     return query.offer({foot.distance2, id, foot.point});
 }
+template <HasFarthestPoint P, class Query>
+Flow test_one(const P& set, const FarProbe<typename P::Scalar, P::dimension>& probe, PrimitiveId id,
+              Query& query) {
+    const auto foot = set.farthest_point(id, probe.point());
+    return query.offer({foot.distance2, id, foot.point});
+}
 template <class P, Region R, class Query>
 requires OverlapsRegions<P, R> Flow test_one(const P& set, const RegionProbe<R>& probe, PrimitiveId id,
                                              Query& query) {
     return probe.takes(set, id) ? query.offer({id}) : Flow::go_on;
 }
 
-/// Tests the primitives of a leaf one by one. A set with a faster way has a member `test_leaf(probe, leaf,
-/// query)`, which is called instead.
-template <PrimitiveSet P, class Probe, class Query>
+/// Tests the primitives of a leaf one by one. A set with a way of its own has a member `test_leaf(probe,
+/// leaf, query)`, which is called instead.
+template <class P, class Probe, class Query>
 Flow test_leaf(const P& set, const Probe& probe, const Leaf& leaf, Query& query) {
     if constexpr (requires { set.test_leaf(probe, leaf, query); }) {
         return set.test_leaf(probe, leaf, query);

@@ -26,6 +26,9 @@ public:
     Foot<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
         return hedgerow::closest_point(p, points_[i]);
     }
+    Foot<T, D> farthest_point(std::size_t i, const Vec<T, D>& p) const {
+        return hedgerow::farthest_point(p, points_[i]);
+    }
     template <Region R>
     bool overlaps(std::size_t i, const R& region) const {
         return lies_in(points_[i], region);

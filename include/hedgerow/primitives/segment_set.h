@@ -30,6 +30,9 @@ public:
     Foot<T, 2> closest_point(std::size_t i, const Vec<T, 2>& p) const {
         return hedgerow::closest_point(p, segments_[i]);
     }
+    Foot<T, 2> farthest_point(std::size_t i, const Vec<T, 2>& p) const {
+        return hedgerow::farthest_point(p, segments_[i]);
+    }
     template <Region R>
     bool overlaps(std::size_t i, const R& region) const {
         return overlap(segments_[i], region);

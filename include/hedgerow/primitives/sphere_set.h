@@ -25,6 +25,9 @@ public:
     Foot<T, D> closest_point(std::size_t i, const Vec<T, D>& p) const {
         return hedgerow::closest_point(p, spheres_[i]);
     }
+    Foot<T, D> farthest_point(std::size_t i, const Vec<T, D>& p) const {
+        return hedgerow::farthest_point(p, spheres_[i]);
+    }
     /// Spheres are solid here.
     template <Region R>
     bool overlaps(std::size_t i, const R& region) const {

@@ -60,6 +60,9 @@ public:
     Foot<T, 3> closest_point(std::size_t i, const Vec<T, 3>& p) const {
         return hedgerow::closest_point(p, triangle(i));
     }
+    Foot<T, 3> farthest_point(std::size_t i, const Vec<T, 3>& p) const {
+        return hedgerow::farthest_point(p, triangle(i));
+    }
     template <Region R>
     bool overlaps(std::size_t i, const R& region) const {
         return overlap(triangle(i), region);

@@ -21,7 +21,7 @@ public:
 
     template <class Index, class Ray>
     AllHits(const Index& index, const Ray& ray, std::vector<Hit<Scalar>>& hits, const Filter& filter = {})
-        : Base(index, ray, filter), limit_(Base::first_limit()), hits_(hits) {
+        : Base(index, ray, filter), limit_(ray.t_max), hits_(hits) {
         hits_.clear();
     }
 

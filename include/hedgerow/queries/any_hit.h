@@ -15,7 +15,7 @@ public:
 
     template <class Index, class Ray>
     AnyHit(const Index& index, const Ray& ray, const Filter& filter = {})
-        : Base(index, ray, filter), limit_(Base::first_limit()) {}
+        : Base(index, ray, filter), limit_(ray.t_max) {}
 
     Scalar limit() const { return limit_; }
     Flow offer(const RayCandidate<Scalar>& c) {

@@ -51,6 +51,7 @@ public:
 
     const Probe& probe() const { return probe_; }
     Scalar limit() const { return limit_; }
+    bool done() const { return limit_ < 0; }
     Flow offer(const FamilyCandidate<Scalar>& c) {
         found_.push_back(c);
         return Flow::go_on;

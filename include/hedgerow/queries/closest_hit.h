@@ -15,7 +15,7 @@ public:
 
     template <class Index, class Ray>
     ClosestHit(const Index& index, const Ray& ray, const Filter& filter = {})
-        : Base(index, ray, filter), best_{Base::first_limit(), 0, 0, Hit<Scalar>::none, Hit<Scalar>::none} {}
+        : Base(index, ray, filter), best_{ray.t_max, 0, 0, Hit<Scalar>::none, Hit<Scalar>::none} {}
 
     Scalar limit() const { return best_.t; }
     Flow offer(const RayCandidate<Scalar>& c) {

@@ -150,8 +150,10 @@ public:
               const PlaceOfHit<Scalar>& after, const Filter& filter = {})
         : Base(index, part_after(index.primitives(), ray, after), filter),
           hits_(hits, after),
-          limit_(hits.empty() || after.at_end() ? Scalar(-1) : Base::first_limit()) {}
+          limit_(ray.t_max),
+          no_more_(hits.empty() || after.at_end()) {}
 
+    bool done() const { return no_more_ || Base::done(); }
     Scalar limit() const { return limit_; }
     Flow offer(const RayCandidate<Scalar>& c) {
         const std::size_t place = hits_.place_of(c);
@@ -173,6 +175,7 @@ private:
 
     SortedHits<Scalar> hits_;
     Scalar limit_;
+    bool no_more_;
 };
 
 }  // namespace hedgerow

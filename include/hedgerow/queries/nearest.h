@@ -25,14 +25,14 @@ public:
         found_.clear();
     }
 
+    bool done() const { return k_ == 0 || Base::done(); }
     Scalar limit() const {
-        if (k_ == 0) return Scalar(-1);
         return limit_of_boxes(found_.size() < k_ ? this->limits().distance2
                                                  : this->limits().after(found_.front().distance2));
     }
     Flow offer(const Candidate& c) {
         const Found f = this->found(c);
-        if (k_ == 0 || !(c.distance2 <= this->limits().distance2)) return Flow::go_on;
+        if (!(c.distance2 <= this->limits().distance2)) return Flow::go_on;
         if (found_.size() == k_ && !nearer(f, found_.front())) return Flow::go_on;
         if (!this->counts(c)) return Flow::go_on;
         for (const Found& g : found_)

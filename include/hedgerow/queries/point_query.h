@@ -79,12 +79,12 @@ struct NearLimits {
 };
 
 /// `Set` gives the ids that answers report; the filter may refuse answers (queries/hit.h).
-template <class Set, class Filter = KeepAll>
+template <class Set, class Filter = KeepAll, class AsProbe = PointProbe<typename Set::Scalar, Set::dimension>>
 class PointQuery {
 public:
     using Scalar = typename Set::Scalar;
     static constexpr int dimension = Set::dimension;
-    using Probe = PointProbe<Scalar, dimension>;
+    using Probe = AsProbe;
     using Candidate = PointCandidate<Scalar, dimension>;
     using Found = Near<Scalar, dimension>;
 
@@ -94,6 +94,7 @@ public:
         : probe_(p), set_(index.primitives()), limits_(limits), filter_(filter) {}
 
     const Probe& probe() const { return probe_; }
+    bool done() const { return !(limits_.distance2 >= 0); }
     /// Whether the filter lets an instance with this mask be queried.
     bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
 

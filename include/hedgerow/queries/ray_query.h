@@ -5,8 +5,8 @@
 
 namespace hedgerow {
 
-/// `Set` gives the ids that hits report, and `Filter` decides which candidates count. An unusable ray has
-/// limit −1, so no cell is opened.
+/// `Set` gives the ids that hits report, and `Filter` decides which candidates count. The query of an
+/// unusable ray is done before it begins.
 template <class Set, class Filter>
 class RayQuery {
 public:
@@ -20,6 +20,7 @@ public:
           filter_(filter) {}
 
     const Probe& probe() const { return probe_; }
+    bool done() const { return !probe_.usable(); }
     /// Whether the filter lets an instance with this mask be queried.
     bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
     /// Whether the filter keeps every hit, and whether it keeps this one.
@@ -27,7 +28,6 @@ public:
     bool keeps(const Hit<Scalar>& hit) const { return hedgerow::keeps(filter_, 0, hit); }
 
 protected:
-    Scalar first_limit() const { return probe_.usable() ? probe_.ray().t_max : Scalar(-1); }
     /// Whether a candidate is in the ray's interval, has a finite t and is not refused.
     bool counts(const RayCandidate<Scalar>& c) const {
         if (!(c.t >= probe_.ray().t_min && c.t <= probe_.ray().t_max) ||

@@ -5,7 +5,7 @@
 
 namespace hedgerow {
 
-/// `Set` names the primitives. A query of an empty region has limit −1, so that no walk begins.
+/// `Set` names the primitives. A query of an empty region is done before it begins.
 template <class Set, Region R>
 class RegionQuery {
 public:
@@ -17,8 +17,7 @@ public:
 
     template <class Index>
     RegionQuery(const Index& index, const R& region, Finds finds)
-        : probe_(region, index.bounds(), finds),
-          limit_(is_empty(region) ? Scalar(-1) : std::numeric_limits<Scalar>::max()) {
+        : probe_(region, index.bounds(), finds), done_(is_empty(region)) {
         if constexpr (requires { index.structure().exclusive(); })
             takes_subtrees_ = !Instanced<Set> && index.structure().exclusive();
         else if constexpr (requires { index.exclusive(); })
@@ -26,7 +25,8 @@ public:
     }
 
     const Probe& probe() const { return probe_; }
-    Scalar limit() const { return limit_; }
+    Scalar limit() const { return done_ ? Scalar(-1) : std::numeric_limits<Scalar>::max(); }
+    bool done() const { return done_; }
     /// Whether subtrees in the region are taken whole: the index holds each primitive once.
     bool takes_subtrees() const { return takes_subtrees_; }
 
@@ -41,12 +41,11 @@ protected:
             return false;
     }
     /// Ends the walk.
-    void finish() { limit_ = -1; }
+    void finish() { done_ = true; }
 
 private:
     Probe probe_;
-    Scalar limit_;
-    bool takes_subtrees_ = false;
+    bool done_, takes_subtrees_ = false;
 };
 
 }  // namespace hedgerow

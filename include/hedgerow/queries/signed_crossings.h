@@ -118,12 +118,7 @@ namespace detail {
 template <class I>
 class CrossedLeaves {
 public:
-    using Scalar = typename I::Scalar;
-    static constexpr int dimension = I::dimension;
-
     explicit CrossedLeaves(const I& index) : index_(index) {}
-    std::size_t size() const { return index_.size(); }
-    auto bounds(std::size_t i) const { return index_.primitives().bounds(i); }
 
     template <class Probe, class Query>
     Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) const {
@@ -139,7 +134,7 @@ public:
         } else {
             for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
                 const auto corners = index_.primitives().corners(leaf.ids[i]);
-                Box<Scalar, dimension> around;
+                Box<typename I::Scalar, I::dimension> around;
                 for (const auto& c : corners) around.expand(c);
                 if (overlap(around, box) && query.offer(corners, leaf.ids[i]) == Flow::stop)
                     return Flow::stop;

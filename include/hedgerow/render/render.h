@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include <hedgerow/parallel/by.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/render/film/film.h>
 #include <hedgerow/render/shading/appearance.h>
@@ -44,6 +45,8 @@ struct RenderOptions {
     /// The diameter of the distant light in degrees, less than 90. Shadows of a disc have soft edges, for
     /// which a cone goes to the light in place of a ray. 0 is a light without extent.
     float light_degrees = 0;
+    /// By which threads. What is answered does not depend on them.
+    Threads threads = {};
 
     bool counted() const { return counts || layers || counts_visits(shading); }
 };
@@ -63,7 +66,7 @@ struct PictureParts {
     const Cones<T>* cones = nullptr;
 };
 
-/// Makes a picture, in tiles of pixels over the executor. Diffuse shading and that by colour cast a ray to
+/// Makes a picture, in tiles of pixels. Diffuse shading and that by colour cast a ray to
 /// the light where the surface faces it. Returns when all rows are finished or the progress is cancelled:
 /// then rows that are not finished stay black, and their layers empty. Throws InputError for a camera that
 /// sees nothing, no pixels or samples, an opacity that is not 0 to 1, where the picture needs a tracer, cones
@@ -71,20 +74,19 @@ struct PictureParts {
 /// through transparent surfaces, or refined, and for cones of transparent surfaces, of more samples than one,
 /// or of a lens, and for footprints in a panorama.
 template <std::floating_point T>
-Picture render(const PictureParts<T>& parts, const RenderOptions& options, Executor& executor,
-               const Progress& progress = {});
-extern template Picture render(const PictureParts<float>&, const RenderOptions&, Executor&, const Progress&);
-extern template Picture render(const PictureParts<double>&, const RenderOptions&, Executor&, const Progress&);
+Picture render(const PictureParts<T>& parts, const RenderOptions& options, const Progress& progress = {});
+extern template Picture render(const PictureParts<float>&, const RenderOptions&, const Progress&);
+extern template Picture render(const PictureParts<double>&, const RenderOptions&, const Progress&);
 
 /// Makes a picture by casting rays at an index (of any structure) over `primitives`.
 template <class I, class P>
-Picture render(const I& index, const P& primitives, const RenderOptions& options, Executor& executor,
+Picture render(const I& index, const P& primitives, const RenderOptions& options,
                const Progress& progress = {}) {
     using T = typename I::Scalar;
     const IndexTracer<I> tracer(index);
     const SurfacesOf<P> surfaces(primitives);
     RayCasting<T> casting(tracer);
-    return render(PictureParts<T>{casting, surfaces, &tracer}, options, executor, progress);
+    return render(PictureParts<T>{casting, surfaces, &tracer}, options, progress);
 }
 
 }  // namespace hedgerow

@@ -45,7 +45,7 @@ public:
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
-        if (items_.empty() || query.limit() < 0) return;
+        if (items_.empty()) return;
         if (options_.box) {
             T at;
             count.node(Place{});

@@ -28,13 +28,26 @@ Box<T, D> enlarged(const Box<T, D>& box, T margin) {
     return {box.low - by, box.high + by};
 }
 
+// A set that stands for another, of any type, has these functions as members (any_set.h).
+
+/// Whether the hits of a set lie on its primitives themselves, not only in their boxes.
+template <PrimitiveSet P>
+bool hits_lie_on(const P& set) {
+    if constexpr (requires { set.hits_lie_on(); })
+        return set.hits_lie_on();
+    else
+        return HitsLieOnPrimitives<P>;
+}
+
 /// Returns a test of cells: whether the primitive is to be inserted in a cell. The cell must already be
 /// enlarged and meet the primitive's box. The test is finer than boxes only for sets whose hits lie on the
 /// primitives themselves.
 template <PrimitiveSet P>
 auto stands_in(const P& set, PrimitiveId id) {
     using Cell = Box<typename P::Scalar, P::dimension>;
-    if constexpr (!HitsLieOnPrimitives<P>)
+    if constexpr (requires { set.stands_in(id); })
+        return set.stands_in(id);
+    else if constexpr (!HitsLieOnPrimitives<P>)
         return [](const Cell&) { return true; };
     else if constexpr (requires { set.overlap_test(id); })
         return set.overlap_test(id);
@@ -47,7 +60,9 @@ auto stands_in(const P& set, PrimitiveId id) {
 template <PrimitiveSet P>
 Box<typename P::Scalar, P::dimension> part_in(const P& set, PrimitiveId id,
                                               const Box<typename P::Scalar, P::dimension>& cell) {
-    if constexpr (HitsLieOnPrimitives<P> && requires { set.clipped_bounds(id, cell); })
+    if constexpr (requires { set.part_in(id, cell); })
+        return set.part_in(id, cell);
+    else if constexpr (HitsLieOnPrimitives<P> && requires { set.clipped_bounds(id, cell); })
         return set.clipped_bounds(id, cell);
     else
         return intersection(set.bounds(id), cell);
@@ -67,7 +82,9 @@ using CornersOf = FunctionRef<Corners<T, D>(PrimitiveId)>;
 
 template <PrimitiveSet P>
 Corners<typename P::Scalar, P::dimension> corners_in(const P& set, PrimitiveId id) {
-    if constexpr (HitsLieOnPrimitives<P> && requires { set.corners(id); })
+    if constexpr (requires { set.corners_in(id); })
+        return set.corners_in(id);
+    else if constexpr (HitsLieOnPrimitives<P> && requires { set.corners(id); })
         return set.corners(id);
     else
         return std::nullopt;

@@ -249,7 +249,9 @@ private:
 /// likes.
 template <class S, class P>
 auto hierarchy_of(const S& structure, const P& set) {
-    if constexpr (BoxTree<S>)
+    if constexpr (requires { structure.hierarchy(set); })
+        return structure.hierarchy(set);
+    else if constexpr (BoxTree<S>)
         return detail::BoxTreeHierarchy<S>(structure, set);
     else if constexpr (VolumeTree<S>)
         return detail::VolumeHierarchy<S>(structure, set);

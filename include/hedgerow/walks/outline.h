@@ -206,6 +206,7 @@ void outline_lattice(const S& grid, const Box<double, D>& within, Outliner<D, F>
 template <class S, class F>
 void visit_outline(const S& structure, const OutlineLimits<dimension_of<S>>& limits, F f) {
     constexpr int D = dimension_of<S>;
+    if constexpr (requires { structure.visit_outline(limits, f); }) return structure.visit_outline(limits, f);
     detail::Outliner<D, F> list{limits, f};
     OutlineCell<D> root;
     root.box = detail::box_in_double(structure.bounds());

@@ -22,8 +22,8 @@ struct BoxedLeaf {
 /// What counts as an answer to a question of pairs.
 /// - `bound(a, b)` is a number that no pair of primitives in two boxes falls below: a squared distance, or
 ///   infinity if no pair counts.
-/// - `limit` is the largest bound that can still change the answer. It may only shrink. A negative limit ends
-///   the walk before it begins.
+/// - `limit` is the largest bound that can still change the answer. It may only shrink.
+/// - `done`, if there is one, says that nothing can change the answer, so that no walk begins.
 /// - `offer(a, b)` is called with pairs of leaves, and in a walk of a hierarchy with itself `offer(leaf)` for
 ///   the pairs inside of a leaf. It may stop the walk.
 /// - `order` is a wish: nearest first by `bound`.
@@ -185,14 +185,14 @@ private:
 /// the `primitives` in these.
 template <BoxHierarchy A, BoxHierarchy B, PairQuery Q, class Count>
 void walk_pairs(const A& a, const B& b, Q& query, Count& count) {
-    if (a.empty() || b.empty() || query.limit() < 0) return;
+    if (a.empty() || b.empty() || done(query)) return;
     detail::PairWalk<A, B, Q, Count>(a, b, query, count).begin({a.root(), b.root()}, 0);
 }
 /// Walks all pairs of two primitives of one hierarchy. Each unordered pair is offered once, unless the
 /// structure holds a primitive in several leaves; then pairs of a primitive and itself are offered too.
 template <BoxHierarchy A, SelfPairQuery Q, class Count>
 void walk_pairs(const A& a, Q& query, Count& count) {
-    if (a.empty() || query.limit() < 0) return;
+    if (a.empty() || done(query)) return;
     detail::PairWalk<A, A, Q, Count>(a, a, query, count).begin({a.root(), a.root(), true}, 0);
 }
 

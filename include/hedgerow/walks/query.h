@@ -13,10 +13,10 @@ enum class Order { none, nearest };
 
 /// What a walk needs of a query.
 /// - `probe` is its geometry.
-/// - `limit` is the largest t (of a ray) or distance² (of a point) that can still change the answer. It may
-/// only
-///   shrink. Infinity excludes nothing; the largest number excludes distances that overflow. A negative limit
-///   ends the walk before it begins; of a limit for boxes only the sign counts.
+/// - `limit` is the largest t (of a ray), distance² (of a point) or −distance² (of a point whose farthest is
+///   asked for) that can still change the answer. It may only shrink. Infinity excludes nothing; the largest
+///   number excludes distances that overflow. Of a query of a region only the sign counts.
+/// - `done`, if there is one, says that nothing can change the answer, so that no walk begins.
 /// - `offer` is called with each candidate that a primitive's test gives, and may stop the walk. A structure
 /// may
 ///   offer a primitive more than once. The distance of a candidate may be infinite or NaN.
@@ -28,6 +28,15 @@ concept Query = requires(Q& q, const Q& asked, const CandidateOf<typename Q::Pro
     { asked.limit() } -> std::convertible_to<typename Q::Probe::Scalar>;
     { q.offer(candidate) } -> std::same_as<Flow>;
 };
+
+/// Whether nothing can change the answer of a query of primitives or of pairs.
+template <class Q>
+bool done(const Q& query) {
+    if constexpr (requires { query.done(); })
+        return query.done();
+    else
+        return false;
+}
 
 /// A query that an Index makes, walks and reads. The Index calls the constructor Q(index, arguments...),
 /// which may keep `index.primitives()` (for `reported_id`), and after the walk `answer` once.

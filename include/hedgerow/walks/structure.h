@@ -5,6 +5,7 @@
 #include <concepts>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/walks/query.h>
@@ -27,8 +28,8 @@ struct AnyQuery {
 /// A structure S over primitives P, as an Index holds it. It knows no query: `walk` brings any query to each
 /// leaf that can hold an answer within the query's limit.
 ///
-/// `walk` is a template over primitives, query and count. It does nothing if the query's limit is negative,
-/// and ends where a leaf's test returns Flow::stop. A structure that is none of the trees in volumes.h,
+/// `walk` is a template over primitives, query and count. It is called by `walk_through`, and ends where a
+/// leaf's test returns Flow::stop. A structure that is none of the trees in volumes.h,
 /// planes.h, orthants.h and no lattice does that by itself:
 ///
 ///     for each cell:
@@ -77,5 +78,38 @@ concept ChangesOneByOne = requires(S& s, const P& set, PrimitiveId id) {
     { s.insert(set, id) } -> std::same_as<bool>;
     { s.erase(set, id) } -> std::same_as<bool>;
 };
+
+/// Walks a query through a structure, to the leaves of its primitives, unless the query is done.
+template <class S, class Leaves, Query Q, class Count>
+void walk_through(const S& structure, const Leaves& leaves, Q& query, Count& count) {
+    if (!done(query)) structure.walk(leaves, query, count);
+}
+
+namespace detail {
+/// Copies what an insertion or erasure of primitive `id` changed into a packed copy of its set.
+template <PackedOrder order, class P, class S, class Packed>
+void pack_changed(const P& set, const S& structure, PrimitiveId id, Packed& packed) {
+    if constexpr (order == PackedOrder::of_ids) {
+        if (structure.holds(id)) set.pack(id, id, packed);
+    } else {
+        for (const auto place : structure.places_changed()) set.pack(structure.items()[place], place, packed);
+    }
+}
+/// How many of a set's `count` primitives a structure holds.
+template <class S>
+std::size_t held_count(const S& structure, std::size_t count) {
+    if constexpr (requires { structure.held_count(count); }) return structure.held_count(count);
+    std::vector<bool> held(count);
+    std::size_t found = 0;
+    // Between the leaves of a tree that has changed, items are words that are no ids.
+    if constexpr (requires { structure.holds(PrimitiveId(0)); }) {
+        for (PrimitiveId id = 0; id < count; ++id) found += structure.holds(id);
+    } else {
+        for (const PrimitiveId id : structure.items())
+            if (id != no_primitive && !held[id]) held[id] = true, ++found;
+    }
+    return found;
+}
+}  // namespace detail
 
 }  // namespace hedgerow

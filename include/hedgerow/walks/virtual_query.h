@@ -11,6 +11,15 @@ template <class Probe>
 inline constexpr bool is_region_probe = false;
 template <Region R>
 inline constexpr bool is_region_probe<RegionProbe<R>> = true;
+
+/// Whether a query may take subtrees whole.
+template <class Q>
+bool takes_subtrees(const Q& query) {
+    if constexpr (requires { query.takes_subtrees(); })
+        return query.takes_subtrees();
+    else
+        return SubtreeQuery<Q>;
+}
 }  // namespace detail
 
 /// A node of any tree, as the `accept` of a query behind virtual calls sees it (WalkedNode).
@@ -56,12 +65,14 @@ public:
 
     const Probe& probe() const { return probe_; }
     Scalar limit() const { return limit_; }
+    bool done() const { return done_; }
+    bool takes_subtrees() const { return takes_subtrees_; }
     virtual Flow offer(const CandidateOf<Probe>& candidate) = 0;
     template <class Node>
     Verdict accept(const Node& node) requires detail::is_region_probe<Probe> {
         if constexpr (requires { node.volume(); }) {
             if (!takes_subtrees_) return Verdict::open;
-            if (limit_ < 0) return Verdict::prune;
+            if (done_) return Verdict::prune;
             const auto& volume = node.volume();
             if (!takes_whole(probe_.region(), volume)) return Verdict::open;
             const auto count = [&] { return node.count(); };
@@ -74,14 +85,22 @@ public:
 
 protected:
     /// The probe has to outlive the walk.
-    VirtualQuery(const Probe& probe, Scalar limit, bool takes_subtrees)
-        : probe_(probe), limit_(limit), takes_subtrees_(takes_subtrees) {}
+    template <class Q>
+    VirtualQuery(const Probe& probe, const Q& query)
+        : probe_(probe),
+          limit_(query.limit()),
+          done_(hedgerow::done(query)),
+          takes_subtrees_(detail::takes_subtrees(query)) {}
     ~VirtualQuery() = default;
 
     /// What the query says of a subtree that lies in its region.
     virtual Verdict take(const SubtreeRef<Probe::dimension>& node) = 0;
 
-    void set_limit(Scalar limit) { limit_ = limit; }
+    /// Copies what the query has become.
+    template <class Q>
+    void follow(const Q& query) {
+        limit_ = query.limit(), done_ = hedgerow::done(query);
+    }
 
 private:
     template <class V>
@@ -94,7 +113,7 @@ private:
 
     const Probe& probe_;
     Scalar limit_;
-    bool takes_subtrees_;
+    bool done_, takes_subtrees_;
 };
 
 /// A query as a VirtualQuery. The query must outlive the VirtualQuery.
@@ -103,26 +122,19 @@ class Virtual final : public VirtualQuery<typename Q::Probe> {
 public:
     using Base = VirtualQuery<typename Q::Probe>;
 
-    explicit Virtual(Q& query)
-        : Base(std::as_const(query).probe(), query.limit(), takes_subtrees_of(query)), query_(query) {}
+    explicit Virtual(Q& query) : Base(std::as_const(query).probe(), query), query_(query) {}
 
     Flow offer(const CandidateOf<typename Q::Probe>& candidate) override {
         const Flow flow = query_.offer(candidate);
-        Base::set_limit(query_.limit());
+        Base::follow(query_);
         return flow;
     }
 
 private:
-    static bool takes_subtrees_of(const Q& query) {
-        if constexpr (requires { query.takes_subtrees(); })
-            return query.takes_subtrees();
-        else
-            return SubtreeQuery<Q>;
-    }
     Verdict take(const SubtreeRef<Q::Probe::dimension>& node) override {
         if constexpr (SubtreeQuery<Q>) {
             const Verdict verdict = query_.accept(node);
-            Base::set_limit(query_.limit());
+            Base::follow(query_);
             return verdict;
         } else {
             return Verdict::open;
@@ -130,6 +142,63 @@ private:
     }
 
     Q& query_;
+};
+
+/// A query behind virtual calls that tests leaves itself: one call a leaf, inside which both the set and the
+/// query are known at compile time. The limit is what it is after the leaf.
+template <class P>
+class LeafQuery : public VirtualQuery<P> {
+public:
+    virtual Flow test(const Leaf& leaf) = 0;
+    virtual void prefetch(const Leaf& leaf) const = 0;
+
+protected:
+    using VirtualQuery<P>::VirtualQuery;
+    ~LeafQuery() = default;
+};
+
+/// A query over the leaves of a set as a LeafQuery, with the query's own probe or another that enters the
+/// same cells. All three must outlive it.
+template <Query Q, class Leaves, class Probe = typename Q::Probe>
+class LeafTests final : public LeafQuery<Probe> {
+public:
+    using Base = LeafQuery<Probe>;
+
+    LeafTests(const Probe& probe, Q& query, const Leaves& leaves)
+        : Base(probe, query), query_(query), leaves_(leaves) {}
+
+    Flow test(const Leaf& leaf) override {
+        return after(test_leaf(leaves_, std::as_const(query_).probe(), leaf, query_));
+    }
+    void prefetch(const Leaf& leaf) const override {
+        if constexpr (requires { leaves_.prefetch(leaf); }) leaves_.prefetch(leaf);
+    }
+    Flow offer(const CandidateOf<Probe>& candidate) override { return after(query_.offer(candidate)); }
+
+private:
+    Verdict take(const SubtreeRef<Probe::dimension>& node) override {
+        if constexpr (SubtreeQuery<Q>)
+            return after(query_.accept(node));
+        else
+            return Verdict::open;
+    }
+    template <class Said>
+    Said after(Said said) {
+        Base::follow(query_);
+        return said;
+    }
+
+    Q& query_;
+    const Leaves& leaves_;
+};
+
+/// The leaves of a walk whose query tests them itself.
+template <class Probe>
+struct LeavesOfQuery {
+    LeafQuery<Probe>& query;
+
+    Flow test_leaf(const Probe&, const Leaf& leaf, LeafQuery<Probe>&) const { return query.test(leaf); }
+    void prefetch(const Leaf& leaf) const { query.prefetch(leaf); }
 };
 
 }  // namespace hedgerow

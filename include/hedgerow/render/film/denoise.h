@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <hedgerow/geometry/vec.h>
-#include <hedgerow/parallel/executor.h>
+#include <hedgerow/parallel/by.h>
 #include <hedgerow/parallel/progress.h>
 
 namespace hedgerow {
@@ -38,6 +38,8 @@ struct DenoiserOptions {
     float light_tolerance = 1.7f;
     /// How much features of neighbours may differ, in units of a step that would be seen.
     float feature_tolerance = 3;
+    /// By which threads. What is answered does not depend on them.
+    Threads threads = {};
 };
 
 /// The linear light of a picture with less noise. Bits are the same with any executor, processor and
@@ -61,7 +63,7 @@ struct DenoiserOptions {
 /// InputError for sizes that do not match, options out of range, values that are no numbers, light, albedo or
 /// normals that are not finite, and negative light, variances or depths; Cancelled if `progress`, which
 /// counts pixels, is cancelled.
-std::vector<Vec3f> denoised(const NoisyPicture& picture, const DenoiserOptions& options, Executor& executor,
+std::vector<Vec3f> denoised(const NoisyPicture& picture, const DenoiserOptions& options = {},
                             const Progress& progress = {});
 
 }  // namespace hedgerow

@@ -27,8 +27,7 @@ inline bool can_be_denoised(const PathPicture& picture) {
 /// film/denoise.h), by what is seen first: `first` is what first_surfaces returns for the picture. The
 /// picture stays as it is. Throws InputError for a picture that cannot be denoised, and as `denoised` does.
 inline std::vector<Vec3f> denoised(const PathPicture& picture, std::span<const FirstSurface> first,
-                                   const DenoiserOptions& options, Executor& executor,
-                                   const Progress& progress = {}) {
+                                   const DenoiserOptions& options = {}, const Progress& progress = {}) {
     if (!can_be_denoised(picture))
         throw InputError("a picture needs two samples in each half of its pixels to be denoised");
     std::array<std::vector<Vec3f>, 2> light;
@@ -46,7 +45,7 @@ inline std::vector<Vec3f> denoised(const PathPicture& picture, std::span<const F
         albedo.push_back(f.albedo), normal.push_back(f.normal), depth.push_back(f.depth);
     NoisyPicture noisy{picture.width, picture.height, {}, {}, albedo, normal, depth};
     for (std::size_t h = 0; h < 2; ++h) noisy.light[h] = light[h], noisy.variance[h] = variance[h];
-    return denoised(noisy, options, executor, progress);
+    return denoised(noisy, options, progress);
 }
 
 }  // namespace hedgerow

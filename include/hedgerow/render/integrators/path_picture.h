@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hedgerow/base/error.h>
+#include <hedgerow/parallel/by.h>
 #include <hedgerow/parallel/progress.h>
 #include <hedgerow/render/camera/camera.h>
 #include <hedgerow/render/film/light_halves.h>
@@ -44,6 +45,8 @@ struct PathPictureOptions {
     std::size_t in_flight = PathWavefront<float>::default_in_flight;
     /// Whether the picture has sums of its direct light, too, as PathPicture::direct.
     bool keeps_direct = false;
+    /// By which threads. What is answered does not depend on them.
+    Threads threads = {};
 };
 
 /// What paths of a picture go through. All of it is borrowed.
@@ -120,18 +123,18 @@ inline constexpr std::uint32_t pilot_samples = 16;
 /// direct light if the options ask for it. A picture that keeps it goes on to do so.
 template <std::floating_point T>
 void add_samples(PathPicture& picture, std::uint32_t samples, const PathScene<T>& scene,
-                 const PathPictureOptions& options, Executor& executor, const Progress& progress = {});
+                 const PathPictureOptions& options, const Progress& progress = {});
 extern template void add_samples(PathPicture&, std::uint32_t, const PathScene<float>&,
-                                 const PathPictureOptions&, Executor&, const Progress&);
+                                 const PathPictureOptions&, const Progress&);
 extern template void add_samples(PathPicture&, std::uint32_t, const PathScene<double>&,
-                                 const PathPictureOptions&, Executor&, const Progress&);
+                                 const PathPictureOptions&, const Progress&);
 
 /// A whole picture, as add_samples makes it.
 template <std::floating_point T>
-PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& options, Executor& executor,
+PathPicture trace_paths(const PathScene<T>& scene, const PathPictureOptions& options,
                         const Progress& progress = {}) {
     PathPicture picture(options.width, options.height, options.keeps_direct);
-    add_samples(picture, options.samples, scene, options, executor, progress);
+    add_samples(picture, options.samples, scene, options, progress);
     return picture;
 }
 
@@ -150,11 +153,11 @@ struct FirstSurface {
 /// The first surfaces of each pixel, by rows from the top left: the mean colours and normals of its first
 /// samples, whose paths are those of `add_samples`, and the hit of its first. Throws as `add_samples` does.
 template <std::floating_point T>
-std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, const PathPictureOptions& options,
-                                         std::uint32_t samples, Executor& executor);
-extern template std::vector<FirstSurface> first_surfaces(const PathScene<float>&, const PathPictureOptions&,
-                                                         std::uint32_t, Executor&);
-extern template std::vector<FirstSurface> first_surfaces(const PathScene<double>&, const PathPictureOptions&,
-                                                         std::uint32_t, Executor&);
+std::vector<FirstSurface> first_surfaces(const PathScene<T>& scene, std::uint32_t samples,
+                                         const PathPictureOptions& options);
+extern template std::vector<FirstSurface> first_surfaces(const PathScene<float>&, std::uint32_t,
+                                                         const PathPictureOptions&);
+extern template std::vector<FirstSurface> first_surfaces(const PathScene<double>&, std::uint32_t,
+                                                         const PathPictureOptions&);
 
 }  // namespace hedgerow

@@ -8,6 +8,7 @@
 
 #include <hedgerow/ask/rays.h>
 #include <hedgerow/base/error.h>
+#include <hedgerow/parallel/by.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/render/visibility/beam_kernels.h>
 #include <hedgerow/render/visibility/visibility.h>
@@ -21,6 +22,8 @@ struct BeamOptions {
     /// Which samples matter, by number; empty: all. Of the others some have their hits, and some are left as
     /// they are. So a picture in a mirror takes the time of the part that the mirror covers.
     std::span<const bool> wanted = {};
+    /// By which threads. What is answered does not depend on them.
+    Threads threads = {};
 };
 
 namespace detail {
@@ -87,7 +90,7 @@ private:
 /// UsageError for another width.
 template <class S, class P>
 BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samples,
-                     std::span<Hit<float>> hits, Executor& executor, const BeamOptions& options = {}) {
+                     std::span<Hit<float>> hits, const BeamOptions& options = {}) {
     detail::expect_room("samples", samples.size(), hits.size());
     if (!options.wanted.empty()) detail::expect_room("samples", samples.size(), options.wanted.size());
     if (const int w = options.widest; w != 0 && w != 8 && w != 16 && w != 32 && w != beam_side)
@@ -97,7 +100,7 @@ BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samp
         if (const BeamKernels* const kernels = beam_kernels(); kernels != nullptr && samples.from_one_eye()) {
             const detail::BeamPicture picture(detail::kernel_scene(index), samples, options);
             std::vector<BeamCounts> counts(picture.tiles());
-            IeeeExecutor threads(executor);
+            IeeeExecutor threads(options.threads.over(samples.size()));
             threads.for_each_piece(counts.size(), 1, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) picture.trace(*kernels, i, hits, counts[i]);
             });
@@ -105,7 +108,7 @@ BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samp
             return sum;
         }
     }
-    closest_hits(index, samples.rays(), hits.first(samples.size()), {.threads = executor});
+    closest_hits(index, samples.rays(), hits.first(samples.size()), {.threads = options.threads});
     return sum;
 }
 
@@ -120,7 +123,7 @@ public:
     void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) override {
         const std::span<Hit<T>> hits = this->hits_of(samples);
         if constexpr (std::same_as<T, float>)
-            costs.beams += beam_hits(index_, samples, hits, executor);
+            costs.beams += beam_hits(index_, samples, hits, {.threads = executor});
         else
             closest_hits(index_, samples.rays(), hits, {.threads = executor});
         costs.rays += samples.size();

@@ -15,6 +15,7 @@
 #include <hedgerow/ask/asking.h>
 #include <hedgerow/base/bare_vector.h>
 #include <hedgerow/instances/instance_set.h>
+#include <hedgerow/parallel/by.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/probes/ray.h>
 #include <hedgerow/queries/first_hits.h>
@@ -38,6 +39,8 @@ struct RasterOptions {
     bool counts = false;
     /// The number of the first triangle: where a set is a part of a larger one.
     std::uint32_t first_element = 0;
+    /// By which threads. What is answered does not depend on them.
+    Threads threads = {};
 };
 
 /// Shades no fragment: what is seen is shaded later, once (Saito and Takahashi 1990), or not at all.
@@ -61,18 +64,17 @@ public:
     /// which sets are drawn. Takes about 64 MiB beside them, however many triangles there are. Throws
     /// InputError for too few places.
     template <class Set>
-    RasterCounts draw(const Set& set, std::span<Hit<T>> hits, Executor& executor,
-                      const RasterOptions& options = {}) {
-        return draw(set, hits, executor, options, NoShading());
+    RasterCounts draw(const Set& set, std::span<Hit<T>> hits, const RasterOptions& options = {}) {
+        return draw(set, hits, options, NoShading());
     }
     /// Forward shading: also calls shade(number, hit) for each fragment that is the nearest of its sample so
     /// far, which rules out the kernels. The last call for a sample is that for its hit. Threads of the
     /// executor call it at the same time, for different samples.
     template <class Set, class Shade>
-    RasterCounts draw(const Set& set, std::span<Hit<T>> hits, Executor& executor,
-                      const RasterOptions& options, const Shade& shade) {
+    RasterCounts draw(const Set& set, std::span<Hit<T>> hits, const RasterOptions& options,
+                      const Shade& shade) {
         detail::expect_room("samples", samples_.size(), hits.size());
-        IeeeExecutor threads(executor);
+        IeeeExecutor threads(options.threads.over(samples_.size()));
         counts_ = options.counts;
         bool onto = options.onto;
         if constexpr (Instanced<Set>)
@@ -86,15 +88,14 @@ public:
     /// hits. With kernels, for samples in the middles of their pixels and up to about a million triangles, it
     /// takes less time and memory than hits do; else hits are drawn first. Throws InputError for too few
     /// places.
-    RasterCounts draw_visible(const TriangleMeshView<T>& mesh, std::span<Visible> visible,
-                              Executor& executor) {
+    RasterCounts draw_visible(const TriangleMeshView<T>& mesh, std::span<Visible> visible, Threads by = {}) {
         detail::expect_room("samples", samples_.size(), visible.size());
-        IeeeExecutor threads(executor);
+        IeeeExecutor threads(by.over(samples_.size()));
         counts_ = false;
         enter(nullptr, {});
         if (see_in_tiles(mesh, visible, threads)) return {mesh.size()};
         BareVector<Hit<T>> hits(samples_.size());
-        const RasterCounts counts = draw(mesh, hits, executor);
+        const RasterCounts counts = draw(mesh, hits, {.threads = threads});
         for_each_row(threads, [&](int x, int y, std::size_t i) {
             visible[i] = {hits[i].element, static_cast<float>(forward_of(x, y, hits[i].t))};
         });
@@ -104,13 +105,13 @@ public:
     /// sample whose ray does not hit its element gets no hit. Throws InputError for an element that the mesh
     /// has not, and for too few places.
     void resolve(const TriangleMeshView<T>& mesh, std::span<const Visible> visible, std::span<Hit<T>> hits,
-                 Executor& executor) {
+                 Threads by = {}) {
         detail::expect_room("samples", samples_.size(), std::min(visible.size(), hits.size()));
         for (const Visible& v : visible.first(samples_.size()))
             if (v.element >= mesh.size() && v.element != Hit<T>::none)
                 throw InputError("the visibility buffer names element " + std::to_string(v.element) +
                                  " of a mesh of " + std::to_string(mesh.size()) + " triangles");
-        IeeeExecutor threads(executor);
+        IeeeExecutor threads(by.over(samples_.size()));
         counts_ = false;
         enter(nullptr, {});
         resolve_samples(mesh, visible, hits, threads);
@@ -503,7 +504,8 @@ public:
     explicit Rasterising(const Triangles& triangles, Coverage coverage = Coverage::tiles)
         : triangles_(triangles), coverage_(coverage) {}
     void prepare(const PictureSamples<T>& samples, Executor& executor, PictureCosts& costs) override {
-        costs.drawn += Rasteriser<T>(samples).draw(triangles_, this->hits_of(samples), executor, {coverage_});
+        costs.drawn += Rasteriser<T>(samples).draw(triangles_, this->hits_of(samples),
+                                                   {.coverage = coverage_, .threads = executor});
     }
 
 private:

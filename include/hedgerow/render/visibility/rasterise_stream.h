@@ -23,11 +23,11 @@ public:
         const std::span<Hit<T>> hits = this->hits_of(samples);
         Rasteriser<T> rasteriser(samples);
         RasterOptions options;
-        rasteriser.draw(TriangleMeshView<T>(), hits, executor);  // clears the hits
+        rasteriser.draw(TriangleMeshView<T>(), hits, {.threads = executor});  // clears the hits
         options.onto = true;
         stream_.for_each_part([&](const TriangleMesh<T>& part, std::uint32_t first) {
             options.first_element = first;
-            costs.drawn += rasteriser.draw(part.view(), hits, executor, options);
+            costs.drawn += rasteriser.draw(part.view(), hits, options);
         });
         fetch(hits);
     }

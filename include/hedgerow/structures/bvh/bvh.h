@@ -65,7 +65,6 @@ public:
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
-        if (query.limit() < 0) return;
         if (options_.ordered && options_.culling) [[likely]]
             walk_volumes(*this, primitives, query, count);
         else if (options_.ordered)

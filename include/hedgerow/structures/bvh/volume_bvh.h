@@ -89,7 +89,6 @@ public:
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
-        if (query.limit() < 0) return;
         walk_volumes(*this, primitives, query, count);
     }
 
@@ -169,8 +168,8 @@ private:
     /// Appends the points of a primitive that its volumes must contain.
     template <class P>
     static void add_corners(const P& set, PrimitiveId id, std::vector<Vec<double, D>>& points) {
-        if constexpr (HitsLieOnPrimitives<P> && requires { set.corners(id); }) {
-            for (const auto& corner : set.corners(id)) points.push_back(Vec<double, D>(corner));
+        if (const auto corners = corners_in(set, id)) {
+            for (const auto& corner : *corners) points.push_back(Vec<double, D>(corner));
         } else {
             const Box<double, D> box{Vec<double, D>(set.bounds(id).low), Vec<double, D>(set.bounds(id).high)};
             for (int i = 0; i < (box.low == box.high ? 1 : 1 << D); ++i) {

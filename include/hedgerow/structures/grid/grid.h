@@ -70,7 +70,7 @@ public:
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
-        if (empty() || query.limit() < 0) return;
+        if (empty()) return;
         Mailboxed mailed(primitives, count, options_.mailbox);
         auto cursor = rows_.cursor();
         walk_lattice(lattice(), query, [&](const auto& cell) {

@@ -94,7 +94,7 @@ public:
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const
         requires(answers<typename Q::Probe>) {
-        if (items_.empty() || query.limit() < 0) return;
+        if (items_.empty()) return;
         const auto& probe = query.probe();
         const auto test = [&](std::uint32_t number) {
             const HashedCell<D>& c = cells_[number];

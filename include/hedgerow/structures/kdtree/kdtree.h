@@ -42,7 +42,6 @@ public:
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
-        if (query.limit() < 0) return;
         Mailboxed mailed(primitives, count, this->mailbox_);
         walk_planes(*this, mailed, query, count);
     }

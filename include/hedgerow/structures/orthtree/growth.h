@@ -32,18 +32,13 @@ public:
 
     /// How far cells are enlarged for a primitive with this box, by the box's own coordinates. A set that is
     /// tested by boxes alone needs no margin: closest points and overlaps lie in the box.
-    static T margin(const Box<T, D>& box) {
-        if constexpr (HitsLieOnPrimitives<P>)
-            return cell_margin(box);
-        else
-            return T(0);
-    }
+    T margin(const Box<T, D>& box) const { return hits_lie_on(set_) ? cell_margin(box) : T(0); }
     /// The orthants of `cell` that a primitive of the cell is in: at least one.
     unsigned operator()(PrimitiveId id, const Cube<T, D>& cell) const {
         const Box<T, D> box = set_.bounds(id);
         const T around = margin(box);
         const unsigned near = orthants_reached(enlarged(box, around), cell.middle);
-        if (std::has_single_bit(near) || !HitsLieOnPrimitives<P>) return near;
+        if (std::has_single_bit(near) || !hits_lie_on(set_)) return near;
         const auto stands = stands_in(set_, id);
         unsigned in = 0;
         for (unsigned left = near; left != 0; left &= left - 1) {

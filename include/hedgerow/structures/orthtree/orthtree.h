@@ -138,7 +138,7 @@ public:
     bool erase(const P& set, PrimitiveId id, Count& count) {
         if (!holds(id)) return false;
         const Box<T, D> box = reference_of(set, id).box();
-        remove({}, cell_, id, enlarged(box, OrthantStanding<P>::margin(box)), count);
+        remove({}, cell_, id, enlarged(box, OrthantStanding<P>(set).margin(box)), count);
         held_[id] = false;
         --count_;
         store_.tidy(root_);
@@ -163,7 +163,6 @@ public:
 
     template <class Primitives, Query Q, class Count>
     void walk(const Primitives& primitives, Q& query, Count& count) const {
-        if (query.limit() < 0) return;
         Mailboxed mailed(primitives, count, options_.mailbox);
         walk_orthants(*this, mailed, query, count);
     }

@@ -1,0 +1,6 @@
+#include "structure_of.h"
+
+namespace hedgerow::detail {
+template std::unique_ptr<StructureBehind<float, 3>> build_structure(std::string_view, const AnySet<float, 3>&,
+                                                                    Executor&);
+}  // namespace hedgerow::detail
