@@ -153,10 +153,10 @@ TEST(Measure, TakesEveryKindOfPrimitives) {
         EXPECT_EQ(c.structures.size(), 2u);
         return c.structures.at(0).queries.size();
     };
-    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 23u) << "no features, no insides";
-    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 27u);
-    EXPECT_EQ(kinds(points<float>(200), "octree"), 11u) << "rays pass between points";
-    EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 11u);
+    EXPECT_EQ(kinds(spheres<double>(200), "octree"), 27u) << "no features, no insides";
+    EXPECT_EQ(kinds(segments2d<float>(200), "quadtree"), 31u);
+    EXPECT_EQ(kinds(points<float>(200), "octree"), 12u) << "rays pass between points";
+    EXPECT_EQ(kinds(points2d<double>(200), "quadtree"), 12u);
 }
 TEST(Measure, AsksWhatIsSlowLess) {
     MeasureOptions o = quick_options();

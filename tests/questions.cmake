@@ -23,13 +23,13 @@ std::size_t nearest(const I& index, const PointOptions& options, std::size_t k) 
     return k;
 }
 template <class I>
-bool farthest_point(const I& index, const PointOf<I>& point) {
+bool second_point(const I& index, const PointOf<I>& point) {
     return true;
 }
 }  // namespace hedgerow
 ")
 execute_process(COMMAND ${ROOT}/scripts/questions ${copy} RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE messages)
-foreach(what "points.h: nearest has its arguments in another order" "the table of docs/api.md lacks farthest_point")
+foreach(what "points.h: nearest has its arguments in another order" "the table of docs/api.md lacks second_point")
   if(result EQUAL 0 OR NOT messages MATCHES "${what}")
     message(SEND_ERROR "not found: ${what}\nrc ${result}: ${messages}")
   endif()
