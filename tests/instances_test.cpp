@@ -141,7 +141,8 @@ struct Case {
                                            {"wide", "two-level-grid"}})
             expect<AnyStructure, AnyStructure>(std::string(inner) + " in " + outer,
                                                {matrix::named_for<P>(outer)}, {matrix::named_for<P>(inner)});
-        expect<WideBvh, WideBvh>("wide in wide, by their types");
+        if constexpr (std::is_same_v<P, TriangleMesh<float>>)  // which has kernels
+            expect<WideBvh, WideBvh>("wide in wide, by their types");
     }
 };
 
