@@ -61,7 +61,7 @@ public:
         return in_ieee_mode([&] {
             Q query(*this, arguments...);
             Virtual<Q> asked(query);
-            walk_and_count(asked, count);
+            detail::count_virtually<typename Q::Probe>(count, [&](auto& counted) { walk(asked, counted); });
             return query.answer();
         });
     }
@@ -168,20 +168,6 @@ private:
             return ask_region<Q>(AnyRegion<T, D>(region), count, arguments...);
         else
             return answer<Q<AnyIndex, R>>(count, region, arguments...);
-    }
-    /// Walks. The count is a Visits or a NoVisits, or for rays also a TraceLog.
-    template <class Probe, class Count>
-    void walk_and_count(VirtualQuery<Probe>& query, Count& count) const {
-        if constexpr (std::same_as<std::remove_const_t<Count>, NoVisits>) {
-            Visits nobodys;
-            walk_and_count(query, nobodys);
-        } else if constexpr (std::same_as<Probe, RayProbe<T, D>> && std::same_as<Count, Visits>) {
-            detail::TraceLog<T, D> log(false);
-            walk(query, log);
-            count += log.visits;
-        } else {
-            walk(query, count);
-        }
     }
 };
 

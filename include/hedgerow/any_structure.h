@@ -20,6 +20,11 @@ namespace hedgerow {
 
 namespace detail {
 
+[[noreturn]] inline void refuse(const std::string& structure, const std::string& wanted,
+                                const char* instead = "build it again") {
+    throw InputError("structure '" + structure + "' cannot " + wanted + ": " + instead);
+}
+
 /// A packed copy of primitives in either order.
 template <class P>
 class PackedEitherWay {
@@ -171,11 +176,10 @@ public:
 
     /// Contains nothing.
     AnyStructure() = default;
-    AnyStructure(const AnyStructure& o)
-        : spec_(o.spec_), behind_(o.behind_ ? o.behind_->copy() : nullptr), bounds_(o.bounds_) {}
+    AnyStructure(const AnyStructure& o) : spec_(o.spec_), behind_(o.behind_ ? o.behind_->copy() : nullptr) {}
     AnyStructure(AnyStructure&&) noexcept = default;
     AnyStructure& operator=(AnyStructure o) noexcept {
-        std::swap(spec_, o.spec_), std::swap(behind_, o.behind_), std::swap(bounds_, o.bounds_);
+        std::swap(spec_, o.spec_), std::swap(behind_, o.behind_);
         return *this;
     }
     ~AnyStructure() = default;
@@ -190,7 +194,10 @@ public:
 
     /// What it was built by.
     const std::string& spec() const { return spec_; }
-    const Box<T, D>& bounds() const { return behind_ ? behind_->bounds() : bounds_; }
+    const Box<T, D>& bounds() const {
+        static const Box<T, D> nothing;
+        return behind_ ? behind_->bounds() : nothing;
+    }
     bool exclusive() const { return !behind_ || behind_->exclusive(); }
     std::span<const PrimitiveId> items() const {
         return behind_ ? behind_->items() : std::span<const PrimitiveId>();
@@ -272,30 +279,22 @@ private:
     using AnyRegionProbe = RegionProbe<AnyRegion<T, D>>;
 
     [[noreturn]] void refuse(const std::string& wanted, const char* instead = "build it again") const {
-        throw InputError("structure '" + spec_ + "' cannot " + wanted + ": " + instead);
+        detail::refuse(spec_, wanted, instead);
     }
     template <class Probe, class Count>
     void walk_and_count(LeafQuery<Probe>& query, Count& count) const {
         constexpr bool of_rays = std::same_as<Probe, RayProbe<T, D>>;
-        constexpr bool counted = !std::same_as<std::remove_const_t<Count>, NoVisits>;
         if constexpr (of_rays)
             if (!behind_->answers_rays())
                 refuse("answer rays", "ask it for neighbours, or take another structure");
-        if constexpr (of_rays && std::same_as<Count, Visits>) {
-            detail::TraceLog<T, D> log(false);
-            behind_->walk(query, log);
-            count += log.visits;
-        } else if constexpr (!counted && !of_rays) {
-            Visits nobodys;
-            behind_->walk(query, nobodys);
-        } else {
+        if constexpr (of_rays && std::same_as<std::remove_const_t<Count>, NoVisits>)
             behind_->walk(query, count);
-        }
+        else
+            detail::count_virtually<Probe>(count, [&](auto& counted) { behind_->walk(query, counted); });
     }
 
     std::string spec_;
     std::unique_ptr<detail::StructureBehind<T, D>> behind_;
-    Box<T, D> bounds_;  // of nothing
 };
 
 }  // namespace hedgerow

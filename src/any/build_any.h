@@ -206,9 +206,7 @@ private:
     [[noreturn]] static void refuse_without_facets() {
         throw InputError("features and insides are those of triangles in space or segments in the plane");
     }
-    [[noreturn]] void refuse(const std::string& wanted) const {
-        throw InputError("structure '" + name_ + "' cannot " + wanted + ": build it again");
-    }
+    [[noreturn]] void refuse(const std::string& wanted) const { hedgerow::detail::refuse(name_, wanted); }
 
     std::string name_;
     I index_;

@@ -181,7 +181,10 @@ void pack_rows(NearLists<T, Id>& rows, std::size_t count, std::size_t most, cons
     for (std::size_t i = 0; i < count; ++i) {
         const PrimitiveId without = leave_out.of(i);
         const std::size_t first = end;
-        for (auto [k, last] = begin_end(i); k < last && end - first < most; ++k) {
+        auto [k, last] = begin_end(i);
+        // A row that loses nothing, and has moved nowhere, stays as it is.
+        if (without == no_primitive && k == end && last - k <= most) k = end = last;
+        for (; k < last && end - first < most; ++k) {
             if (element_of(ids[k]) == without) continue;
             if (end != k) ids[end] = ids[k], distances2[end] = distances2[k];
             ++end;

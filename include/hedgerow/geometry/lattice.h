@@ -144,5 +144,18 @@ bool for_each_cell(const Cell& first, const Cell& last, F f) {
     } while (next_in_block(c, first, last));
     return true;
 }
+/// The same for the cells of a lattice's block of which reaches(cell) is true. A lattice too vast to look at
+/// all cells says how many may be passed over (`most_skipped`); f is called for all after these.
+template <class Cells, class Cell, class Reaches, class F>
+bool for_each_reached_cell(const Cells& lattice, const Cell& first, const Cell& last, Reaches reaches, F f) {
+    [[maybe_unused]] std::size_t skipped = 0;
+    return for_each_cell(first, last, [&](const Cell& cell) {
+        if (reaches(cell)) return f(cell);
+        if constexpr (requires { lattice.most_skipped; })
+            return skipped++ < lattice.most_skipped || f(cell);
+        else
+            return true;
+    });
+}
 
 }  // namespace hedgerow

@@ -73,17 +73,13 @@ public:
     void sweep(const Cells& lattice, Limit limit, Visit visit) const {
         typename Lattice<D>::Cell first{}, last{};
         for (std::size_t a = 0; a < D; ++a) last[a] = lattice.resolution[a] - 1;
-        [[maybe_unused]] std::size_t skipped = 0;
-        for_each_cell(first, last, [&](const auto& cell) {
+        const auto reaches = [&](const auto& cell) {
             auto box = lattice.bounds(cell);
             box.low = box.low - lattice.pad, box.high = box.high + lattice.pad;
-            if (!(in_double(box) <= limit())) {
-                bool skip = true;
-                if constexpr (requires { lattice.most_skipped; }) skip = skipped++ < lattice.most_skipped;
-                if (skip) return true;
-            }
-            return visit(cell).flow == Flow::go_on;
-        });
+            return in_double(box) <= limit();
+        };
+        for_each_reached_cell(lattice, first, last, reaches,
+                              [&](const auto& cell) { return visit(cell).flow == Flow::go_on; });
     }
 
 private:

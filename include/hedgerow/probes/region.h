@@ -150,19 +150,14 @@ public:
             const auto i = static_cast<std::size_t>(a);
             first[i] = lattice.coordinate(whole.low[a], a), last[i] = lattice.coordinate(whole.high[a], a);
         }
-        [[maybe_unused]] std::size_t skipped = 0;
-        for_each_cell(first, last, [&](const auto& cell) {
-            if constexpr (!is_box) {
-                Box<double, D> box = lattice.bounds(cell);
-                box.low = box.low - pad, box.high = box.high + pad;
-                if (!meets(box)) {
-                    bool skip = true;
-                    if constexpr (requires { lattice.most_skipped; }) skip = skipped++ < lattice.most_skipped;
-                    if (skip) return true;
-                }
-            }
-            return visit(cell).flow == Flow::go_on;
-        });
+        const auto reaches = [&](const auto& cell) {
+            if constexpr (is_box) return true;
+            Box<double, D> box = lattice.bounds(cell);
+            box.low = box.low - pad, box.high = box.high + pad;
+            return meets(box);
+        };
+        for_each_reached_cell(lattice, first, last, reaches,
+                              [&](const auto& cell) { return visit(cell).flow == Flow::go_on; });
     }
 
     /// Whether primitive i of a set is found. Sets that cannot tell what lies in a region find nothing there.

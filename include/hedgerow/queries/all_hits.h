@@ -21,11 +21,10 @@ public:
 
     template <class Index, class Ray>
     AllHits(const Index& index, const Ray& ray, std::vector<Hit<Scalar>>& hits, const Filter& filter = {})
-        : Base(index, ray, filter), limit_(ray.t_max), hits_(hits) {
+        : Base(index, ray, filter), hits_(hits) {
         hits_.clear();
     }
 
-    Scalar limit() const { return limit_; }
     Flow offer(const RayCandidate<Scalar>& c) {
         if (this->counts(c)) hits_.push_back(this->hit(c));
         return Flow::go_on;
@@ -39,7 +38,6 @@ public:
     }
 
 private:
-    Scalar limit_;
     std::vector<Hit<Scalar>>& hits_;
 };
 

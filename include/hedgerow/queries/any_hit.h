@@ -14,10 +14,8 @@ public:
     static constexpr Order order = Order::nearest;
 
     template <class Index, class Ray>
-    AnyHit(const Index& index, const Ray& ray, const Filter& filter = {})
-        : Base(index, ray, filter), limit_(ray.t_max) {}
+    AnyHit(const Index& index, const Ray& ray, const Filter& filter = {}) : Base(index, ray, filter) {}
 
-    Scalar limit() const { return limit_; }
     Flow offer(const RayCandidate<Scalar>& c) {
         found_ = this->counts(c);
         return found_ ? Flow::stop : Flow::go_on;
@@ -30,7 +28,6 @@ public:
     bool answer() const { return found_; }
 
 private:
-    Scalar limit_;
     bool found_ = false;
 };
 

@@ -14,10 +14,8 @@ public:
     static constexpr Order order = Order::none;
 
     template <class Index, class Ray>
-    HitCount(const Index& index, const Ray& ray, const Filter& filter = {})
-        : Base(index, ray, filter), limit_(ray.t_max) {}
+    HitCount(const Index& index, const Ray& ray, const Filter& filter = {}) : Base(index, ray, filter) {}
 
-    Scalar limit() const { return limit_; }
     Flow offer(const RayCandidate<Scalar>& c) {
         found_ += this->counts(c);
         return Flow::go_on;
@@ -25,7 +23,6 @@ public:
     std::size_t answer() const { return found_; }
 
 private:
-    Scalar limit_;
     std::size_t found_ = 0;
 };
 

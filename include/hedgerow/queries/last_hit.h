@@ -14,10 +14,8 @@ public:
     static constexpr Order order = Order::none;
 
     template <class Index, class Ray>
-    LastHit(const Index& index, const Ray& ray, const Filter& filter = {})
-        : Base(index, ray, filter), limit_(ray.t_max) {}
+    LastHit(const Index& index, const Ray& ray, const Filter& filter = {}) : Base(index, ray, filter) {}
 
-    Scalar limit() const { return limit_; }
     Flow offer(const RayCandidate<Scalar>& c) {
         const bool later =
             last_.element == Hit<Scalar>::none || c.t > last_.t || (c.t == last_.t && comes_before(c, last_));
@@ -30,7 +28,6 @@ public:
     }
 
 private:
-    Scalar limit_;
     RayCandidate<Scalar> last_{0, 0, 0, Hit<Scalar>::none, Hit<Scalar>::none};
 };
 

@@ -72,7 +72,7 @@ public:
         : a_(a), b_(b), limits_(limits) {}
 
     static Scalar bound(const BoxType& a, const BoxType& b) { return distance2(a, b); }
-    bool done() const { return !(limits_.distance2 >= 0); }
+    bool done() const { return limits_.nothing(); }
     Scalar limit() const {
         return limit_of_boxes(best_ ? limits_.after(best_.distance2) : limits_.distance2);
     }

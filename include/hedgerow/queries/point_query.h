@@ -72,6 +72,8 @@ struct NearLimits {
         if (!(static_cast<double>(distance2) < options.radius2))
             distance2 = greatest_at_most<T>(options.radius2);
     }
+    /// Whether nothing is within them.
+    bool nothing() const { return !(distance2 >= 0); }
     /// The limit of a walk that has found something at a squared distance.
     T after(T found_distance2) const {
         return factor == 1 ? found_distance2 : found_distance2 / product(factor, factor);
@@ -94,7 +96,7 @@ public:
         : probe_(p), set_(index.primitives()), limits_(limits), filter_(filter) {}
 
     const Probe& probe() const { return probe_; }
-    bool done() const { return !(limits_.distance2 >= 0); }
+    bool done() const { return limits_.nothing(); }
     /// Whether the filter lets an instance with this mask be queried.
     bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
 

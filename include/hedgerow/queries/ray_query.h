@@ -21,6 +21,8 @@ public:
 
     const Probe& probe() const { return probe_; }
     bool done() const { return !probe_.usable(); }
+    /// The end of the ray, unless a query has found a nearer one.
+    Scalar limit() const { return probe_.ray().t_max; }
     /// Whether the filter lets an instance with this mask be queried.
     bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
     /// Whether the filter keeps every hit, and whether it keeps this one.

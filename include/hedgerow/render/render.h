@@ -66,8 +66,8 @@ struct PictureParts {
     const Cones<T>* cones = nullptr;
 };
 
-/// Makes a picture, in tiles of pixels. Diffuse shading and that by colour cast a ray to
-/// the light where the surface faces it. Returns when all rows are finished or the progress is cancelled:
+/// Makes a picture, in tiles of pixels. Diffuse shading and that by colour cast a ray to the light where the
+/// surface faces it. Returns when all rows are finished or the progress is cancelled:
 /// then rows that are not finished stay black, and their layers empty. Throws InputError for a camera that
 /// sees nothing, no pixels or samples, an opacity that is not 0 to 1, where the picture needs a tracer, cones
 /// or appearances and there are none, where it shows costs of rays but what is visible is found without them,

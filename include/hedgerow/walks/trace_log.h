@@ -1,6 +1,7 @@
 /// The record of a walk, from which a trace is made (trace.h).
 #pragma once
 
+#include <concepts>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -66,5 +67,23 @@ private:
 
     bool recording_;
 };
+
+/// Calls walk(count) with what counts behind virtual calls: a TraceLog for rays, whose visits are added, and
+/// Visits for all else. Nobody reads those of a NoVisits.
+template <class Probe, class Count, class Walk>
+void count_virtually(Count& count, Walk walk) {
+    using Log = TraceLog<typename Probe::Scalar, Probe::dimension>;
+    constexpr bool of_rays = std::same_as<Probe, RayProbe<typename Probe::Scalar, Probe::dimension>>;
+    if constexpr (std::same_as<std::remove_const_t<Count>, NoVisits>) {
+        Visits nobodys;
+        count_virtually<Probe>(nobodys, walk);
+    } else if constexpr (of_rays && std::same_as<Count, Visits>) {
+        Log log(false);
+        walk(log);
+        count += log.visits;
+    } else {
+        walk(count);
+    }
+}
 
 }  // namespace hedgerow::detail
