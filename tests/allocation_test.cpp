@@ -71,6 +71,40 @@ TYPED_TEST(Allocation, QueriesDoNone) {
     });
 }
 
+// Questions that give lists, alone and in batches of one thread, once their lists have the memory.
+TYPED_TEST(Allocation, WarmListsDoNone) {
+    using T = TypeParam;
+    const auto mesh = teapot<T>(2000);
+    const Questions questions(build(mesh), 800);
+    with_each_structure(mesh, [&](const auto& index) {
+        std::vector<Hit<T>> hits;
+        std::vector<Near<T, 3>> near;
+        std::vector<PrimitiveId> found;
+        HitLists<T> all, first;
+        NearLists<T> nearest_ones, close;
+        IdLists<> over, in;
+        std::size_t sum = 0;
+        const PointOptions alone{.threads = serial_executor()};
+        const auto ask = [&] {
+            for (const auto& ray : questions.rays) sum += all_hits(index, ray, hits);
+            for (const auto& p : questions.points)
+                sum += nearest(index, p, 7, near) + within(index, p, 0.3, near);
+            for (const auto& box : questions.boxes)
+                sum += overlapping(index, box, found) + contained(index, box, found);
+            all_hits(index, questions.rays, all, {.threads = serial_executor()});
+            first_hits(index, questions.rays, 3, first, {.threads = serial_executor()});
+            nearest(index, questions.points, 7, nearest_ones, alone);
+            within(index, questions.points, 0.3, close, alone);
+            overlapping(index, questions.boxes, over, {.threads = serial_executor()});
+            contained(index, questions.boxes, in, {.threads = serial_executor()});
+            sum += all.count() + first.count() + nearest_ones.count() + close.count() + over.count();
+        };
+        ask();
+        EXPECT_EQ(allocated_by(ask), 0u);
+        EXPECT_GT(sum, 0u);
+    });
+}
+
 /// Builds with every builder and width over four kinds of meshes. Leaves of one triangle take the most
 /// memory.
 TYPED_TEST(Allocation, WideBuildsStayWithinTheirBound) {

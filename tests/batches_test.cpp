@@ -71,8 +71,11 @@ TEST(Batches, MayBeCutIntoEmptyPieces) {
     EmptyPieces executor;
     for (const std::size_t count : {0u, 5u, 1000u}) {
         IdLists<> lists;
-        detail::list_one_by_one(count, executor, lists, &IdLists<>::ids, [](std::size_t i, auto& list) {
-            list.assign(i % 7, static_cast<PrimitiveId>(i));
+        detail::list_in_pieces(count, executor, lists, [](std::size_t begin, std::size_t end, IdLists<>& to) {
+            for (std::size_t i = begin; i < end; ++i) {
+                to.ids.append(std::vector<PrimitiveId>(i % 7, static_cast<PrimitiveId>(i)));
+                to.offsets.push_back(to.ids.size());
+            }
         });
         ASSERT_EQ(lists.size(), count);
         for (std::size_t i = 0; i < count; ++i)
@@ -120,6 +123,17 @@ TEST(Batches, NeedNoExecutorForAFilter) {
     expect_same(odd);
     expect_same(of_even_rays);
     expect_same(Except{7});
+}
+
+// A filter may keep state, so that threads have to be asked for: an executor, or a number of them.
+TEST(Batches, WithAFilterUseTheThreadsThatTheyAreGiven) {
+    constexpr std::size_t many = 3 * worth_a_task;
+    EXPECT_EQ(&detail::executor_for<Except>({}, many), &serial_executor());
+    EXPECT_EQ(&detail::executor_for<Except>(2, many), &executor_of(2));
+    EXPECT_EQ(&detail::executor_for<Except>(default_executor(), many), &default_executor());
+    EXPECT_EQ(&detail::executor_for<Except>(0, many), &default_executor()) << "0 is all, and chosen";
+    EXPECT_EQ(&detail::executor_for<Except>(2, 10), &serial_executor()) << "too few to share";
+    EXPECT_EQ(&detail::executor_for<KeepAll>({}, many), &default_executor());
 }
 
 TEST(Batches, KeepToTheDistanceAndTheRoom) {

@@ -102,7 +102,7 @@ TEST(Beams, OfTrianglesWithCornersOnRays) {
         }
         counts += expect_hits_of_rays(mesh, samples);
     }
-    if (beam_kernels() != nullptr) {
+    if (in_use<BeamKernels>() != nullptr) {
         EXPECT_GT(counts.packets, 0u);
     }
 }
@@ -144,7 +144,7 @@ TEST(Beams, OfWallsAndCoplanarFaces) {
         counts +=
             expect_hits_of_rays(mesh, PictureSamples<float>(camera, 150, 130, 3, 1, scene % 4 == 0 ? 4 : 1));
     }
-    if (beam_kernels() == nullptr) return;
+    if (in_use<BeamKernels>() == nullptr) return;
     EXPECT_GT(counts.filled, counts.packets);
     EXPECT_GT(counts.beams, 0u);
 }

@@ -82,7 +82,7 @@ void expect_library_answers(const std::string& scene, const std::string& folder,
         if constexpr (answered_by<Question, P>) {
             using Given = typename Question::Given;
             RowOptions options{.count = 3};
-            if (RowsOf<Given>::takes_radius) options.radius = 0.3;
+            if (RowsOf<Given>::needs_radius) options.radius = 0.3;
             const std::string in = folder + "/in.npy";
             const InputColumns columns = RowsOf<Given>::columns();
             // Rays leave out their interval.
@@ -98,8 +98,8 @@ void expect_library_answers(const std::string& scene, const std::string& folder,
             save_npy<T>(in, given, {rows, columns.size()});
             const std::string asked =
                 std::string("query ") + std::string(Question::name) + " " + scene + " --quiet --from " + in +
-                precision + (RowsOf<Given>::takes_count ? " --count 3" : "") +
-                (RowsOf<Given>::takes_radius ? " --radius 0.3" : "") +
+                precision + (RowsOf<Given>::needs_count ? " --count 3" : "") +
+                (RowsOf<Given>::needs_radius ? " --radius 0.3" : "") +
                 (std::same_as<Question, AskFeature<T, D>> ? " --feature" : "") + " -o " + folder;
             for (const std::string output :
                  {"/out.npy", "/out.csv", "/again.npy --structure bvh", "/one.csv --threads 1"}) {

@@ -6,6 +6,7 @@
 #include <hedgerow/io/npy.h>
 #include <hedgerow/version.h>
 
+#include "structure_names.h"
 #include "tool.h"
 
 namespace {
@@ -26,8 +27,9 @@ TEST_F(Cli, HelpOpensWithExamples) {
 TEST_F(Cli, StructuresAreListedAndHaveTheirOptionsOnRequest) {
     const auto all = run("structures");
     EXPECT_EQ(all.code, 0);
-    for (const char* name : {"brute-force", "grid", "kdtree", "octree", "bsp", "bvh", "wide"})
-        EXPECT_NE(("\n" + all.output).find("\n" + std::string(name) + " "), std::string::npos) << name;
+    for (const StructureInfo& known : structure_list())
+        EXPECT_NE(("\n" + all.output).find("\n" + std::string(known.name) + " "), std::string::npos)
+            << known.name;
     EXPECT_EQ(all.output.find("traversal_cost"), std::string::npos) << "a short list";
     const auto one = run("structures kdtree");
     EXPECT_EQ(one.code, 0);
@@ -82,8 +84,7 @@ TEST_F(Cli, AMeshWithoutAreaIsNeverHit) {
 TEST_F(Cli, EveryStructureMakesTheSamePicture) {
     for (const char* shading : {"normals", "depth", "diffuse"}) {
         std::string first;
-        for (const char* structure :
-             {"bvh", "wide", "kdtree", "grid", "octree", "brute-force", "bvh:builder=midpoint"}) {
+        for (const std::string& structure : structures_for<TriangleMesh<float>>({"bvh:builder=midpoint"})) {
             const auto r =
                 run("render gen:teapot:500 --quiet --size 48x32 --shading " + std::string(shading) +
                     " --structure " + structure + " -o " + file("same.png"));

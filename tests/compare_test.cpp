@@ -12,7 +12,7 @@
 #include <hedgerow/measure/growth.h>
 #include <hedgerow/measure/lists.h>
 #include <hedgerow/measure/quantity.h>
-#include <hedgerow/measure/questions.h>
+#include <hedgerow/measure/query_set.h>
 #include <hedgerow/measure/reason.h>
 
 namespace hedgerow::measure {

@@ -68,8 +68,7 @@ template <class P, class F>
 void with_each_structure(const P& set, F f) {
     f(build<Bvh>(set));
     f(build<WideBvh>(set));
-    for (const char* spec : {"kdtree", "grid", P::dimension == 3 ? "octree" : "quadtree", "brute-force"})
-        f(build<AnyStructure>(set, {spec}));
+    for (const std::string& spec : structures_for<P>()) f(build<AnyStructure>(set, {spec}));
 }
 
 }  // namespace hedgerow::contract

@@ -19,6 +19,7 @@
 #include <hedgerow/scenes/generate.h>
 
 #include "io_support.h"
+#include "structure_names.h"
 #include "tool.h"
 
 namespace hedgerow {
@@ -221,7 +222,7 @@ protected:
 };
 
 template <class T>
-void expect_tool_agrees(const Read& read, const char* structure) {
+void expect_tool_agrees(const Read& read, const std::string& structure) {
     const TriangleMesh<T> mesh = teapot<T>(500);
     const auto index = build_any(structure, mesh);
     RenderOptions options;
@@ -233,8 +234,8 @@ void expect_tool_agrees(const Read& read, const char* structure) {
 }
 
 TEST_F(ExrTool, LayersAreWhatTheLibraryAnswers) {
-    for (const char* structure : {"bvh", "wide", "kdtree", "grid"}) {
-        const std::string render = std::string("render gen:teapot:500 --size 48x32 --structure ") + structure;
+    for (const std::string& structure : structures_for<TriangleMesh<float>>()) {
+        const std::string render = "render gen:teapot:500 --size 48x32 --structure " + structure;
         expect_tool_agrees<float>(written(render), structure);
         expect_tool_agrees<double>(written(render + " --precision double"), structure);
     }

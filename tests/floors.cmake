@@ -1,5 +1,5 @@
 # cmake -D ROOT=DIR -P floors.cmake: scripts/floors passes on the headers as they are, and names an include that goes up, a
-# room that the map lacks and one that it has too many.
+# room that the map lacks and one that it has too many; of src/ likewise.
 cmake_minimum_required(VERSION 3.25)
 
 function(expect_fault what)
@@ -16,11 +16,15 @@ endif()
 
 set(copy ${CMAKE_CURRENT_BINARY_DIR}/floors)
 file(REMOVE_RECURSE ${copy})
-file(COPY ${ROOT}/include ${ROOT}/ARCHITECTURE.md DESTINATION ${copy})
+file(COPY ${ROOT}/include ${ROOT}/src ${ROOT}/ARCHITECTURE.md DESTINATION ${copy})
 file(APPEND ${copy}/include/hedgerow/geometry/vec.h "#include <hedgerow/index.h>\n")
 file(WRITE ${copy}/include/hedgerow/cellar/new.h "#pragma once\n")
+file(APPEND ${copy}/src/core/caches.h "#include \"render/light_kernels.h\"\n")
+file(WRITE ${copy}/src/cellar/new.cpp "")
 file(REMOVE_RECURSE ${copy}/include/hedgerow/instances)
 expect_fault("geometry/vec.h:[0-9]+: includes index.h, which stands on a lower floor")
 expect_fault("cellar/new.h: ARCHITECTURE.md names no floor for cellar/")
 expect_fault("there is no instances/")
+expect_fault("src/core/caches.h:[0-9]+: includes render/light_kernels.h, a component that comes later")
+expect_fault("src/cellar: ARCHITECTURE.md names no such component")
 file(REMOVE_RECURSE ${copy})

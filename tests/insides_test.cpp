@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include <hedgerow/any_structure.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/generate.h>
 #include <hedgerow/scenes/meshes.h>
@@ -156,7 +157,7 @@ void expect_insides(const char* scene, const P& set, std::size_t count = 300) {
     using T = typename P::Scalar;
     constexpr int D = P::dimension;
     const auto points = queries_around(set, count, 1);
-    const auto oracle = build<BruteForce>(set);
+    const auto oracle = build<AnyStructure>(set, {"brute-force"});
     const Solid of_oracle(oracle);
     std::vector<Side> want_sides(points.size());
     std::vector<double> want_numbers(points.size());
@@ -380,7 +381,7 @@ template <class T>
 void expect_exact_sides(const char* scene, const TriangleMesh<T>& mesh) {
     SCOPED_TRACE(scene);
     const auto index = build(mesh);
-    const auto other = build<KdTree>(mesh);
+    const auto other = build<AnyStructure>(mesh, {"kdtree"});
     const Solid by_crossings(index), by_normals(index, {.by = SideBy::pseudonormal}),
         by_parity(index, {.by = SideBy::parity});
     const Solid of_other(other, {.by = SideBy::pseudonormal});
@@ -503,7 +504,7 @@ void expect_promises(const char* scene, const TriangleMesh<T>& mesh, std::size_t
             ASSERT_EQ(side(solid, p), found >= 0.5 ? Side::inside : Side::outside);
         }
     }
-    const auto grid = build<Grid>(mesh);
+    const auto grid = build<AnyStructure>(mesh, {"grid"});
     const Solid of_wide(index, {.by = SideBy::expansion});
     const Solid of_grid(grid, {.by = SideBy::expansion});
     for (const auto& p : queries_around(mesh, count, 4))
@@ -528,9 +529,9 @@ void expect_right_of_any() {
     generated::expect_always([] {
         const generated::AnyCase<P> any;
         const auto p = any.point();
-        const auto brute = build<BruteForce>(any.set);
+        const auto brute = build<AnyStructure>(any.set, {"brute-force"});
         const auto wide = build(any.set);
-        const auto cut = build<KdTree>(any.set);
+        const auto cut = build<AnyStructure>(any.set, {"kdtree"});
         const Solid solid(brute);
         const Solid of_wide(wide);
         const Solid of_cut(cut);
@@ -566,7 +567,7 @@ TYPED_TEST(Insides, OfNothing) {
     for (const auto by : {SideBy::crossings, SideBy::parity, SideBy::pseudonormal, SideBy::expansion})
         expect_nothing(build(none), SolidOptions{.by = by});
     expect_nothing(build(no_segments), SolidOptions{});
-    expect_nothing(build<Bvh>(no_segments), SolidOptions{.by = SideBy::pseudonormal});
+    expect_nothing(build<AnyStructure>(no_segments, {"bvh"}), SolidOptions{.by = SideBy::pseudonormal});
 }
 TYPED_TEST(Insides, OfPointsThatAreNotFinite) {
     using T = TypeParam;
@@ -603,7 +604,7 @@ TYPED_TEST(Insides, OfPointsThatAreNotFinite) {
 TYPED_TEST(Insides, BadRequestsAreRefused) {
     using T = TypeParam;
     const auto cube = cube_at<T>(Vec<T, 3>(0, 0, 0), 4);
-    auto index = build<Bvh>(cube);
+    auto index = build<AnyStructure>(cube, {"bvh"});
     for (const double error : {0.0, -1.0, 1e-12, 2.0, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(Solid(index, {.by = SideBy::expansion, .error = error}), UsageError);
     const auto square = polygons<T>(1, 5, 1);

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <sstream>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -13,27 +16,27 @@
 
 namespace hedgerow::matrix {
 
-/// Structures with their builders and options, by their names in space. Those after the first
-/// `fast_structures` show or stress something and are slow on large scenes.
-inline constexpr const char* structures[] = {
-    "wide",
-    "wide:width=4",
-    "wide:width=16,builder=fast,max_leaf_size=1",
-    "bvh",
-    "bvh:builder=sweep",
-    "bvh:builder=midpoint",
-    "bvh:builder=equal-counts",
-    "bvh:builder=lbvh",
-    "bvh:builder=ploc",
-    "bvh:builder=agglomerative",
-    "bvh:builder=ploc,reinsertion=3",
-    "bvh:builder=spatial-splits",
-    "kdtree",
-    "kdtree:builder=binned",
-    "grid",
-    "two-level-grid",
-    "octree",
-    "bsp",
+/// Structures with their builders and options, by their names in space.
+inline constexpr const char* fast_structures[] = {"wide",
+                                                  "wide:width=4",
+                                                  "wide:width=16,builder=fast,max_leaf_size=1",
+                                                  "bvh",
+                                                  "bvh:builder=sweep",
+                                                  "bvh:builder=midpoint",
+                                                  "bvh:builder=equal-counts",
+                                                  "bvh:builder=lbvh",
+                                                  "bvh:builder=ploc",
+                                                  "bvh:builder=agglomerative",
+                                                  "bvh:builder=ploc,reinsertion=3",
+                                                  "bvh:builder=spatial-splits",
+                                                  "kdtree",
+                                                  "kdtree:builder=binned",
+                                                  "grid",
+                                                  "two-level-grid",
+                                                  "octree",
+                                                  "bsp"};
+/// Those that show or stress something, and are slow on large scenes.
+inline constexpr const char* slow_structures[] = {
     "bvh:ordered=off,culling=off",
     "bvh:max_leaf_size=1",
     "bvh:builder=spatial-splits,overlap=0,duplicates=3,max_leaf_size=1",
@@ -56,7 +59,16 @@ inline constexpr const char* structures[] = {
     "bvh:volume=kdop26",
     "bvh:volume=cylinder",
     "bvh:volume=hull,builder=agglomerative"};
-inline constexpr std::size_t fast_structures = 18;
+
+/// All of these.
+inline const std::vector<const char*> structures = [] {
+    std::vector<const char*> all(std::begin(fast_structures), std::end(fast_structures));
+    all.insert(all.end(), std::begin(slow_structures), std::end(slow_structures));
+    return all;
+}();
+inline constexpr const char* structures_of_points[] = {
+    "point-kdtree", "point-octree",        "point-octree:leaf_size=1", "point-octree:max_depth=3",
+    "hash-grid",    "hash-grid:cell=0.01", "hash-grid:cell=1e-9",      "hash-grid:cell=7"};
 
 /// The spec for sets of P: `spec` itself in space, the corresponding structure or volume in the plane.
 template <class P>
@@ -86,37 +98,93 @@ Vec<T, D> point_in(const Box<T, D>& box, double beyond, Random& random) {
     return p;
 }
 
-/// Ray i of a scene. Origins are near, far or on a target (a vertex, the middle of an edge). Some rays aim
-/// exactly at a target. Others are parallel to an axis, with components of 0, −0 or a subnormal, or have a
-/// very short or very long direction, or an interval that begins or ends on the way.
+/// What is particular about a ray of a scene.
+struct RayCase {
+    bool far_origin = false;      ///< up to two sizes of the scene away
+    bool at_target = false;       ///< aims exactly at a target: a vertex, the middle of an edge
+    bool from_target = false;     ///< starts exactly on one
+    bool from_afar = false;       ///< starts a thousand sizes of the scene away
+    bool along_axis = false;      ///< other components are 0, −0 or the least subnormal
+    bool through_target = false;  ///< along an axis, and through a target
+    int component = 0;            ///< which of these
+    bool short_direction = false, long_direction = false;
+    bool begins_late = false, ends_early = false;
+
+    /// The case of ray i.
+    static RayCase of(std::uint64_t i) {
+        return {.far_origin = i % 3 == 0,
+                .at_target = i % 4 == 1,
+                .from_target = i % 16 == 5,
+                .from_afar = i % 64 == 7,
+                .along_axis = i % 8 == 2,
+                .through_target = i % 16 == 2,
+                .component = static_cast<int>(i / 8 % 3),
+                .short_direction = i % 32 == 9,
+                .long_direction = i % 32 == 11,
+                .begins_late = i % 32 == 13,
+                .ends_early = i % 32 == 15};
+    }
+    std::string name() const {
+        std::string all;
+        for (const auto& [is, what] :
+             {std::pair(far_origin, "from far"), std::pair(at_target, "at a target"),
+              std::pair(from_target, "from a target"), std::pair(from_afar, "from afar"),
+              std::pair(along_axis, "along an axis"), std::pair(through_target, "through a target"),
+              std::pair(short_direction, "with a short direction"),
+              std::pair(long_direction, "with a long direction"), std::pair(begins_late, "that begins late"),
+              std::pair(ends_early, "that ends early")})
+            if (is) all += (all.empty() ? "" : ", ") + std::string(what);
+        return all.empty() ? "of no special kind" : all;
+    }
+};
+
+/// Ray i of a scene, of the case of its number.
 template <class T, int D>
 Ray<T, D> ray_of(const Box<T, D>& box, const Points<T, D>& targets, std::uint64_t i) {
+    const RayCase is = RayCase::of(i);
     Random random(3, i);
     const auto any_target = [&] { return targets[random.bits() % targets.size()]; };
     Ray<T, D> ray;
     // Choose the origin and the point to aim at.
-    ray.origin = point_in(box, i % 3 == 0 ? 2.0 : 0.1, random);
-    const Vec<T, D> target = i % 4 == 1 ? any_target() : point_in(box, 0.0, random);
-    if (i % 16 == 5) ray.origin = any_target();
-    if (i % 64 == 7) ray.origin = ray.origin + Vec<T, D>::all(T(1000) * length(box.extent()));
+    ray.origin = point_in(box, is.far_origin ? 2.0 : 0.1, random);
+    const Vec<T, D> target = is.at_target ? any_target() : point_in(box, 0.0, random);
+    if (is.from_target) ray.origin = any_target();
+    if (is.from_afar) ray.origin = ray.origin + Vec<T, D>::all(T(1000) * length(box.extent()));
     ray.direction = target - ray.origin;
-    // Make the ray parallel to an axis, half of these rays through a target.
-    if (i % 8 == 2) {
+    if (is.along_axis) {
         constexpr T small[] = {T(0), T(-0.0), std::numeric_limits<T>::denorm_min()};
         const int axis = static_cast<int>(random.bits() % D);
         for (int k = 0; k < D; ++k)
-            if (k != axis) ray.direction[k] = small[i / 8 % 3];
-        if (i % 16 == 2) {
+            if (k != axis) ray.direction[k] = small[is.component];
+        if (is.through_target) {
             ray.origin = any_target();
             ray.origin[axis] -= ray.direction[axis];
         }
     }
-    // Change the length of the direction, or the interval.
-    if (i % 32 == 9) ray.direction = ray.direction * T(1e-20);
-    if (i % 32 == 11) ray.direction = ray.direction * T(1e15);
-    if (i % 32 == 13) ray.t_min = T(0.5);
-    if (i % 32 == 15) ray.t_max = T(1);
+    if (is.short_direction) ray.direction = ray.direction * T(1e-20);
+    if (is.long_direction) ray.direction = ray.direction * T(1e15);
+    if (is.begins_late) ray.t_min = T(0.5);
+    if (is.ends_early) ray.t_max = T(1);
     return ray;
+}
+/// A query, by its number, for a message: of a ray its case, and the ray in hexadecimal numbers.
+template <class Given>
+std::string described(const Given&, std::uint64_t i) {
+    return "query " + std::to_string(i);
+}
+template <class T, int D>
+std::string described(const Ray<T, D>& ray, std::uint64_t i) {
+    std::ostringstream out;
+    out << "ray " << i << ", " << RayCase::of(i).name() << std::hexfloat << ": {{";
+    for (int k = 0; k < D; ++k) out << (k > 0 ? ", " : "") << ray.origin[k];
+    out << "}, {";
+    for (int k = 0; k < D; ++k) out << (k > 0 ? ", " : "") << ray.direction[k];
+    out << "}, " << ray.t_min << ", " << ray.t_max << "}";
+    return out.str();
+}
+template <class T, int D>
+std::string described(const HitsAlong<T, D>& along, std::uint64_t i) {
+    return std::to_string(along.k) + " hits of " + described(along.ray, i);
 }
 
 template <class T, int D>
@@ -157,8 +225,8 @@ void expect_equal_answers(const Indexes<T, D>& indexes, const std::vector<typena
         if (!answers<Question>(*indexes[s])) continue;
         const auto got = answers_of<Question>(*indexes[s], given, some);
         for (std::size_t i = 0; i < given.size(); ++i)
-            ASSERT_EQ(want[i], got[i])
-                << indexes[s]->structure() << ": " << Question::words << ", query " << first + i * stride;
+            ASSERT_EQ(want[i], got[i]) << indexes[s]->structure() << ": " << Question::words << ", "
+                                       << described(given[i], first + i * stride);
     }
 }
 
@@ -210,7 +278,7 @@ void expect_equal_rays(const Indexes<T, D>& indexes, const Points<T, D>& targets
         const auto closest = answers_of<AskClosestHit<T, D>>(*indexes[0], some, 256);
         const auto any = answers_of<AskAnyHit<T, D>>(*indexes[0], some, 256);
         for (std::size_t i = 0; i < some.size(); ++i)
-            ASSERT_EQ(bool(closest[i]), any[i]) << "ray " << begin + i;
+            ASSERT_EQ(bool(closest[i]), any[i]) << described(some[i], begin + i);
     }
 }
 
@@ -285,24 +353,20 @@ void expect_equal(const char* name, const P& set, const Points<typename P::Scala
     SCOPED_TRACE(name);
     Indexes<typename P::Scalar, P::dimension> indexes;
     indexes.push_back(build_any("brute-force", set));
-    for (const char* spec : structures) {
-        indexes.push_back(build_any(named_for<P>(spec), set));
-        EXPECT_EQ(indexes.back()->validate(), "") << spec;
-    }
-    // Add the structures that hold only points.
-    if constexpr (PointSet<ViewOf<P>>)
-        for (const char* spec :
-             {"point-kdtree", "point-octree", "point-octree:leaf_size=1", "point-octree:max_depth=3",
-              "hash-grid", "hash-grid:cell=0.01", "hash-grid:cell=1e-9", "hash-grid:cell=7"}) {
+    const auto add = [&](std::span<const char* const> specs) {
+        for (const char* spec : specs) {
             indexes.push_back(build_any(named_for<P>(spec), set));
             EXPECT_EQ(indexes.back()->validate(), "") << spec;
         }
+    };
+    add(structures);
+    if constexpr (PointSet<ViewOf<P>>) add(structures_of_points);
     if (set.size() > 0) expect_equal_regions(indexes, in_long_runs(1000, 200));
     if (targets.empty()) return;
     // Compare all structures on some rays, and in long runs the fast ones on many more.
     const std::size_t for_all = in_long_runs(100000, 1500);
     expect_equal_rays(indexes, targets, 0, for_all);
-    indexes.resize(1 + fast_structures);
+    indexes.resize(1 + std::size(fast_structures));
     expect_equal_rays(indexes, targets, for_all, in_long_runs(1000000, for_all));
 }
 

@@ -7,7 +7,7 @@
 #include <hedgerow/base/error.h>
 #include <hedgerow/measure/advice.h>
 #include <hedgerow/measure/compare.h>
-#include <hedgerow/measure/questions.h>
+#include <hedgerow/measure/query_set.h>
 #include <hedgerow/scenes/generate.h>
 
 namespace hedgerow::measure {
@@ -215,7 +215,7 @@ TEST(Measure, StopsBetweenTheQueriesOfOneKind) {
     const auto index = build_any("brute-force", cloud);
     std::vector<Neighbours<float, 3>> given;
     for (const Vec3f& p : cloud.points) given.push_back({p, 8});
-    QuestionsOf<AskNearest<float, 3>, float, 3> questions("8 nearest", given);
+    QuerySetOf<AskNearest<float, 3>, float, 3> questions("8 nearest", given);
     const std::atomic<bool> cancel{true};
     Visits visits;
     EXPECT_THROW(questions.answers(*index, visits, {{}, &cancel}), Cancelled);

@@ -235,7 +235,7 @@ TEST(Periodic, OfFloats) {
 }
 /// Of a charge, the cells that act on it hold each near image of each charge once.
 TEST(Periodic, CellsThatActHoldEachNearImageOnce) {
-    if (nbody_kernels() == nullptr) GTEST_SKIP() << "no kernels";
+    if (in_use<NbodyKernels>() == nullptr) GTEST_SKIP() << "no kernels";
     const Cube scene = cube(20000, false, false);
     std::size_t held = 0;
     for (const auto& cell : acting_cells<double>(scene.view(), 77, {.accuracy = 1e-3})) held += cell.count;

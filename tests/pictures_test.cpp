@@ -139,7 +139,7 @@ TEST(Pictures, GoInPackets) {
         std::vector<Hit<float>> hits(rays.size());
         const std::size_t packets =
             closest_hits(index, rays, std::span(hits), {.threads = serial_executor()}).packets;
-        if (wide_kernels() == nullptr)
+        if (in_use<AllRayKernels>() == nullptr)
             EXPECT_EQ(packets, 0u);
         else
             EXPECT_GT(packets + 64, rays.size());

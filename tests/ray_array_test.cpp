@@ -140,7 +140,8 @@ TEST(RayArrays, GoThroughAnyIndexToTheKernels) {
     std::vector<Hit<float>> hits(rays.size());
     std::vector<Visits> visits(rays.size());
     in_every_layout<float>(rays, [&](const char* layout, const RayArray<float, 3>& array) {
-        EXPECT_EQ(closest_hits(*any_index, array, hits).packets, wide_kernels() == nullptr ? 0u : 960u)
+        EXPECT_EQ(closest_hits(*any_index, array, hits).packets,
+                  in_use<AllRayKernels>() == nullptr ? 0u : 960u)
             << layout;
         for (std::size_t i = 0; i < rays.size(); ++i)
             ASSERT_EQ(hits[i], closest_hit(index, rays[i])) << layout << ", ray " << i;

@@ -90,6 +90,32 @@ TYPED_TEST(Refit, TellsHowFarTheQualityDrifts) {
     EXPECT_EQ(index.refit(still.view()), 1);
 }
 
+TYPED_TEST(Refit, SaysWhenToBuildAgain) {
+    const auto still = soup<float>(5000);
+    auto index = TypeParam::over(still);
+    EXPECT_FALSE(index.refit().build_again());
+    bool before = false, after = false;
+    for (const float by : {0.001f, 0.01f, 0.1f, 0.3f, 1.f, 3.f}) {
+        const auto mesh = swayed(still, by);
+        const Drift drift = index.refit(mesh.view());
+        EXPECT_EQ(drift.build_again(), drift > 1.4) << by;
+        before |= !drift.build_again(), after |= drift.build_again();
+        // What the rule promises of rays: where it says no, a tree built anew opens few boxes less.
+        const auto anew = TypeParam::over(mesh);
+        const Questions questions(anew, 2000);
+        Visits fitted, built;
+        for (const auto& ray : questions.rays) {
+            closest_hit(index, ray, KeepAll(), fitted);
+            closest_hit(anew, ray, KeepAll(), built);
+        }
+        if (!drift.build_again())
+            EXPECT_LT(double(fitted.nodes), 1.5 * double(built.nodes)) << by;
+        else
+            EXPECT_GT(fitted.nodes, built.nodes) << by;
+    }
+    EXPECT_TRUE(before && after);
+}
+
 /// Throws when work is split for the k-th time.
 class Failing final : public Executor {
 public:

@@ -19,9 +19,9 @@ void expect_equal(const std::string& file) {
     const auto mesh = load_mesh<T>(path);
     const auto targets = targets_of(mesh);
     Indexes<T, 3> indexes;
-    for (std::size_t i = 0; i < fast_structures; ++i) {
-        indexes.push_back(build_any(structures[i], mesh));
-        EXPECT_EQ(indexes.back()->validate(), "") << structures[i];
+    for (const char* spec : fast_structures) {
+        indexes.push_back(build_any(spec, mesh));
+        EXPECT_EQ(indexes.back()->validate(), "") << spec;
     }
     const std::size_t with_oracle = in_long_runs(10000, 200), rays = in_long_runs(1000000, 20000);
     expect_equal_rays(indexes, targets, 0, rays);

@@ -8,12 +8,13 @@
 
 namespace hedgerow {
 
-/// All structures that answer rays over sets of P, with their default options.
+/// All structures that answer rays over sets of P, with their default options, and others by their specs.
 template <class P>
-std::vector<std::string> structures_for() {
+std::vector<std::string> structures_for(std::vector<std::string> others = {}) {
     std::vector<std::string> names;
     for (const auto& s : structure_list())
         if (s.rays && s.holds(P::dimension, PointSet<ViewOf<P>>)) names.emplace_back(s.name);
+    names.insert(names.end(), others.begin(), others.end());
     return names;
 }
 /// These structures by each of their builders: "bvh:builder=sweep".

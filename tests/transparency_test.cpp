@@ -11,6 +11,7 @@
 
 #include "backwards.h"
 #include "layers.h"
+#include "structure_names.h"
 
 using namespace hedgerow;
 
@@ -95,7 +96,7 @@ TYPED_TEST(TransparencyOf, CoplanarFacesAndEqualT) {
     using T = TypeParam;
     // Six squares in each of three places, and rays through their diagonals, where two triangles are hit.
     const auto mesh = stack<T>(3, 6);
-    for (const char* const structure : {"wide", "kdtree", "grid", "brute-force"}) {
+    for (const std::string& structure : structures_for<TriangleMesh<T>>()) {
         SCOPED_TRACE(structure);
         const auto index = build_any(structure, mesh);
         auto rays = picture(index->bounds(), 24);

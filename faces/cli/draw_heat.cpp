@@ -30,7 +30,7 @@ int draw_heat_of(const DrawArguments& a, const P& set) {
     options.layers = asks_for_layers(a.output);
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.seed = a.seed;
-    options.shading = parse_shading(a.heat);
+    options.shading = named_shading(a.heat).value();
     options.scale.logarithmic = a.log;
     // A logarithmic scale without an end of its own follows the counts, which is what 0 asks for.
     options.scale.top = a.scale > 0 || a.log ? a.scale : usual_scale(options.shading);

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <hedgerow/engine/kernels.h>
+#include <hedgerow/walks/engine.h>
 
 namespace hedgerow::cli {
 

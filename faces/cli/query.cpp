@@ -1,9 +1,8 @@
 /// hedgerow query: answers rows of queries from a file, in chunks.
 #include <algorithm>
 #include <filesystem>
-#include <limits>
+#include <iterator>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,88 +17,11 @@ namespace hedgerow::cli {
 
 namespace {
 
-template <class Answer>
-inline constexpr bool is_list = false;
-template <class Item>
-inline constexpr bool is_list<std::vector<Item>> = true;
-
-/// An index whose ids are the positions, for the columns of answers that are not there yet.
-struct NoIndex {
-    std::uint32_t id(PrimitiveId element) const { return element; }
-};
-
-/// The columns that answers to a question have.
-template <class Question>
-std::vector<Column> answer_columns() {
-    using Answer = typename Question::Answer;
-    ColumnList list;
-    if constexpr (is_list<Answer>) {
-        list("query", std::uint64_t());
-        list_item_columns(NoIndex(), typename Answer::value_type(), list);
-    } else {
-        list_answer<Question>(Answer(), list);
-    }
-    return list.all;
-}
-
-/// Questions of points that take PointOptions beside the points.
-template <class Question, class T, int D>
-concept TakesPointOptions = requires(const AnyIndex<T, D>& index, std::span<const Vec<T, D>> given,
-                                     std::span<typename Question::Answer> found) {
-    Question::ask_all(index, given, found, {}, PointOptions());
-};
-
-/// An index, and the solid that is made of it where a question is asked of that.
-template <std::floating_point T, int D>
-struct Answering {
-    const AnyIndex<T, D>& index;
-    std::unique_ptr<const AnySolid<T, D>> solid;
-    const FileNumbers& numbers;
-};
-
-/// Puts a question to an index for each of `count` rows.
-template <class Question, std::floating_point T, int D>
-void answer_piece(const Answering<T, D>& by, const RowOptions& options, const T* numbers, std::uint64_t first,
-                  std::size_t count, AnsweredRows& answers) {
-    using Given = typename Question::Given;
-    using Answer = typename Question::Answer;
-    const AnyIndex<T, D>& index = by.index;
-    if constexpr (is_list<Answer>) {
-        answer_by_lists<Given, typename Answer::value_type>(
-            options, numbers, first, count, answers,
-            [&](const Given& given, Answer& found) { Question::ask(index, given, found); },
-            [&](const auto& item, Record& record) {
-                ByFileNumbers<Record> numbered{record, by.numbers};
-                list_item_columns(index, item, numbered);
-            });
-    } else {
-        answer_by_rows<Given>(
-            options, numbers, first, count, answers, no_answer<Question>(),
-            [&](std::span<const Given> given, std::span<Answer> found) {
-                if constexpr (AsksSolid<Question>)
-                    Question::ask_solid(*by.solid, given, found);
-                else if constexpr (TakesPointOptions<Question, T, D>)
-                    Question::ask_all(index, given, found, {}, options.near<T>());
-                else if constexpr (AsksMany<Question>)
-                    Question::ask_all(index, given, found);
-                else
-                    for (std::size_t i = 0; i < count; ++i) Question::ask(index, given[i], found[i]);
-            },
-            [&]<class R>(const Answer& answer, R& record) {
-                ByFileNumbers<R> numbered{record, by.numbers};
-                list_answer<Question>(answer, numbered);
-            });
-    }
-}
-
-SolidOptions solid_options(const QueryArguments& a) {
-    constexpr std::pair<std::string_view, SideBy> ways[] = {{"crossings", SideBy::crossings},
-                                                            {"parity", SideBy::parity},
-                                                            {"pseudonormal", SideBy::pseudonormal},
-                                                            {"expansion", SideBy::expansion}};
-    SolidOptions options{.error = a.error};
-    for (const auto& [name, by] : ways)
-        if (a.by == name) options.by = by;
+RowOptions row_options(const QueryArguments& a) {
+    RowOptions options{.count = a.count, .factor = a.factor, .solid = {.error = a.error}};
+    if (a.radius >= 0) options.radius = a.radius;
+    const auto by = std::find(std::begin(side_by_names), std::end(side_by_names), a.by);
+    if (by != std::end(side_by_names)) options.solid.by = static_cast<SideBy>(by - std::begin(side_by_names));
     return options;
 }
 
@@ -115,66 +37,56 @@ void warn_of_turns(const QueryArguments& a, const AnySolid<T, D>& solid) {
                               : "Turn them the same way");
 }
 
-template <class Question, std::floating_point T, int D>
-int query(const QueryArguments& a, RowReader<T>& in, const AnyIndex<T, D>& index, QueryReport report) {
-    const RowOptions options{a.count, a.radius >= 0 ? a.radius : std::numeric_limits<double>::infinity(),
-                             a.factor};
-    const std::size_t columns = RowsOf<typename Question::Given>::columns().size();
+template <std::floating_point T, int D>
+int query(const QueryArguments& a, RowReader<T>& in, const AnyIndex<T, D>& index,
+          const AnyQuestion<T, D>& question, QueryReport report) {
+    RowsAsked<T, D> asked{.index = index, .options = row_options(a), .numbers = a.numbers.all()};
     report.primitives = index.size();
-    Answering<T, D> by{index, nullptr, a.numbers};
-    if constexpr (AsksSolid<Question>) {
+    std::unique_ptr<const AnySolid<T, D>> solid;
+    if (question.info().of_solid) {
         ProgressLine line("looking for open edges", a.quiet);
         WatchedExecutor watched(default_executor(), line.progress());
         const double start = now();
-        by.solid = index.make_solid(solid_options(a), watched);
+        solid = index.make_solid(asked.options.solid, watched);
+        asked.solid = solid.get();
         report.build_seconds += now() - start;
-        warn_of_turns(a, *by.solid);
+        warn_of_turns(a, *solid);
     }
+    const QuestionInfo& info = question.info();
     return answer_all<T>(
-        a, in, {columns, answer_columns<Question>(), is_list<typename Question::Answer>},
-        [&](const T* numbers, std::uint64_t first, std::size_t count, AnsweredRows& answers) {
-            answer_piece<Question>(by, options, numbers, first, count, answers);
+        a, in, {info.asked.size(), info.answered, info.lists},
+        [&](const T* rows, std::uint64_t first, std::size_t count, AnsweredRows& answers) {
+            question.answer(asked, rows, first, count, answers);
         },
         report);
 }
 
-/// Whether a question tells where on its primitive a closest point is.
-template <class Question>
-concept TellsFeatures = requires {
-    requires Question::tells_features;
-};
-
-/// Throws UsageError for options that a question lacks, and for those that it does not take.
-template <class Question, std::floating_point T, int D>
-void check_options(const QueryArguments& a) {
-    using Rows = RowsOf<typename Question::Given>;
-    constexpr bool near =
-        TakesPointOptions<Question, T, D> || (Rows::takes_count && !detail::is_ray<typename Question::Given>);
-    if (Rows::takes_count && a.count == 0)
-        throw UsageError(a.kind + " needs --count: how many to find, at least 1");
-    if (Rows::takes_radius && a.radius < 0)
-        throw UsageError(a.kind + " needs --radius: a distance, at least 0");
-    if (!Rows::takes_count && a.count != 0) throw UsageError(a.kind + " takes no --count");
-    if (!Rows::takes_radius && !near && a.radius >= 0) throw UsageError(a.kind + " takes no --radius");
-    if (!near && a.factor != 1) throw UsageError(a.kind + " takes no --factor");
-    if (!AsksSolid<Question> && !a.by.empty()) throw UsageError(a.kind + " takes no --by");
-    if (Question::name == AskWindingNumber<T, D>::name && (a.by == "parity" || a.by == "pseudonormal"))
-        throw UsageError("winding numbers are told by crossings or expansion, not by " + a.by);
+/// Throws UsageError for options that a question needs, and for those that it does not take.
+void check_options(const QueryArguments& a, const QuestionInfo& info) {
+    const std::pair<std::string_view, bool> given[] = {
+        {"count", a.count != 0}, {"radius", a.radius >= 0}, {"factor", a.factor != 1}, {"by", !a.by.empty()}};
+    for (const auto& [name, is_given] : given) {
+        const QuestionOption* const option = info.option(name);
+        if (option != nullptr && option->needed && !is_given)
+            throw UsageError(fmt::format("{} needs --{}: {}", a.kind, name, option->meaning));
+        if (option == nullptr && is_given) throw UsageError(fmt::format("{} takes no --{}", a.kind, name));
+    }
+    if (const QuestionOption* const by = info.option("by"); by != nullptr && !a.by.empty())
+        if (std::find(by->choices.begin(), by->choices.end(), a.by) == by->choices.end())
+            throw UsageError(
+                fmt::format("{} is told by {}, not by {}", a.kind, fmt::join(by->choices, " or "), a.by));
 }
 
-/// Whether a question has the name and is of the variant that the options choose. --feature chooses the
-/// question that tells features. Of two questions of a name, of boxes and of balls, --radius chooses that of
-/// balls.
-template <class Question, std::floating_point T, int D>
-bool is_asked(const QueryArguments& a) {
-    if (Question::name != a.kind || TellsFeatures<Question> != a.feature) return false;
-    const bool by_radius = a.radius >= 0;
-    if (RowsOf<typename Question::Given>::takes_radius == by_radius) return true;
-    bool other = false;
-    for_each_question<T, D>([&]<class Other>(Other) {
-        other = other || (Other::name == a.kind && RowsOf<typename Other::Given>::takes_radius == by_radius);
-    });
-    return !other;
+/// The question that is asked: of two of a name, --feature chooses that which tells features, and --radius
+/// that of balls.
+template <std::floating_point T, int D>
+const AnyQuestion<T, D>& asked_question(const QueryArguments& a) {
+    const AnyQuestion<T, D>* question = any_question<T, D>(a.kind, a.feature ? "feature" : "");
+    if (question == nullptr) throw UsageError(a.kind + " takes no --feature");
+    if (a.radius >= 0)
+        if (const auto* const of_balls = any_question<T, D>(a.kind, "radius")) question = of_balls;
+    check_options(a, question->info());
+    return *question;
 }
 
 /// Opens the rows, lets `make_index` build or load an index, and queries it.
@@ -182,29 +94,19 @@ template <class P, class F>
 int query_set(const QueryArguments& a, F make_index) {
     using T = typename P::Scalar;
     constexpr int D = P::dimension;
-    std::optional<int> code;
-    for_each_question<T, D>([&]<class Question>(Question) {
-        if (!is_asked<Question, T, D>(a)) return;
-        check_options<Question, T, D>(a);
-        if constexpr (!answered_by<Question, P>) {
-            if constexpr (AsksFacets<Question>)
-                throw InputError(a.scene + ": " + a.kind + (a.feature ? " with --feature" : "") +
-                                 " is asked of triangles, or of segments in the plane. Name such a scene");
-            else
-                throw InputError(a.scene +
-                                 ": rays pass between points. Ask for what is near them, or name a mesh");
-        } else {
-            const auto in = open_rows<T>(a.from, row_format(a.from, a.format),
-                                         RowsOf<typename Question::Given>::columns(), {{}, &interrupted});
-            QueryReport report;
-            const double start = now();
-            const auto index = make_index(report);
-            report.build_seconds = now() - start;
-            code = query<Question>(a, *in, *index, report);
-        }
-    });
-    if (!code) throw UsageError(a.kind + " takes no --feature");
-    return *code;
+    const AnyQuestion<T, D>& question = asked_question<T, D>(a);
+    if (question.info().of_facets && !FacetSet<ViewOf<P>>)
+        throw InputError(a.scene + ": " + a.kind + (a.feature ? " with --feature" : "") +
+                         " is asked of triangles, or of segments in the plane. Name such a scene");
+    if (question.info().of_rays && PointSet<ViewOf<P>>)
+        throw InputError(a.scene + ": rays pass between points. Ask for what is near them, or name a mesh");
+    const auto in =
+        open_rows<T>(a.from, row_format(a.from, a.format), question.info().asked, {{}, &interrupted});
+    QueryReport report;
+    const double start = now();
+    const auto index = make_index(report);
+    report.build_seconds = now() - start;
+    return query(a, *in, *index, question, report);
 }
 template <class P>
 int query_set(const QueryArguments& a, const P& primitives) {
@@ -233,28 +135,69 @@ int query_saved(const QueryArguments& a) {
         a, [&](const auto& o, auto& threads) { return load_point_index<T, 3>(a.scene, o, threads); });
 }
 
+/// What rows are asked, in space, for people.
+std::vector<const QuestionInfo*> row_questions() {
+    std::vector<const QuestionInfo*> all;
+    for (const auto* const question : any_questions<float, 3>()) all.push_back(&question->info());
+    return all;
+}
 std::vector<std::string_view> kind_names() {
     auto names = question_names<TriangleMesh<float>>();
     for (const PairKind& kind : pair_kinds()) names.push_back(kind.name);
     return names;
 }
+/// The names of the kinds of rows for which `holds` is true, in a sentence.
+template <class Holds>
+std::string kinds_that(Holds holds, bool pairs_of_points = false) {
+    std::vector<std::string_view> names;
+    for (const QuestionInfo* const info : row_questions())
+        if (holds(*info) && (names.empty() || names.back() != info->name)) names.push_back(info->name);
+    if (pairs_of_points)
+        for (const PairKind& kind : pair_kinds())
+            if (kind.takes_radius) names.push_back(kind.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+/// The kinds that take an option, and what it means.
+std::string option_help(std::string_view name) {
+    std::string meaning;
+    const auto kinds = kinds_that([&](const QuestionInfo& info) {
+        const QuestionOption* const option = info.option(name);
+        if (option != nullptr && meaning.empty()) meaning = option->meaning;
+        return option != nullptr;
+    });
+    return kinds + ": " + meaning;
+}
+std::string radius_help() {
+    const auto takes = [](bool needed) {
+        return [needed](const QuestionInfo& info) {
+            const QuestionOption* const option = info.option("radius");
+            return option != nullptr && option->needed == needed && info.variant.empty();
+        };
+    };
+    return fmt::format(
+        "the distance, not squared. {} need it; {} find nothing beyond it; {} are asked of balls",
+        kinds_that(takes(true), true), kinds_that(takes(false)),
+        kinds_that([](const QuestionInfo& info) { return info.variant == "radius"; }));
+}
 
 /// The kinds of queries, with what each reads and writes, for people.
 std::string kinds_help() {
     std::string text = "KIND, the columns of --from in space, and the columns of -o:\n";
-    for_each_question<float, 3>([&]<class Question>(Question) {
-        const InputColumns in = RowsOf<typename Question::Given>::columns();
+    for (const QuestionInfo* const info : row_questions()) {
+        const InputColumns& in = info->asked;
         std::string reads;
         for (std::size_t i = 0; i < in.size(); ++i)
             reads += (i == 0 ? "" : " ") + std::string(i == in.required() ? "[" : "") + in.names[i];
         if (!in.defaults.empty()) reads += "]";
         std::string writes;
-        for (const Column& c : answer_columns<Question>()) writes += (writes.empty() ? "" : " ") + c.name;
-        std::string name(Question::name);
-        if (RowsOf<typename Question::Given>::takes_radius) name += " --radius";
-        if (TellsFeatures<Question>) name += " --feature";
-        text += fmt::format("  {:19} {}\n  {:19}   -> {}\n", name, reads, "", writes);
-    });
+        for (const Column& c : info->answered) writes += (writes.empty() ? "" : " ") + c.name;
+        std::string name(info->name);
+        if (const auto* const radius = info->option("radius"); radius != nullptr && radius->needed)
+            name += " --radius";
+        if (info->variant == "feature") name += " --feature";
+        text += fmt::format("  {:19} {}\n  {:19}   {}\n  {:19}   -> {}\n", name, reads, "", info->meaning, "",
+                            writes);
+    }
     for (const PairKind& kind : pair_kinds()) text += fmt::format("  {:19} {}\n", kind.name, kind.meaning);
     return text + "\n";
 }
@@ -311,31 +254,21 @@ Run add_query(CLI::App& verb) {
     verb.add_option("--with", a->with, "the other scene, for kinds between two");
     verb.add_option("--format", a->format, "of --from: npy, csv or json; needed for a pipe");
     verb.add_option("--output-format", a->output_format, "of -o: npy, csv or json; needed for a pipe");
-    verb.add_option("-k,--count", a->count, "nearest, first-hits: how many to find");
-    verb.add_option(
-        "--radius", a->radius,
-        "the distance, not squared. within, pairs-within and neighbours-within need it; closest-point, "
-        "farthest-point and nearest find nothing beyond it; overlap, contained, count and any-overlap are "
-        "asked of balls");
+    verb.add_option("-k,--count", a->count, option_help("count"));
+    verb.add_option("--radius", a->radius, radius_help());
     verb.add_option(
             "--period", a->periods,
             "pairs-within, neighbours-within: the length after which space repeats, or one for each axis, "
             "0 where it does not: X,Y,Z. Distances are those to the nearest image")
         ->delimiter(',')
         ->expected(1, 3);
-    verb.add_option("--factor", a->factor,
-                    "closest-point, nearest: how many times as far away as the exact answer one may be; "
-                    "farthest-point: how many times less")
-        ->capture_default_str();
+    verb.add_option("--factor", a->factor, option_help("factor"))->capture_default_str();
     verb.add_flag(
         "--feature", a->feature,
         "closest-point: also whether the point is on the face (0), an edge (1) or a vertex (2), its "
         "weights and the normal");
-    verb.add_option(
-            "--by", a->by,
-            "side, signed-distance: how insides are told, crossings (default), parity, pseudonormal or "
-            "expansion; winding-number: crossings or expansion")
-        ->check(CLI::IsMember({"crossings", "parity", "pseudonormal", "expansion"}));
+    verb.add_option("--by", a->by, option_help("by") + " (crossings)")
+        ->check(CLI::IsMember(std::vector<std::string>(std::begin(side_by_names), std::end(side_by_names))));
     verb.add_option("--error", a->error,
                     "--by expansion: how far winding numbers may be off, 1e-9 to 1 (1e-3)");
     verb.add_option("--tolerance", a->tolerance,

@@ -22,6 +22,7 @@ public:
     FileNumbers() = default;
     explicit FileNumbers(std::vector<std::uint32_t> of_points) : of_points_(std::move(of_points)) {}
 
+    std::span<const std::uint32_t> all() const { return of_points_; }
     std::uint32_t operator()(std::uint32_t number) const {
         return number < of_points_.size() ? of_points_[number] : number;
     }
@@ -29,20 +30,6 @@ public:
 private:
     std::vector<std::uint32_t> of_points_;
 };
-/// Passes columns on to `to`, a record or what counts its bytes; primitives by their numbers in the file.
-template <class To>
-struct ByFileNumbers {
-    To& to;
-    const FileNumbers& numbers;
-
-    template <class N>
-    void operator()(std::string_view name, N value) {
-        if constexpr (std::is_same_v<N, std::uint32_t>)
-            if (name == "primitive") value = numbers(value);
-        to(name, value);
-    }
-};
-
 struct QueryArguments : Common {
     std::string kind, from, with, format, output_format, structure = "wide", by;
     std::uint64_t count = 0;

@@ -159,7 +159,7 @@ void check_cones(const RenderArguments& a) {
     if (a.visibility != "cast")
         throw UsageError("--cones: leave out --visibility, since cones find what is visible");
     if (a.spp > 1) throw UsageError("--cones: leave out --spp, since a cone sees all of a pixel");
-    if (counted(parse_shading(a.shading)) || a.counts)
+    if (counted(a.shading_of_rays()) || a.counts)
         throw UsageError("--cones: leave out --shading steps and --counts, which show what rays cost");
 }
 
@@ -171,7 +171,7 @@ void check_refinement(const RenderArguments& a) {
     };
     refuse(a.visibility != "cast", "--visibility " + a.visibility);
     refuse(a.cones, "--cones"), refuse(a.sheet, "--sheet");
-    refuse(counted(parse_shading(a.shading)), "--shading " + a.shading);
+    refuse(counted(a.shading_of_rays()), "--shading " + a.shading);
 }
 
 /// Admits the names in a list.
@@ -331,7 +331,7 @@ Run add_render(CLI::App& verb) {
         if (!a->resume.empty()) check_writable(a->resume);
         const bool saved = names_index_file(a->scene);
         a->layers = asks_for_layers(a->output);
-        if (a->visibility != "cast" && counted(parse_shading(a->shading)))
+        if (a->visibility != "cast" && counted(a->shading_of_rays()))
             throw UsageError("--shading " + a->shading + " shows what rays cost: it needs --visibility cast");
         if (a->uses_beams() && a->structure != "wide")
             throw UsageError("--structure " + a->structure + ": beams go through 'wide' alone");
@@ -341,7 +341,7 @@ Run add_render(CLI::App& verb) {
         else
             check_picture_memory(a->view.size, a->layers);
         check_writable(a->output);
-        const bool by_looks = a->sheet || a->follows_paths() || parse_shading(a->shading) == Shading::colour;
+        const bool by_looks = a->sheet || a->follows_paths() || a->shading_of_rays() == Shading::colour;
         if (by_looks && a->uses_beams())
             throw UsageError("beams go through one mesh without looks: leave out --visibility beams");
         if (by_looks && !a->sheet && a->structure != "wide")
@@ -351,7 +351,7 @@ Run add_render(CLI::App& verb) {
                 "--transparency: --shading " + a->shading +
                 " shows no looks, so all is opaque; give --shading colour, or --opacity for all");
         a->transparent |= a->opacity < 1;
-        if (a->transparent && !a->sheet && counted(parse_shading(a->shading)))
+        if (a->transparent && !a->sheet && counted(a->shading_of_rays()))
             throw UsageError("--shading " + a->shading +
                              " shows what rays cost, which end at the first hit; leave out "
                              "--transparency and --opacity");

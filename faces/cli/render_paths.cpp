@@ -15,9 +15,9 @@
 #include <hedgerow/render/integrators/path_picture.h>
 
 #include "path_layers.h"
-#include "path_state.h"
 #include "picture_notes.h"
 #include "render_looks.h"
+#include "saved_picture.h"
 #include "saved_rays.h"
 #include "terminal_picture.h"
 
@@ -126,7 +126,7 @@ private:
 /// the picture is saved, and the state, if there is a file for it. Returns whether it was not interrupted.
 template <class T>
 bool follow(const RenderArguments& a, const PathScene<T>& scene, const PathPictureOptions& options,
-            const std::vector<FirstSurface>& first, PathState& state, PathPicture& picture) {
+            const std::vector<FirstSurface>& first, SavedPicture& state, PathPicture& picture) {
     ProgressLine line("following paths", a.quiet, "samples");
     const Progress shown = line.progress();
     std::atomic<bool> stops{false};
@@ -191,7 +191,7 @@ int render_paths(const RenderArguments& a) {
     if (lights.has_default_sky() && !a.quiet)
         fmt::print(stderr, "hedgerow: {}: has no lights, so it gets a sky\n", a.scene);
     PathPictureOptions options = path_options(a, shown.options);
-    PathState state(a, shown, options);
+    SavedPicture state(a, shown, options);
     PathPicture picture = state.begun(a, options);
     const PathScene<T> scene{shown.scene, lights, shown.scene.tracer()};
     std::vector<FirstSurface> first;

@@ -89,7 +89,7 @@ RenderOptions options_of(const RenderArguments& a, const Box3f& bounds, const Up
     RenderOptions options;
     std::tie(options.width, options.height) = parse_size(a.view.size);
     options.samples = a.spp, options.seed = a.seed, options.scale.top = a.steps_max;
-    options.shading = parse_shading(a.shading);
+    options.shading = a.shading_of_rays();
     options.layers = a.layers, options.counts = a.counts;
     options.refines = a.refines;
     options.footprints = a.footprints || a.cones;

@@ -39,10 +39,12 @@ struct RenderArguments : Common {
 
     bool rasterises() const { return visibility == "raster"; }
     bool follows_paths() const { return shading == "path"; }
+    /// How rays from the eye are shaded; paths, which have light of their own, are given the default.
+    Shading shading_of_rays() const { return named_shading(shading).value_or(Shading::diffuse); }
     bool uses_beams() const { return visibility == "beams"; }
     bool uses_cones() const { return cones || light_degrees > 0; }
     /// Whether the picture needs an index: for its rays from the eye, through surfaces, or to the light.
-    bool needs_index() const { return !rasterises() || transparent || is_lit(parse_shading(shading)); }
+    bool needs_index() const { return !rasterises() || transparent || is_lit(shading_of_rays()); }
 };
 
 struct Outcome {

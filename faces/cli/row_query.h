@@ -11,9 +11,8 @@
 
 #include <fmt/format.h>
 
-#include <hedgerow/any_index.h>
+#include <hedgerow/any_question.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/columns.h>
 
 #include "query.h"
 #include "row_stream.h"
@@ -70,52 +69,6 @@ int answer_all(const QueryArguments& a, RowReader<T>& in, const RowPlan& plan,
     report.asked = stream.asked();
     report.unusable = stream.unusable(), report.first_unusable = stream.first_unusable();
     return print_report(a, report);
-}
-
-/// Answers rows by lists. `ask(given, found)` writes the list of one, and `list(item, record)` the columns of
-/// an item.
-template <class Given, class Item, std::floating_point T, class Ask, class List>
-void answer_by_lists(const RowOptions& options, const T* numbers, std::uint64_t first, std::size_t count,
-                     AnsweredRows& answers, Ask ask, List list) {
-    const std::size_t columns = RowsOf<Given>::columns().size();
-    std::vector<Item> found;
-    for (std::size_t i = 0; i < count; ++i) {
-        const T* const row = numbers + i * columns;
-        if (!RowsOf<Given>::usable(row)) {
-            answers.refuse(first + i);
-            continue;
-        }
-        ask(RowsOf<Given>::of(row, options), found);
-        for (const auto& item : found)
-            append_record(answers.records, [&](Record& record) {
-                record("query", first + i);
-                list(item, record);
-            });
-        answers.rows += found.size();
-    }
-}
-/// Answers rows by one row each. `ask_all(given, found)` answers them together; `list(answer, record)` writes
-/// the columns of an answer, which is `none` where a row can have none.
-template <class Given, class Answer, std::floating_point T, class AskAll, class List>
-void answer_by_rows(const RowOptions& options, const T* numbers, std::uint64_t first, std::size_t count,
-                    AnsweredRows& answers, const Answer& none, AskAll ask_all, List list) {
-    const std::size_t columns = RowsOf<Given>::columns().size();
-    const auto row = [&](std::size_t i) { return numbers + i * columns; };
-    // The thread keeps this memory for its next rows.
-    static thread_local std::vector<Given> given;
-    static thread_local std::unique_ptr<Answer[]> found;
-    if (given.size() < count) found.reset(new Answer[count]);
-    given.resize(std::max(given.size(), count));
-    for (std::size_t i = 0; i < count; ++i) given[i] = RowsOf<Given>::of(row(i), options);
-    ask_all(std::span<const Given>(given.data(), count), std::span<Answer>(found.get(), count));
-    RecordSize size;
-    list(none, size);
-    append_records(answers.records, count, size.bytes, [&](std::size_t i, Record& record) {
-        const bool usable = RowsOf<Given>::usable(row(i));
-        if (!usable) answers.refuse(first + i);
-        list(usable ? found[i] : none, record);
-    });
-    answers.rows = count;
 }
 
 }  // namespace hedgerow::cli

@@ -9,24 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include <hedgerow/any_question.h>
 #include <hedgerow/io/rows.h>
 #include <hedgerow/parallel/executor.h>
 
 #include "progress_line.h"
 
 namespace hedgerow::cli {
-
-/// The answers to some rows.
-struct AnsweredRows {
-    std::string records;         // append_record
-    std::uint64_t rows = 0;      // how many records
-    std::uint64_t unusable = 0;  // rows read that can have no answer
-    std::uint64_t first_unusable = 0;
-
-    void refuse(std::uint64_t row) {
-        if (unusable++ == 0) first_unusable = row;
-    }
-};
 
 /// How rows are cut. A piece is answered by one thread at once.
 struct RowCut {

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include <hedgerow/any_solid.h>
@@ -17,9 +19,16 @@
 #include <hedgerow/primitives/sphere_set.h>
 #include <hedgerow/surface.h>
 #include <hedgerow/trace.h>
+#include <hedgerow/walks/any_hierarchy.h>
 #include <hedgerow/walks/virtual_query.h>
 
 namespace hedgerow {
+
+/// The sets that an AnyIndex may be built over, in space and in the plane.
+template <std::floating_point T, int D>
+using SetOfIndex = typename std::conditional_t<
+    D == 3, std::type_identity<std::variant<TriangleMeshView<T>, PointCloudView<T, D>, SphereSetView<T, D>>>,
+    std::type_identity<std::variant<SegmentSetView<T>, PointCloudView<T, D>>>>::type;
 
 /// An index of any structure over any primitives: the functions of ask.h take it as they take an Index. A
 /// question without filter and visits costs one virtual call, inside which the primitives are known at
@@ -53,18 +62,39 @@ public:
     const AnyIndex& primitives() const { return *this; }
     /// The id that hits report for a primitive.
     virtual std::uint32_t id(PrimitiveId element) const = 0;
+    /// Whether the structure holds a primitive, of which some may have been erased.
+    virtual bool holds(PrimitiveId element) const = 0;
 
-    /// The answer of Q(*this, arguments...) after a walk. Each candidate costs a virtual call. Throws
-    /// InputError where the structure does not answer queries of this probe.
+    /// The answer of Q(*this, arguments...): of what has a virtual function below, if nothing is counted, by
+    /// that; else after a walk, where each candidate costs a virtual call. Throws InputError where the
+    /// structure does not answer queries of this probe.
     template <AnsweringQuery Q, class Count, class... Arguments>
     auto answer(Count& count, Arguments&&... arguments) const {
-        return in_ieee_mode([&] {
-            Q query(*this, arguments...);
-            Virtual<Q> asked(query);
-            detail::count_virtually<typename Q::Probe>(count, [&](auto& counted) { walk(asked, counted); });
-            return query.answer();
-        });
+        if constexpr (by_virtual_function<Q, Count, std::remove_reference_t<Arguments>...>)
+            return EngineFor<Q, AnyIndex>(*this).answer(arguments...);
+        else
+            return in_ieee_mode([&] {
+                Q query(*this, arguments...);
+                Virtual<Q> asked(query);
+                detail::count_virtually<typename Q::Probe>(count,
+                                                           [&](auto& counted) { walk(asked, counted); });
+                return query.answer();
+            });
     }
+    /// The same of a query of a region. Shapes that have no walk of their own share one.
+    template <template <class, class> class Q, class R, class Count, class... Arguments>
+    auto answer_region(const R& region, Count& count, Arguments&&... arguments) const {
+        using Query = Q<AnyIndex, R>;
+        if constexpr (by_virtual_function<Query, Count, const R, std::remove_reference_t<Arguments>...> ||
+                      std::same_as<R, Box<T, D>> || std::same_as<R, AnyRegion<T, D>>)
+            return answer<Query>(count, region, arguments...);
+        else
+            return answer_region<Q>(AnyRegion<T, D>(region), count, arguments...);
+    }
+    /// The set that the index was built over: a view of it.
+    virtual SetOfIndex<T, D> set() const = 0;
+    /// The structure as nested boxes, for walks over pairs (walks/pairs.h; any_pairs.h asks the questions).
+    virtual AnyHierarchy<T, D> hierarchy() const = 0;
 
     /// Whether the structure answers ray queries.
     virtual bool answers_rays() const = 0;
@@ -105,15 +135,18 @@ public:
     /// Like `insert`, `erase` and `refit` of Index, on the borrowed primitives in the caller's arrays.
     virtual bool insert(PrimitiveId id) = 0;
     virtual bool erase(PrimitiveId id) = 0;
-    virtual double refit(Threads threads = {}) = 0;
+    virtual Drift refit(Threads threads = {}) = 0;
 
-    // What the functions of ask/ ask: what is answered by itself, without filters and visits.
+    // What is answered by itself, without filters and visits.
 
+    virtual void ray_uncounted(const Ray<T, D>& ray, Hit<T>& closest) const = 0;
+    virtual void ray_uncounted(const Ray<T, D>& ray, bool& any) const = 0;
     virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, Hit<T>* hits, Executor& executor) const = 0;
     virtual KernelUse rays_uncounted(const RayArray<T, D>& rays, bool* hits, Executor& executor) const = 0;
     virtual std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const = 0;
     virtual std::size_t first_hits_uncounted(const Ray<T, D>& ray, std::span<Hit<T>> hits,
                                              const PlaceOfHit<T>& after) const = 0;
+    virtual Near<T, D> closest_point_uncounted(const Vec<T, D>& point, const NearLimits<T>& limits) const = 0;
     virtual void closest_points_uncounted(const Strided<Vec<T, D>>& points, std::span<Near<T, D>> found,
                                           const PointOptions& options) const = 0;
     virtual std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearLimits<T>& limits,
@@ -132,22 +165,6 @@ public:
     virtual std::size_t count_uncounted(const Sphere<T, D>& region) const = 0;
     virtual bool any_uncounted(const Box<T, D>& region) const = 0;
     virtual bool any_uncounted(const Sphere<T, D>& region) const = 0;
-    /// Answers a query of a region: of boxes and balls by the structure, where nothing is counted. Other
-    /// shapes share one walk.
-    template <template <class, class> class Q, class R, class Count, class... Arguments>
-    auto answer_region(const R& region, Count& count, Arguments&&... arguments) const {
-        constexpr bool by_structure = std::same_as<Count, const NoVisits> &&
-                                      (std::same_as<R, Box<T, D>> || std::same_as<R, Sphere<T, D>>);
-        using Query = Q<AnyIndex, R>;
-        if constexpr (by_structure && std::same_as<Query, Overlapping<AnyIndex, R>>)
-            return list_uncounted(region, arguments...);
-        else if constexpr (by_structure && std::same_as<Query, OverlapCount<AnyIndex, R>>)
-            return count_uncounted(region);
-        else if constexpr (by_structure)
-            return any_uncounted(region);
-        else
-            return ask_region<Q>(region, count, arguments...);
-    }
 
 protected:
     /// To be called where the primitives change.
@@ -162,13 +179,117 @@ private:
     mutable std::mutex making_solid_;
     mutable std::unique_ptr<const AnySolid<T, D>> solid_;
 
-    template <template <class, class> class Q, class R, class Count, class... Arguments>
-    auto ask_region(const R& region, Count& count, Arguments&&... arguments) const {
-        if constexpr (!std::same_as<R, Box<T, D>> && !std::same_as<R, AnyRegion<T, D>>)
-            return ask_region<Q>(AnyRegion<T, D>(region), count, arguments...);
-        else
-            return answer<Q<AnyIndex, R>>(count, region, arguments...);
+    template <class Q, class Count, class... Arguments>
+    static constexpr bool by_virtual_function =
+        std::same_as<Count, const NoVisits>&& AnswersOne<EngineFor<Q, AnyIndex>, Arguments...>;
+};
+
+namespace detail {
+template <class R, class T, int D>
+concept BoxOrBall = std::same_as<R, Box<T, D>> || std::same_as<R, Sphere<T, D>>;
+
+template <std::floating_point T, int D>
+class AnyEngine {
+public:
+    explicit AnyEngine(const AnyIndex<T, D>& index) : index_(index) {}
+    explicit operator bool() const { return true; }
+
+protected:
+    const AnyIndex<T, D>& index() const { return index_; }
+
+private:
+    const AnyIndex<T, D>& index_;
+};
+/// Closest or any hits.
+template <std::floating_point T, int D, class Answer>
+struct AnyEngineOfRays : AnyEngine<T, D> {
+    using AnyEngine<T, D>::AnyEngine;
+    Answer answer(const Ray<T, D>& ray, const KeepAll& = {}) const {
+        Answer found;
+        this->index().ray_uncounted(ray, found);
+        return found;
     }
+    KernelUse answer_batch(const RayArray<T, D>& rays, Answer* answers, const auto& how) const {
+        return this->index().rays_uncounted(rays, answers, how.executor);
+    }
+};
+}  // namespace detail
+
+// What an AnyIndex has virtual functions for comes through the door for engines (walks/engine.h).
+
+template <std::floating_point T, int D>
+struct EngineFor<ClosestHit<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngineOfRays<T, D, Hit<T>> {
+    using detail::AnyEngineOfRays<T, D, Hit<T>>::AnyEngineOfRays;
+};
+template <std::floating_point T, int D>
+struct EngineFor<AnyHit<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngineOfRays<T, D, bool> {
+    using detail::AnyEngineOfRays<T, D, bool>::AnyEngineOfRays;
+};
+template <std::floating_point T, int D>
+struct EngineFor<AllHits<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    std::size_t answer(const Ray<T, D>& ray, std::vector<Hit<T>>& hits, const KeepAll& = {}) const {
+        return this->index().all_hits_uncounted(ray, hits);
+    }
+};
+template <std::floating_point T, int D>
+struct EngineFor<FirstHits<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    std::size_t answer(const Ray<T, D>& ray, std::span<Hit<T>> hits, const PlaceOfHit<T>& after,
+                       const KeepAll& = {}) const {
+        return this->index().first_hits_uncounted(ray, hits, after);
+    }
+};
+template <std::floating_point T, int D>
+struct EngineFor<ClosestPoint<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    Near<T, D> answer(const Vec<T, D>& point, const NearLimits<T>& limits) const {
+        return this->index().closest_point_uncounted(point, limits);
+    }
+    void answer_batch(const Strided<Vec<T, D>>& points, Near<T, D>* found, const auto& how) const {
+        this->index().closest_points_uncounted(points, {found, points.size()}, how.options);
+    }
+};
+template <std::floating_point T, int D>
+struct EngineFor<Nearest<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    std::size_t answer(const Vec<T, D>& point, std::size_t k, const NearLimits<T>& limits,
+                       std::vector<Near<T, D>>& found) const {
+        return this->index().nearest_uncounted(point, k, limits, found);
+    }
+    void answer_lists(const Strided<Vec<T, D>>& points, std::size_t k, NearLists<T>& lists,
+                      const auto& how) const {
+        this->index().nearest_uncounted(points, k, lists, how.options);
+    }
+};
+template <std::floating_point T, int D>
+struct EngineFor<Within<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    std::size_t answer(const Vec<T, D>& point, const NearLimits<T>& limits,
+                       std::vector<Near<T, D>>& found) const {
+        return this->index().within_uncounted(point, limits, found);
+    }
+    void answer_lists(const Strided<Vec<T, D>>& points, NearLists<T>& lists, const auto& how) const {
+        this->index().within_uncounted(points, lists, how.options);
+    }
+};
+template <std::floating_point T, int D, detail::BoxOrBall<T, D> R>
+struct EngineFor<Overlapping<AnyIndex<T, D>, R>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    std::size_t answer(const R& region, std::vector<PrimitiveId>& found,
+                       Finds finds = Finds::overlapping) const {
+        return this->index().list_uncounted(region, found, finds);
+    }
+};
+template <std::floating_point T, int D, detail::BoxOrBall<T, D> R>
+struct EngineFor<OverlapCount<AnyIndex<T, D>, R>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    std::size_t answer(const R& region) const { return this->index().count_uncounted(region); }
+};
+template <std::floating_point T, int D, detail::BoxOrBall<T, D> R>
+struct EngineFor<AnyOverlap<AnyIndex<T, D>, R>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
+    using detail::AnyEngine<T, D>::AnyEngine;
+    bool answer(const R& region) const { return this->index().any_uncounted(region); }
 };
 
 struct StructureInfo {

@@ -7,7 +7,7 @@ namespace hedgerow {
 
 namespace detail {
 
-/// Answers a query Q of one ray after the other: by a kernel that is prepared once, or as `Index::answer`.
+/// Answers a query Q of one ray after the other: by an engine that is prepared once, or as `Index::answer`.
 template <class Q, class I>
 class SingleRays {
 public:
@@ -20,22 +20,22 @@ private:
     const I& index_;
 };
 template <class Q, class I>
-requires requires(const Kernel<Q, I>& kernel, const I& index) {
-    kernel.single(index);
+requires requires(const EngineFor<Q, I>& engine) {
+    engine.single();
 }
 class SingleRays<Q, I> {
 public:
-    explicit SingleRays(const I& index) : index_(index), answer_(kernel_.single(index)) {}
+    explicit SingleRays(const I& index) : index_(index), engine_(index), answer_(engine_.single()) {}
     auto operator()(const RayOf<I>& ray) const {
-        if (kernel_) [[likely]]
+        if (engine_) [[likely]]
             return answer_(ray);
         return index_.template answer<Q>(no_visits, ray, KeepAll{});
     }
 
 private:
     const I& index_;
-    const Kernel<Q, I> kernel_;
-    const decltype(Kernel<Q, I>().single(std::declval<const I&>())) answer_;
+    const EngineFor<Q, I> engine_;
+    const decltype(std::declval<const EngineFor<Q, I>&>().single()) answer_;
 };
 
 }  // namespace detail

@@ -23,6 +23,8 @@ struct RowOptions {
     double radius = std::numeric_limits<double>::infinity();
     /// How many times as far away as the exact answer an answer may be, at least 1 (PointOptions).
     double factor = 1;
+    /// Of what is asked of a solid: how it is made.
+    SolidOptions solid = {};
 
     /// The options of a question of a point. The radius is rounded to T.
     template <std::floating_point T>
@@ -72,13 +74,14 @@ struct PointRows {
 
 /// How a row of numbers becomes what is given to a question. `columns` says which numbers a row has; `usable`
 /// whether they are such that there can be an answer (none is NaN, and places are finite and within
-/// `largest_coordinate`); `of` makes the query. `takes_count` and `takes_radius` say which options it reads.
+/// `largest_coordinate`); `of` makes the query. `needs_count` and `needs_radius` say which options it cannot
+/// do without.
 template <class Given>
 struct RowsOf;
 
 template <std::floating_point T, int D>
 struct RowsOf<Ray<T, D>> {
-    static constexpr bool takes_count = false, takes_radius = false;
+    static constexpr bool needs_count = false, needs_radius = false;
     /// An origin, a direction, and an interval that may be left out.
     static InputColumns columns() {
         InputColumns all;
@@ -98,26 +101,26 @@ struct RowsOf<Ray<T, D>> {
 /// A ray, of which the first hits are asked.
 template <std::floating_point T, int D>
 struct RowsOf<HitsAlong<T, D>> : RowsOf<Ray<T, D>> {
-    static constexpr bool takes_count = true;
+    static constexpr bool needs_count = true;
     static HitsAlong<T, D> of(const T* row, const RowOptions& o) {
         return {RowsOf<Ray<T, D>>::of(row, o), o.count};
     }
 };
 template <std::floating_point T, int D>
 struct RowsOf<Vec<T, D>> : detail::PointRows<T, D> {
-    static constexpr bool takes_count = false, takes_radius = false;
+    static constexpr bool needs_count = false, needs_radius = false;
     static Vec<T, D> of(const T* row, const RowOptions&) { return detail::vec_at<D>(row); }
 };
 template <std::floating_point T, int D>
 struct RowsOf<Neighbours<T, D>> : detail::PointRows<T, D> {
-    static constexpr bool takes_count = true, takes_radius = false;
+    static constexpr bool needs_count = true, needs_radius = false;
     static Neighbours<T, D> of(const T* row, const RowOptions& o) {
         return {detail::vec_at<D>(row), o.count, o.near<T>()};
     }
 };
 template <std::floating_point T, int D>
 struct RowsOf<Ball<T, D>> : detail::PointRows<T, D> {
-    static constexpr bool takes_count = false, takes_radius = true;
+    static constexpr bool needs_count = false, needs_radius = true;
     static Ball<T, D> of(const T* row, const RowOptions& o) {
         return {detail::vec_at<D>(row), NearLimits<T>(o.near<T>()).distance2};
     }
@@ -125,14 +128,14 @@ struct RowsOf<Ball<T, D>> : detail::PointRows<T, D> {
 /// A solid ball, as a region.
 template <std::floating_point T, int D>
 struct RowsOf<Sphere<T, D>> : detail::PointRows<T, D> {
-    static constexpr bool takes_count = false, takes_radius = true;
+    static constexpr bool needs_count = false, needs_radius = true;
     static Sphere<T, D> of(const T* row, const RowOptions& o) {
         return {detail::vec_at<D>(row), rounded_to<T>(o.radius)};
     }
 };
 template <std::floating_point T, int D>
 struct RowsOf<Box<T, D>> {
-    static constexpr bool takes_count = false, takes_radius = false;
+    static constexpr bool needs_count = false, needs_radius = false;
     /// Both corners. They may be infinite; a box whose low corner is not below its high one is empty.
     static InputColumns columns() {
         InputColumns all;
@@ -149,6 +152,40 @@ struct RowsOf<Box<T, D>> {
         return {detail::vec_at<D>(row), detail::vec_at<D>(row + D)};
     }
 };
+
+/// Questions of points that take PointOptions beside the points of a batch.
+template <class Question, class T, int D>
+concept TakesPointOptions = requires(const AnyIndex<T, D>& index, std::span<const Vec<T, D>> given,
+                                     std::span<typename Question::Answer> found) {
+    Question::ask_all(index, given, found, {}, PointOptions());
+};
+
+/// Lists the options that a question of rows takes (base/option.h), of which it needs the first where its
+/// RowsOf says so.
+template <class Question, std::floating_point T, int D, class Option>
+void list_row_options(RowOptions& o, Option& option) {
+    using Given = typename Question::Given;
+    using Rows = RowsOf<Given>;
+    constexpr double any = std::numeric_limits<double>::infinity();
+    constexpr bool near = TakesPointOptions<Question, T, D> || std::same_as<Given, Neighbours<T, D>>;
+    if constexpr (Rows::needs_count)
+        option("count", o.count, 1, std::numeric_limits<std::size_t>::max(), "how many to find, at least 1");
+    if constexpr (Rows::needs_radius || near)
+        option("radius", o.radius, 0, any,
+               Rows::needs_radius ? "a distance, at least 0" : "nothing is found beyond this distance");
+    if constexpr (near)
+        option("factor", o.factor, 1, any,
+               Question::name == "farthest-point"
+                   ? "how many times less far away than the exact answer one may be"
+                   : "how many times as far away as the exact answer one may be");
+    if constexpr (AsksSolid<Question>) {
+        // Some are told by some of the ways alone, whose names are those of SideBy.
+        std::span<const std::string_view> ways = side_by_names;
+        if constexpr (requires { Question::ways; }) ways = Question::ways;
+        option("by", o.solid.by, ways, "how insides are told");
+        option("error", o.solid.error, 1e-9, 1, "how far winding numbers by expansion may be off");
+    }
+}
 
 /// Calls f(name, number) for each column of an answer.
 template <std::floating_point T, class F>

@@ -12,6 +12,7 @@
 #include <hedgerow/engine/ray_kernels.h>
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/structures/references.h>
+#include <hedgerow/walks/engine.h>
 #include <hedgerow/walks/structure.h>
 
 namespace hedgerow {
@@ -22,6 +23,18 @@ concept Refittable = requires(S& s, const ReferenceList<typename P::Scalar, P::d
                               Executor& executor) {
     s.refit(references, executor);
     { s.drift() } -> std::convertible_to<double>;
+};
+
+/// How far a structure that was fitted to moved primitives has drifted from one that is built over them: the
+/// SAH cost of a query, as a multiple of the cost when it was built.
+struct Drift {
+    double cost = 1;
+
+    operator double() const { return cost; }  // NOLINT(google-explicit-constructor): it is that number
+    /// The rule: build again once a query costs two fifths more than when the structure was built. Sooner
+    /// pays where many queries are asked between two refits, later where few are: what is lost is (cost − 1)
+    /// of the time of these queries.
+    bool build_again() const { return cost > 1.4; }
 };
 
 namespace detail {
@@ -121,15 +134,18 @@ public:
     bool erase(const Set& set, PrimitiveId id) requires ChangesOneByOne<S, P> {
         return change(set, id, [&](const P& now) { return structure_.erase(now, id); });
     }
-    /// Fits the structure to borrowed primitives that moved within the same arrays. Returns how far the
-    /// structure's quality has drifted, as a multiple of its cost when it was built. O(n). No query may run
-    /// meanwhile. Throws InputError as `build` does; the index is then unchanged, and valid for the
-    /// primitives before they moved. Exceptions of the executor reach the caller too: from half way on, only
-    /// after the refit is finished.
-    double refit(Threads threads = {}) requires(Refittable<S, P>) { return refit(primitives_, threads); }
+    /// Fits the structure to borrowed primitives that moved within the same arrays. O(n). Returns how far the
+    /// structure's quality has drifted, and whether to build it again:
+    ///
+    ///   if (index.refit().build_again()) index = build(mesh);
+    ///
+    /// No query may run meanwhile. Throws InputError as `build` does; the index is then unchanged, and valid
+    /// for the primitives before they moved. Exceptions of the executor reach the caller too: from half way
+    /// on, only after the refit is finished.
+    Drift refit(Threads threads = {}) requires(Refittable<S, P>) { return refit(primitives_, threads); }
     /// Fits the structure to moved primitives in other arrays, which the index then borrows. They must be as
     /// many as before, each under its old id; throws InputError for another number.
-    double refit(const P& moved, Threads workers = {}) requires(Refittable<S, P>) {
+    Drift refit(const P& moved, Threads workers = {}) requires(Refittable<S, P>) {
         Executor& executor = workers.over(moved.size());
         if (moved.size() != size())
             throw InputError("a refit is for as many primitives as the index was built over: " +
@@ -164,7 +180,7 @@ public:
                 take(serial_executor());
                 throw;
             }
-            return structure_.drift();
+            return Drift{static_cast<double>(structure_.drift())};
         });
     }
 
@@ -183,15 +199,16 @@ public:
         NoVisits none;
         ask(query, none);
     }
-    /// The answer of Q(*this, arguments...): by a kernel if there is one and nothing is counted, else by a
-    /// walk. The query is constructed in IEEE mode too, since its probe computes.
+    /// The answer of Q(*this, arguments...): by an engine (walks/engine.h) if there is one and nothing is
+    /// counted, else by a walk. The query is constructed in IEEE mode too, since its probe computes.
     template <AnsweringQuery Q, class Count, class... Arguments>
     auto answer(Count& count, Arguments&&... arguments) const {
         static_assert(AnswersProbe<S, typename Q::Probe>,
                       "this structure does not answer queries of this probe");
         return in_ieee_mode([&] {
-            if constexpr (HasKernel<Q, Index> && std::same_as<Count, const NoVisits>)
-                if (const Kernel<Q, Index> kernel; kernel) return kernel.answer(*this, arguments...);
+            if constexpr (std::same_as<Count, const NoVisits> &&
+                          AnswersOne<EngineFor<Q, Index>, std::remove_reference_t<Arguments>...>)
+                if (const EngineFor<Q, Index> engine(*this); engine) return engine.answer(arguments...);
             Q query(*this, arguments...);
             walk(query, count);
             return query.answer();

@@ -41,15 +41,19 @@ inline PointOptions in_this_thread(PointOptions options) {
 }
 }  // namespace detail
 
-/// A question: its name; the words for it in a sentence; what is given to it, and what it answers, in memory
-/// that the next answer may use again. A question has either `ask`, which asks an index once, or `ask_all`,
-/// which asks many times in one call. Visits are added to those given; an `ask` without them is faster on the
-/// engine. `column` names an answer that is a number or a truth value; columns.h has the columns of others.
+/// A question: its name; the words for it in a sentence; what it answers (`meaning`); the functions of ask.h
+/// that ask it once and many times; what is given to it, and what it answers, in memory that the next answer
+/// may use again. `variant` tells questions of one name apart: "feature" tells more, "radius" is asked of
+/// balls. A question has either `ask`, which asks an index once, or `ask_all`, which asks many times in one
+/// call. Visits are added to those given; without them it is faster on the engine. `column` names an answer
+/// that is a number or a truth value; columns.h has the columns of others, and those of what is given.
 /// `of_facets` says that only triangles in space and segments in the plane answer. What is asked of the solid
-/// of an index has `ask_solid` too. Questions of one name differ by what is given to them or what they tell.
+/// of an index has `ask_solid` too. any_question.h has all that is said here behind one type.
 template <std::floating_point T, int D>
 struct AskClosestHit {
     static constexpr std::string_view name = "closest-hit", words = "closest hit";
+    static constexpr std::string_view meaning = "the hit of least t in [t_min, t_max]",
+                                      function = "closest_hit", batch = "closest_hits";
     using Given = Ray<T, D>;
     using Answer = Hit<T>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,
@@ -60,6 +64,8 @@ struct AskClosestHit {
 template <std::floating_point T, int D>
 struct AskAnyHit {
     static constexpr std::string_view name = "any-hit", words = "any hit", column = "hit";
+    static constexpr std::string_view meaning = "whether anything is hit in [t_min, t_max]",
+                                      function = "any_hit", batch = "any_hits";
     using Given = Ray<T, D>;
     using Answer = bool;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,
@@ -70,6 +76,8 @@ struct AskAnyHit {
 template <std::floating_point T, int D>
 struct AskLastHit {
     static constexpr std::string_view name = "last-hit", words = "last hit";
+    static constexpr std::string_view meaning = "the hit of greatest t in [t_min, t_max]",
+                                      function = "last_hit", batch = "last_hits";
     using Given = Ray<T, D>;
     using Answer = Hit<T>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> rays, std::span<Answer> hits,
@@ -80,30 +88,25 @@ struct AskLastHit {
 template <std::floating_point T, int D>
 struct AskAllHits {
     static constexpr std::string_view name = "all-hits", words = "all hits";
+    static constexpr std::string_view
+        meaning = "every hit in [t_min, t_max], each primitive once, by (t, primitive)",
+        function = "all_hits", batch = "all_hits";
     using Given = Ray<T, D>;
     using Answer = std::vector<Hit<T>>;
-    static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits, Visits& visits) {
-        all_hits(index, ray, hits, KeepAll(), visits);
-    }
-    static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits) {
-        all_hits(index, ray, hits);
+    template <class Count = const NoVisits>
+    static void ask(const AnyIndex<T, D>& index, const Given& ray, Answer& hits, Count& count = no_visits) {
+        all_hits(index, ray, hits, KeepAll(), count);
     }
 };
 template <std::floating_point T, int D>
 struct AskFirstHits {
     static constexpr std::string_view name = "first-hits", words = "first hits";
+    static constexpr std::string_view meaning = "the first of all hits, by (t, primitive)",
+                                      function = "first_hits", batch = "first_hits";
     using Given = HitsAlong<T, D>;
     using Answer = std::vector<Hit<T>>;
-    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Visits& visits) {
-        find(index, given, hits, visits);
-    }
-    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits) {
-        find(index, given, hits, no_visits);
-    }
-
-private:
-    template <class Count>
-    static void find(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Count& count) {
+    template <class Count = const NoVisits>
+    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& hits, Count& count = no_visits) {
         hits.resize(std::min(given.k, index.size()));  // a ray has no more hits than there are primitives
         hits.resize(first_hits(index, given.ray, std::span(hits), {.after = given.after}, KeepAll(), count));
     }
@@ -111,6 +114,8 @@ private:
 template <std::floating_point T, int D>
 struct AskClosestPoint {
     static constexpr std::string_view name = "closest-point", words = "closest point";
+    static constexpr std::string_view meaning = "the closest point of any primitive",
+                                      function = "closest_point", batch = "closest_points";
     using Given = Vec<T, D>;
     using Answer = Near<T, D>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
@@ -121,6 +126,8 @@ struct AskClosestPoint {
 template <std::floating_point T, int D>
 struct AskFarthestPoint {
     static constexpr std::string_view name = "farthest-point", words = "farthest point";
+    static constexpr std::string_view meaning = "the farthest point of any primitive",
+                                      function = "farthest_point", batch = "farthest_points";
     using Given = Vec<T, D>;
     using Answer = Near<T, D>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
@@ -151,7 +158,11 @@ struct NearAndFeature {
 template <std::floating_point T, int D>
 struct AskFeature {
     static constexpr std::string_view name = "closest-point", words = "closest point with its feature";
-    static constexpr bool of_facets = true, tells_features = true;
+    static constexpr std::string_view meaning =
+                                          "the closest point, and the face, edge or vertex that it is on",
+                                      function = "feature", batch = "closest_points";
+    static constexpr std::string_view variant = "feature";
+    static constexpr bool of_facets = true;
     using Given = Vec<T, D>;
     using Answer = NearAndFeature<T, D>;
     static void ask_all(const AnyIndex<T, D>& index, std::span<const Given> points, std::span<Answer> found,
@@ -167,26 +178,27 @@ struct AskFeature {
 template <std::floating_point T, int D>
 struct AskNearest {
     static constexpr std::string_view name = "nearest", words = "nearest";
+    static constexpr std::string_view meaning = "the nearest primitives, by (distance, primitive)",
+                                      function = "nearest", batch = "nearest";
     using Given = Neighbours<T, D>;
     using Answer = std::vector<Near<T, D>>;
-    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found, Visits& visits) {
-        nearest(index, given.point, given.k, found, given.options, KeepAll(), visits);
-    }
-    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found) {
-        nearest(index, given.point, given.k, found, given.options);
+    template <class Count = const NoVisits>
+    static void ask(const AnyIndex<T, D>& index, const Given& given, Answer& found,
+                    Count& count = no_visits) {
+        nearest(index, given.point, given.k, found, given.options, KeepAll(), count);
     }
 };
 template <std::floating_point T, int D>
 struct AskWithin {
     static constexpr std::string_view name = "within", words = "within a radius";
+    static constexpr std::string_view meaning = "the primitives within a distance, by (distance, primitive)",
+                                      function = "within", batch = "within";
     using Given = Ball<T, D>;
     using Answer = std::vector<Near<T, D>>;
-    static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found, Visits& visits) {
+    template <class Count = const NoVisits>
+    static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found, Count& count = no_visits) {
         within(index, ball.center, PointOptions::anywhere, found, {.radius2 = ball.radius2}, KeepAll(),
-               visits);
-    }
-    static void ask(const AnyIndex<T, D>& index, const Given& ball, Answer& found) {
-        within(index, ball.center, PointOptions::anywhere, found, {.radius2 = ball.radius2});
+               count);
     }
 };
 
@@ -197,57 +209,69 @@ template <class R>
 inline constexpr bool is_ball = false;
 template <std::floating_point T, int D>
 inline constexpr bool is_ball<Sphere<T, D>> = true;
+template <class R>
+inline constexpr std::string_view variant_of_region = is_ball<R> ? "radius" : "";
 }  // namespace detail
 
 template <Region R>
 struct AskOverlap {
+    static constexpr std::string_view variant = detail::variant_of_region<R>;
     static constexpr std::string_view name = "overlap",
                                       words = detail::is_ball<R> ? "ball overlap" : "box overlap";
+    static constexpr std::string_view meaning = "the primitives that share a point with a region",
+                                      function = "overlapping", batch = "overlapping";
     using Given = R;
     using Answer = std::vector<PrimitiveId>;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
-    static void ask(const Asked& index, const R& region, Answer& found, Visits& visits) {
-        overlapping(index, region, found, {}, visits);
+    template <class Count = const NoVisits>
+    static void ask(const Asked& index, const R& region, Answer& found, Count& count = no_visits) {
+        overlapping(index, region, found, {}, count);
     }
-    static void ask(const Asked& index, const R& region, Answer& found) { overlapping(index, region, found); }
 };
 template <Region R>
 struct AskContained {
+    static constexpr std::string_view variant = detail::variant_of_region<R>;
     static constexpr std::string_view name = "contained", words = detail::is_ball<R> ? "contained in a ball"
                                                                                      : "contained in a box";
+    static constexpr std::string_view meaning = "the primitives that lie in a region wholly",
+                                      function = "contained", batch = "contained";
     using Given = R;
     using Answer = std::vector<PrimitiveId>;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
-    static void ask(const Asked& index, const R& region, Answer& found, Visits& visits) {
-        contained(index, region, found, {}, visits);
+    template <class Count = const NoVisits>
+    static void ask(const Asked& index, const R& region, Answer& found, Count& count = no_visits) {
+        contained(index, region, found, {}, count);
     }
-    static void ask(const Asked& index, const R& region, Answer& found) { contained(index, region, found); }
 };
 template <Region R>
 struct AskCount {
+    static constexpr std::string_view variant = detail::variant_of_region<R>;
     static constexpr std::string_view name = "count", column = "count",
                                       words = detail::is_ball<R> ? "count in a ball" : "count in a box";
+    static constexpr std::string_view meaning = "how many primitives share a point with a region",
+                                      function = "overlap_count", batch = "overlap_counts";
     using Given = R;
     using Answer = std::uint64_t;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
-    static void ask(const Asked& index, const R& region, Answer& count, Visits& visits) {
-        count = overlap_count(index, region, {}, visits);
-    }
-    static void ask(const Asked& index, const R& region, Answer& count) {
-        count = overlap_count(index, region);
+    template <class Count = const NoVisits>
+    static void ask(const Asked& index, const R& region, Answer& found, Count& count = no_visits) {
+        found = overlap_count(index, region, {}, count);
     }
 };
 template <Region R>
 struct AskAnyOverlap {
+    static constexpr std::string_view variant = detail::variant_of_region<R>;
     static constexpr std::string_view name = "any-overlap", column = "overlaps",
                                       words = detail::is_ball<R> ? "any in a ball" : "any in a box";
+    static constexpr std::string_view meaning = "whether any primitive shares a point with a region",
+                                      function = "any_overlap", batch = "any_overlaps";
     using Given = R;
     using Answer = bool;
     using Asked = AnyIndex<typename R::Scalar, R::dimension>;
-    static void ask(const Asked& index, const R& region, Answer& any, Visits& visits) {
-        any = any_overlap(index, region, {}, visits);
+    template <class Count = const NoVisits>
+    static void ask(const Asked& index, const R& region, Answer& any, Count& count = no_visits) {
+        any = any_overlap(index, region, {}, count);
     }
-    static void ask(const Asked& index, const R& region, Answer& any) { any = any_overlap(index, region); }
 };
 
 // The questions of the solid whose surface the primitives are.
@@ -267,6 +291,9 @@ struct AskOfSolid {
 template <std::floating_point T, int D>
 struct AskSide : AskOfSolid<AskSide<T, D>, T, D, std::int8_t> {
     static constexpr std::string_view name = "side", words = "side of a surface", column = "side";
+    static constexpr std::string_view
+        meaning = "whether a point is outside (-1), on (0) or inside (1) of the surface",
+        function = "side", batch = "sides";
     static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points,
                           std::span<std::int8_t> found, std::span<Visits> visits = {}) {
         const Scratch<std::vector<Side>> kept;
@@ -281,6 +308,10 @@ template <std::floating_point T, int D>
 struct AskWindingNumber : AskOfSolid<AskWindingNumber<T, D>, T, D, double> {
     static constexpr std::string_view name = "winding-number", words = "winding number",
                                       column = "winding_number";
+    static constexpr std::string_view meaning = "how often the surface winds around a point",
+                                      function = "winding_number", batch = "winding_numbers";
+    /// The ways that tell it (SideBy).
+    static constexpr std::string_view ways[] = {"crossings", "expansion"};
     static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points,
                           std::span<double> found, std::span<Visits> visits = {}) {
         winding_numbers(solid, points, found, detail::alone, visits);
@@ -290,6 +321,8 @@ template <std::floating_point T, int D>
 struct AskSignedDistance : AskOfSolid<AskSignedDistance<T, D>, T, D, T> {
     static constexpr std::string_view name = "signed-distance", words = "signed distance",
                                       column = "distance";
+    static constexpr std::string_view meaning = "how far the surface is, negative inside",
+                                      function = "signed_distance", batch = "signed_distances";
     static void ask_solid(const AnySolid<T, D>& solid, std::span<const Vec<T, D>> points, std::span<T> found,
                           std::span<Visits> visits = {}) {
         signed_distances(solid, points, found, detail::alone, visits);
@@ -301,6 +334,14 @@ template <class Question>
 concept AsksMany = requires {
     &Question::ask_all;
 };
+/// The variant of a question among those of its name.
+template <class Question>
+constexpr std::string_view variant_of() {
+    if constexpr (requires { Question::variant; })
+        return Question::variant;
+    else
+        return {};
+}
 
 /// Calls f with each question of a region of type R.
 template <Region R, class F>

@@ -77,8 +77,30 @@ public:
     std::uint32_t id(PrimitiveId element) const override {
         return reported_id(index_.primitives(), element, 0);
     }
+    bool holds(PrimitiveId element) const override {
+        if constexpr (requires { index_.structure().holds(element); })
+            return index_.structure().holds(element);
+        else
+            return element < index_.size();
+    }
     void visit_outline(const OutlineLimits<D>& limits, CellVisitor<D> visit) const override {
         hedgerow::visit_outline(index_.structure(), limits, visit);
+    }
+
+    SetOfIndex<T, D> set() const override {
+        if constexpr (std::convertible_to<P, SetOfIndex<T, D>>)
+            return index_.primitives();
+        else
+            throw InputError("the primitives of this index are of a type that no question of pairs knows");
+    }
+    AnyHierarchy<T, D> hierarchy() const override {
+        if constexpr (is_any)
+            return hierarchy_of(index_.structure(), index_.primitives());
+        else {
+            auto own = hierarchy_of(index_.structure(), index_.primitives());
+            return AnyHierarchy<T, D>(
+                std::make_unique<const HierarchyOf<decltype(own), T, D>>(std::move(own)));
+        }
     }
 
     bool answers_rays() const override {
@@ -87,11 +109,15 @@ public:
         else
             return true;
     }
+    void ray_uncounted(const Ray<T, D>& ray, Hit<T>& closest) const override {
+        closest = closest_hit(index_, ray);
+    }
+    void ray_uncounted(const Ray<T, D>& ray, bool& any) const override { any = any_hit(index_, ray); }
     KernelUse rays_uncounted(const RayArray<T, D>& all, Hit<T>* hits, Executor& executor) const override {
-        return answer_each<ClosestHit>(index_, all, hits, executor, KeepAll());
+        return closest_hits(index_, all, std::span(hits, all.size()), {.threads = executor});
     }
     KernelUse rays_uncounted(const RayArray<T, D>& all, bool* hits, Executor& executor) const override {
-        return answer_each<AnyHit>(index_, all, hits, executor, KeepAll());
+        return any_hits(index_, all, Truths(hits, all.size()), {.threads = executor});
     }
     std::size_t all_hits_uncounted(const Ray<T, D>& ray, std::vector<Hit<T>>& hits) const override {
         return hedgerow::all_hits(index_, ray, hits);
@@ -100,9 +126,12 @@ public:
                                      const PlaceOfHit<T>& after) const override {
         return index_.template answer<FirstHits<P>>(no_visits, ray, hits, after);
     }
+    Near<T, D> closest_point_uncounted(const Vec<T, D>& point, const NearLimits<T>& limits) const override {
+        return index_.template answer<ClosestPoint<P>>(no_visits, point, limits);
+    }
     void closest_points_uncounted(const Strided<Vec<T, D>>& points, std::span<Near<T, D>> found,
                                   const PointOptions& options) const override {
-        hedgerow::closest_points(index_, points, found, options);
+        closest_points(index_, points, found, options);
     }
     std::size_t nearest_uncounted(const Vec<T, D>& point, std::size_t k, const NearLimits<T>& limits,
                                   std::vector<Near<T, D>>& found) const override {
@@ -189,7 +218,7 @@ public:
         else
             refuse("erase " + std::to_string(id));
     }
-    double refit(Threads threads) override {
+    Drift refit(Threads threads) override {
         Any::forget_solid();
         return index_.refit(threads);
     }

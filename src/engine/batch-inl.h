@@ -42,7 +42,7 @@ public:
 
     template <class Answer>
     void answer(Answer* answers) {
-        scene_.filter.keeps == nullptr ? answer_all<false>(answers) : answer_all<true>(answers);
+        scene_.filter.keeps == nullptr ? cast_all<false>(answers) : cast_all<true>(answers);
     }
 
 private:
@@ -55,7 +55,7 @@ private:
     /// Whether there is a filter is a template parameter, since checking it at each leaf makes any hit 3%
     /// slower.
     template <bool filtered, class Answer>
-    void answer_all(Answer* answers) {
+    void cast_all(Answer* answers) {
         int inner = 0, leaf = 0;
         // Start a ray in each slot.
         for (int s = 0; s < slots_; ++s)

@@ -33,19 +33,10 @@ inline constexpr ConeKernels cone_kernels{look_along, share_of};
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::ConeKernels* hedgerow::cone_kernels() {
-    static constexpr KernelTables<ConeKernels> tables = HEDGEROW_KERNEL_TABLES(cone_kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::ConeKernels* hedgerow::cone_kernels() {
-    return nullptr;
-}
-
+HEDGEROW_KERNELS_IN_USE(ConeKernels, cone_kernels)
 #endif

@@ -1,5 +1,7 @@
 /// The kernels of crossings, compiled for each instruction set: Highway's foreach_target includes this file
-/// once for each. The tables of kernels.cpp point to them.
+/// once for each.
+#include <hedgerow/engine/kernels.h>
+
 #if HEDGEROW_HAS_HIGHWAY
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -38,9 +40,9 @@ struct CrossingsBy {
     }
 };
 
-extern const AllCrossingKernels crossing_kernels;  // for kernels.cpp
-const AllCrossingKernels crossing_kernels{{CrossingsBy<WideScene>::one, CrossingsBy<WideScene>::many},
-                                          {CrossingsBy<WideDoubles>::one, CrossingsBy<WideDoubles>::many}};
+inline constexpr AllCrossingKernels crossing_kernels{
+    {CrossingsBy<WideScene>::one, CrossingsBy<WideScene>::many},
+    {CrossingsBy<WideDoubles>::one, CrossingsBy<WideDoubles>::many}};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -62,4 +64,10 @@ template AxisCrossing crossing_of(const AxisRay<3>&, const TriangleBlock<double>
 
 }  // namespace hedgerow::detail
 #endif
+#endif  // HEDGEROW_HAS_HIGHWAY
+
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
+
+HEDGEROW_KERNELS_IN_USE(AllCrossingKernels, crossing_kernels)
 #endif

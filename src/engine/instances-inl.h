@@ -128,7 +128,7 @@ private:
 };
 
 template <int W, Wanted wanted>
-HWY_INLINE auto answer_one_of_instances(const WideInstances& scene, const Ray<float, 3>& asked) {
+HWY_INLINE auto cast_one_among_instances(const WideInstances& scene, const Ray<float, 3>& asked) {
     WideRay ray;
     prepare<W>(reinterpret_cast<const std::byte*>(&asked), scene.tree.bounds, scene.error, ray);
     InstanceLeaves<wanted> leaves(scene, asked, ray);

@@ -1,5 +1,7 @@
 /// The kernels of rays, compiled for each instruction set: Highway's foreach_target includes this file once
-/// for each. The table of each instruction set, with the kernels of the other sources.
+/// for each.
+#include <hedgerow/engine/kernels.h>
+
 #if HEDGEROW_HAS_HIGHWAY
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -22,34 +24,34 @@ struct Answering {
     template <int W>
     struct One {
         static auto answer(const WideScene& scene, const Ray<float, 3>* asked) {
-            return answer_one<W, wanted>(scene, *asked);
+            return cast_one<W, wanted>(scene, *asked);
         }
         static auto answer(const WideInstances& scene, const Ray<float, 3>* asked) {
-            return answer_one_of_instances<W, wanted>(scene, *asked);
+            return cast_one_among_instances<W, wanted>(scene, *asked);
         }
     };
     template <int W>
     struct Many {
         template <class Answer>
         static KernelUse answer(const WideScene& scene, const RayArray<float, 3>* rays, Answer* answers) {
-            return answer_many<W, wanted>(scene, *rays, answers);
+            return cast_many<W, wanted>(scene, *rays, answers);
         }
     };
 };
 
 // Answers one ray in a scene of triangles or of instances.
 template <Wanted wanted, class Answer, class Scene>
-Answer answer_ray(const Scene& scene, const Ray<float, 3>& ray) {
+Answer cast_ray(const Scene& scene, const Ray<float, 3>& ray) {
     return by_width<Answering<wanted>::template One>(scene, &ray);
 }
 template <Wanted wanted, class Answer>
-KernelUse answer_rays(const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
+KernelUse cast_rays(const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
     return by_width<Answering<wanted>::template Many>(scene, &rays, answers);
 }
 
 template <Wanted wanted, class Answer>
-inline constexpr RayKernels<Answer> ray_kernels = {answer_ray<wanted, Answer>, answer_ray<wanted, Answer>,
-                                                   answer_rays<wanted, Answer>};
+inline constexpr RayKernels<Answer> ray_kernels = {cast_ray<wanted, Answer>, cast_ray<wanted, Answer>,
+                                                   cast_rays<wanted, Answer>};
 
 template <int W>
 struct FirstOnes {
@@ -58,43 +60,23 @@ struct FirstOnes {
         return first_hits_of<W>(scene, *ray, hits, *after);
     }
 };
-inline std::size_t answer_first_hits(const WideScene& scene, const Ray<float, 3>& ray,
-                                     std::span<Hit<float>> hits, const PlaceOfHit<float>& after) {
+inline std::size_t find_first_hits(const WideScene& scene, const Ray<float, 3>& ray,
+                                   std::span<Hit<float>> hits, const PlaceOfHit<float>& after) {
     return by_width<FirstOnes>(scene, &ray, hits, &after);
 }
 
-extern const AllPointKernels point_kernels;        // in point_kernels.cpp
-extern const ElementKernels element_kernels;       // in near_element_kernels.cpp
-extern const WindingKernel winding_kernel;         // in winding_kernels.cpp
-extern const AllCrossingKernels crossing_kernels;  // in crossing_kernels.cpp
-
 inline constexpr int best_width = HWY_TARGET == HWY_AVX3 ? 16 : HWY_TARGET == HWY_AVX2 ? 8 : 4;
-inline constexpr WideKernels kernels{best_width,
-                                     ray_kernels<Wanted::closest, Hit<float>>,
-                                     ray_kernels<Wanted::any, bool>,
-                                     answer_first_hits,
-                                     &point_kernels,
-                                     &element_kernels,
-                                     &winding_kernel,
-                                     &crossing_kernels};
+inline constexpr AllRayKernels all_ray_kernels{best_width, ray_kernels<Wanted::closest, Hit<float>>,
+                                               ray_kernels<Wanted::any, bool>, find_first_hits};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET != HWY_SCALAR
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::WideKernels* hedgerow::wide_kernels() {
-    static constexpr KernelTables<WideKernels> tables = HEDGEROW_KERNEL_TABLES(kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-#include <hedgerow/engine/kernels.h>
-
-const hedgerow::WideKernels* hedgerow::wide_kernels() {
-    return nullptr;
-}
+HEDGEROW_KERNELS_IN_USE(AllRayKernels, all_ray_kernels)
 #endif

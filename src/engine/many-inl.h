@@ -80,19 +80,19 @@ public:
         // Bands of 8 rows of the picture, then bands of 64 consecutive rays for what is left.
         for (const std::size_t row : {picture_row(rays_), block_side}) {
             for (const std::size_t band = block_side * row; n - at >= band; at += band) {
-                if (packets_.rests(at) || !answer_band(at, row)) continue;
-                answer_phased(waiting, at);
+                if (packets_.rests(at) || !cast_band(at, row)) continue;
+                cast_phased(waiting, at);
                 waiting = at + band;
             }
         }
-        answer_phased(waiting, n);
+        cast_phased(waiting, n);
         return {0, n - in_packets_, in_packets_};
     }
 
 private:
     /// Answers the rays of 8 rows from `first` on. False, and no ray is answered, if they make no packet. If
     /// a row is not a multiple of 8, the last block begins earlier, and some rays are answered twice.
-    bool answer_band(std::size_t first, std::size_t row) {
+    bool cast_band(std::size_t first, std::size_t row) {
         const bool is_last = rays_.size() - first < 2 * block_side * (row + block_side);
         std::size_t done = 0;  // columns before this have their answers
         bool any = false;
@@ -115,19 +115,19 @@ private:
                 bundle_.answer(packet_.rays(), rays_, answers_);
             any = true;
             // Answer the columns that were left since the packet before.
-            answer_columns(first, row, done, column);
+            cast_columns(first, row, done, column);
             done = from + block_side;
             in_packets_ += block_side * (done - column);
         }
-        if (any) answer_columns(first, row, done, row);
+        if (any) cast_columns(first, row, done, row);
         return any;
     }
     /// Answers the rays between two columns, in 8 rows, by the phased batch.
-    void answer_columns(std::size_t first, std::size_t row, std::size_t begin, std::size_t end) {
+    void cast_columns(std::size_t first, std::size_t row, std::size_t begin, std::size_t end) {
         for (std::size_t r = 0; r < block_side && begin < end; ++r, first += row)
-            answer_phased(first + begin, first + end);
+            cast_phased(first + begin, first + end);
     }
-    HWY_NOINLINE void answer_phased(std::size_t begin, std::size_t end) {
+    HWY_NOINLINE void cast_phased(std::size_t begin, std::size_t end) {
         if (begin < end) Batch<W, wanted>(scene_, rays_, begin, end).answer(answers_);
     }
     /// What the rays of a block share: ways, few enough for packets, or only the region that they cross.
@@ -149,7 +149,7 @@ private:
 };
 
 template <int W, Wanted wanted, class Answer>
-KernelUse answer_many(const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
+KernelUse cast_many(const WideScene& scene, const RayArray<float, 3>& rays, Answer* answers) {
     if (scene.tree.empty()) {
         std::fill_n(answers, rays.size(), Answer());
         return {0, rays.size(), 0};

@@ -1,5 +1,7 @@
 /// Distances of points to a few elements, compiled for each instruction set: Highway's foreach_target
-/// includes this file once for each. The tables of kernels.cpp point to them.
+/// includes this file once for each.
+#include <hedgerow/engine/near_elements.h>
+
 #if HEDGEROW_HAS_HIGHWAY
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -14,10 +16,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-extern const ElementKernels element_kernels;  // for kernels.cpp
-const ElementKernels element_kernels{ElementLanes::prepare, ElementLanes::measure};
+inline constexpr ElementKernels element_kernels{ElementLanes::prepare, ElementLanes::measure};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif
+#endif  // HEDGEROW_HAS_HIGHWAY
+
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
+
+HEDGEROW_KERNELS_IN_USE(ElementKernels, element_kernels)
 #endif

@@ -81,8 +81,8 @@ void detail::measure_slivers(const NearElements& near, const DistanceMargin& mar
 const ElementKernels detail::plain_element_kernels = {prepare, measure};
 
 const ElementKernels& element_kernels() {
-    const WideKernels* const kernels = wide_kernels();
-    return kernels != nullptr ? *kernels->elements : detail::plain_element_kernels;
+    const ElementKernels* const kernels = in_use<ElementKernels>();
+    return kernels != nullptr ? *kernels : detail::plain_element_kernels;
 }
 
 }  // namespace hedgerow

@@ -1,5 +1,7 @@
 /// The kernels of points, compiled for each instruction set: Highway's foreach_target includes this file once
-/// for each. The tables of kernels.cpp point to them.
+/// for each.
+#include <hedgerow/engine/kernels.h>
+
 #if HEDGEROW_HAS_HIGHWAY
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -99,15 +101,21 @@ template <class Search, class Keys>
 inline constexpr PointKernels<typename Search::Scene> kernels_of = {closest_kernels<Search>, Keys::nearest,
                                                                     Keys::nearest_of_many, Keys::within};
 
-extern const AllPointKernels point_kernels;  // for kernels.cpp
-const AllPointKernels point_kernels{kernels_of<ClosestTriangle<WideScene>, Keys<KeysOfTriangles, WideScene>>,
-                                    kernels_of<ClosestOfCloud, Keys<KeysOfCloud, WidePoints>>,
-                                    closest_kernels<ClosestTriangle<WideDoubles>>,
-                                    walk_by_width<float>,
-                                    walk_by_width<double>,
-                                    points_in_ball};
+inline constexpr AllPointKernels point_kernels{
+    kernels_of<ClosestTriangle<WideScene>, Keys<KeysOfTriangles, WideScene>>,
+    kernels_of<ClosestOfCloud, Keys<KeysOfCloud, WidePoints>>,
+    closest_kernels<ClosestTriangle<WideDoubles>>,
+    walk_by_width<float>,
+    walk_by_width<double>,
+    points_in_ball};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif  // HWY_TARGET != HWY_SCALAR
+#endif  // HEDGEROW_HAS_HIGHWAY
+
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
+
+HEDGEROW_KERNELS_IN_USE(AllPointKernels, point_kernels)
 #endif

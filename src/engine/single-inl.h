@@ -46,7 +46,7 @@ bool trace_one(const WideScene& scene, WideRay& ray) {
 }
 
 template <int W, Wanted wanted>
-HWY_INLINE auto answer_one(const WideScene& scene, const Ray<float, 3>& asked) {
+HWY_INLINE auto cast_one(const WideScene& scene, const Ray<float, 3>& asked) {
     WideRay ray;
     prepare<W>(reinterpret_cast<const std::byte*>(&asked), scene.tree.bounds, 0.0f, ray);
     const bool hit = ray.usable && !scene.tree.empty() && trace_one<W, wanted>(scene, ray);

@@ -1,5 +1,7 @@
 /// The kernels of winding numbers, compiled for each instruction set: Highway's foreach_target includes this
-/// file once for each. The tables of kernels.cpp point to them.
+/// file once for each.
+#include <hedgerow/engine/kernels.h>
+
 #if HEDGEROW_HAS_HIGHWAY
 #include "core/targets.h"
 #undef HWY_TARGET_INCLUDE
@@ -16,10 +18,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-extern const WindingKernel winding_kernel;  // for kernels.cpp
-const WindingKernel winding_kernel = [](const WideExpansion& all, const WindingQuery& query) {
+inline double winding_number(const WideExpansion& all, const WindingQuery& query) {
     return by_width<WindingNumber>(all, &query);
-};
+}
+inline constexpr WindingKernels winding_kernels{winding_number};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -39,4 +41,10 @@ HalfAngle settled_half_angle(const HalfAngle& h, double size, const TriangleBloc
 
 }  // namespace hedgerow::detail
 #endif
+#endif  // HEDGEROW_HAS_HIGHWAY
+
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
+
+HEDGEROW_KERNELS_IN_USE(WindingKernels, winding_kernels)
 #endif

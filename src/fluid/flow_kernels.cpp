@@ -24,20 +24,10 @@ inline constexpr detail::FlowKernels flow_kernels{flow_kernels_of<2>, flow_kerne
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::detail::FlowKernels& hedgerow::detail::flow_kernels() {
-    static constexpr KernelTables<FlowKernels> tables = HEDGEROW_KERNEL_TABLES(flow_kernels);
-    const FlowKernels* const vectors = in_use(tables);
-    return vectors != nullptr ? *vectors : plain_flow_kernels();
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::detail::FlowKernels& hedgerow::detail::flow_kernels() {
-    return plain_flow_kernels();
-}
-
+HEDGEROW_KERNELS_IN_USE(detail::FlowKernels, flow_kernels)
 #endif

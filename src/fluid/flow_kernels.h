@@ -73,9 +73,12 @@ struct FlowKernelsOf {
 };
 using FlowKernels = std::tuple<FlowKernelsOf<2>, FlowKernelsOf<3>>;
 
-/// The kernels in use; all give the same bits.
+/// The kernels in use, or those without vectors; all give the same bits.
 const FlowKernels& flow_kernels();
-/// Those without vectors.
-const FlowKernels& plain_flow_kernels();
 
 }  // namespace hedgerow::detail
+
+namespace hedgerow {
+template <>
+const detail::FlowKernels* in_use<detail::FlowKernels>();
+}  // namespace hedgerow

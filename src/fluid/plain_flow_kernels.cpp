@@ -80,9 +80,10 @@ Sixteen differences(std::uint32_t one, const std::uint32_t* from, const SixteenI
 
 }  // namespace
 
-const detail::FlowKernels& detail::plain_flow_kernels() {
-    static constexpr FlowKernels kernels{flow_kernels_of<2>, flow_kernels_of<3>};
-    return kernels;
+const detail::FlowKernels& detail::flow_kernels() {
+    static constexpr FlowKernels plain{flow_kernels_of<2>, flow_kernels_of<3>};
+    const FlowKernels* const vectors = in_use<FlowKernels>();
+    return vectors != nullptr ? *vectors : plain;
 }
 
 }  // namespace hedgerow

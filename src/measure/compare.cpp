@@ -16,7 +16,7 @@ template <std::floating_point T, int D>
 class Measuring {
 public:
     using Any = AnyIndex<T, D>;
-    using Set = Questions<T, D>;
+    using Set = QuerySet<T, D>;
 
     Measuring(const Scene<T, D>& scene, const MeasureOptions& options, Executor& executor,
               const Progress& progress)

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <hedgerow/measure/compare.h>
-#include <hedgerow/measure/questions.h>
+#include <hedgerow/measure/query_set.h>
 #include <hedgerow/measure/ray_sets.h>
 #include <hedgerow/render/camera/presets.h>
 #include <hedgerow/render/camera/ray_maker.h>
@@ -17,7 +17,7 @@ namespace hedgerow::measure {
 template <std::floating_point T, int D>
 class SceneQuestions {
 public:
-    using Set = Questions<T, D>;
+    using Set = QuerySet<T, D>;
     using Rays = std::vector<Ray<T, D>>;
     /// How many neighbours a question for the nearest asks for.
     static constexpr std::size_t neighbours = 8;
@@ -84,7 +84,7 @@ private:
         const auto add_kind = [&](std::string kind, std::vector<Given> given) {
             if (!given.empty())
                 questions.push_back(
-                    std::make_shared<QuestionsOf<Question, T, D>>(std::move(kind), std::move(given)));
+                    std::make_shared<QuerySetOf<Question, T, D>>(std::move(kind), std::move(given)));
         };
         const std::string words(Question::words);
         if constexpr (std::same_as<Given, Ray<T, D>>)

@@ -45,7 +45,7 @@ void one_by_one(const Charges<T>& charges, std::span<PotentialAt<T>> found, doub
 }  // namespace
 
 template <std::floating_point T>
-void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, const BarnesHutOptions& options) {
+void barnes_hut(const Charges<T>& charges, PotentialsFound<T> found, const BarnesHutOptions& options) {
     if (!(options.opening_angle > 0 && options.opening_angle < 1))
         throw UsageError("an opening angle of " + std::to_string(options.opening_angle) +
                          " is not above 0 and below 1");
@@ -53,17 +53,17 @@ void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found, cons
         throw UsageError("this method of Barnes and Hut does not know periodic cubes: use forces");
     detail::expect_room(found.size(), charges.places.size());
     const detail::Extremes<T> extremes(charges);  // throws for bad numbers
-    const NbodyKernels* const kernels = nbody_kernels();
-    if (found.size() < least_charges || (kernels == nullptr && detail::softened(charges)))
+    const FmmKernels kernels;
+    if (found.size() < least_charges || (!kernels && detail::softened(charges)))
         return direct_sum(charges, found, {.threads = options.threads});
     Executor& executor = options.threads.over(found.size());
     in_ieee_mode([&] {
         IeeeExecutor ieee(executor);
-        if (kernels == nullptr)
+        if (!kernels)
             one_by_one(charges, found, options.opening_angle, ieee);
         else if (const detail::Units units(extremes);
-                 !by_groups(charges, found, options, (*kernels->fmm_float)[0], units, ieee))
-            by_groups(charges, found, options, (*kernels->fmm_double)[0], units, ieee);
+                 !by_groups(charges, found, options, kernels.of_float->front(), units, ieee))
+            by_groups(charges, found, options, kernels.of_double->front(), units, ieee);
     });
 }
 

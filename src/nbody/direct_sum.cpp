@@ -39,7 +39,7 @@ private:
 /// The kernels in use.
 template <class T>
 DirectKernel<T> direct_kernel() {
-    const NbodyKernels* const kernels = nbody_kernels();
+    const NbodyKernels* const kernels = in_use<NbodyKernels>();
     if (kernels == nullptr) return detail::direct_plain<T>;
     if constexpr (std::same_as<T, float>)
         return kernels->direct_float;
@@ -47,7 +47,7 @@ DirectKernel<T> direct_kernel() {
         return kernels->direct_double;
 }
 DirectKernel<double> exact_kernel() {
-    const NbodyKernels* const kernels = nbody_kernels();
+    const NbodyKernels* const kernels = in_use<NbodyKernels>();
     return kernels == nullptr ? detail::direct_plain<double> : kernels->direct_exact;
 }
 
@@ -246,7 +246,7 @@ void sum_directly(const Charges<T>& sources, const Targets<T>& targets, bool at_
 }  // namespace
 
 template <std::floating_point T>
-void direct_sum(const Charges<T>& sources, const Targets<T>& targets, std::span<PotentialAt<T>> found,
+void direct_sum(const Charges<T>& sources, const Targets<T>& targets, PotentialsFound<T> found,
                 const SumOptions& options) {
     // Where targets are the first of bare charges, the sum is the same without what each does to itself, and
     // faster.
@@ -256,7 +256,7 @@ void direct_sum(const Charges<T>& sources, const Targets<T>& targets, std::span<
     sum_directly(sources, targets, at_charges, found, options.threads);
 }
 template <std::floating_point T>
-void direct_sum(const Charges<T>& charges, std::span<PotentialAt<T>> found, const SumOptions& options) {
+void direct_sum(const Charges<T>& charges, PotentialsFound<T> found, const SumOptions& options) {
     const std::size_t count = found.size(), n = charges.places.size();
     if (count > n) detail::expect_room(count, n);
     const Strided<T> lengths = charges.lengths.size() == n ? charges.lengths.part(0, count) : charges.lengths;

@@ -105,7 +105,7 @@ FarImages::FarImages(double side, const Vec3d& middle, int order, const PlaceRow
     : side_(side), middle_(middle), order_(order) {
     // A multipole of each task, then their sum by a tree: the same bits for any number of threads, and for
     // any way to share the tasks.
-    const NbodyKernels* const kernels = nbody_kernels();
+    const NbodyKernels* const kernels = in_use<NbodyKernels>();
     const auto add = kernels != nullptr ? kernels->add_multipole : add_multipole;
     const std::size_t stride = std::size_t(packed_count(order)) + 1, tasks = (places.count + task - 1) / task;
     std::vector<double> all(tasks * stride);
@@ -136,7 +136,7 @@ FarImages::FarImages(double side, const Vec3d& middle, int order, const PlaceRow
 }
 
 void FarImages::act(const TargetRows<double>& targets, Executor& executor) const {
-    const NbodyKernels* const kernels = nbody_kernels();
+    const NbodyKernels* const kernels = in_use<NbodyKernels>();
     const AddLocal add = kernels != nullptr ? kernels->add_local : add_packed_local;
     const PlaceRows places{targets.x, targets.y, targets.z, targets.count};
     executor.for_each_piece((places.count + piece - 1) / piece, 4, [&](std::size_t begin, std::size_t end) {
@@ -162,7 +162,7 @@ void FarImages::act(const TargetRows<double>& targets, Executor& executor) const
 }
 
 void FarImages::bend(const PlaceRows& places, const TideRows& tides, Executor& executor) const {
-    const NbodyKernels* const kernels = nbody_kernels();
+    const NbodyKernels* const kernels = in_use<NbodyKernels>();
     const AddLocal add = kernels != nullptr ? kernels->add_local : add_packed_local;
     const double unit = 1 / (side_ * side_ * side_), even = 2 * third * charge_ * unit;
     executor.for_each_piece((places.count + piece - 1) / piece, 4, [&](std::size_t begin, std::size_t end) {

@@ -1,5 +1,7 @@
 /// The fast multipole method in double, compiled for each instruction set: Highway's foreach_target includes
-/// this file once for each. The tables of kernels.cpp point to it.
+/// this file once for each.
+#include <hedgerow/nbody/kernels.h>
+
 #if HEDGEROW_HAS_HIGHWAY
 // High orders are not unrolled into one piece of code, which is a sixth slower.
 #define HEDGEROW_UNROLLED HWY_ATTR
@@ -16,10 +18,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-extern const FmmDoubleKernels fmm_double_kernels;  // for kernels.cpp
-const FmmDoubleKernels fmm_double_kernels = fmm_table<double, 8, 11>();
+inline constexpr FmmDoubleKernels fmm_double_kernels = fmm_table<double, 8, 11>();
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif
+#endif  // HEDGEROW_HAS_HIGHWAY
+
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
+
+HEDGEROW_KERNELS_IN_USE(FmmDoubleKernels, fmm_double_kernels)
 #endif

@@ -1,5 +1,7 @@
 /// The fast multipole method in float, compiled for each instruction set: Highway's foreach_target includes
-/// this file once for each. The tables of kernels.cpp point to it.
+/// this file once for each.
+#include <hedgerow/nbody/kernels.h>
+
 #if HEDGEROW_HAS_HIGHWAY
 // Low orders are unrolled into one piece of code, which is a sixth faster; it takes a compiler that sanitizes
 // half an hour.
@@ -21,10 +23,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-extern const FmmFloatKernels fmm_float_kernels;  // for kernels.cpp
-const FmmFloatKernels fmm_float_kernels = fmm_table<float, 2, 3, 4, 6>();
+inline constexpr FmmFloatKernels fmm_float_kernels = fmm_table<float, 2, 3, 4, 6>();
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif
+#endif  // HEDGEROW_HAS_HIGHWAY
+
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
+
+HEDGEROW_KERNELS_IN_USE(FmmFloatKernels, fmm_float_kernels)
 #endif

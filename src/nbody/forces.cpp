@@ -102,13 +102,12 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
     const Targets<T>* const targets = other ? &*other : nullptr;
     const SumOptions sum{options.threads};
     Executor& executor = options.threads.over(found.size());
-    const NbodyKernels* const kernels = nbody_kernels();
-    const bool plain = kernels == nullptr && targets == nullptr && !detail::softened(charges) &&
+    const FmmKernels kernels;
+    const bool plain = !kernels && targets == nullptr && !detail::softened(charges) &&
                        !(charges.period > 0) && !with_tides && found.size() >= 2000 &&
                        options.accuracy >= 1e-4;
     // A direct sum in float errs by 2⁻²¹ a pair.
-    const bool direct_is_exact =
-        std::same_as<T, double> || plan.precision == Precision::single || kernels == nullptr;
+    const bool direct_is_exact = std::same_as<T, double> || plan.precision == Precision::single || !kernels;
     // Near images and tides make it slower.
     const std::size_t least_charges = !(charges.period > 0) ? plan.least_charges
                                       : plan.precision == Precision::single
@@ -119,7 +118,7 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
         (direct_is_exact && !with_tides &&
          (charges.places.size() < least_charges ||
           (targets != nullptr && !(charges.period > 0) && targets->places.size() < detail::least_targets)));
-    if (few || (kernels == nullptr && !plain)) {
+    if (few || (!kernels && !plain)) {
         if (with_tides)
             direct_tides(
                 charges,
@@ -137,19 +136,19 @@ void forces_at(const Charges<T>& given, const Targets<T>* given_targets, std::sp
         if (plain) {
             if (!plain_forces(charges, found, options.accuracy, ieee))
                 direct_sum(charges, found, {.threads = ieee});
-        } else if (plan.precision != Precision::single || !by(of_order(*kernels->fmm_float, plan.order)))
-            by(of_order(*kernels->fmm_double, plan.order));
+        } else if (plan.precision != Precision::single || !by(of_order(*kernels.of_float, plan.order)))
+            by(of_order(*kernels.of_double, plan.order));
     });
 }
 
 }  // namespace
 
 template <std::floating_point T>
-void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options) {
+void forces(const Charges<T>& charges, PotentialsFound<T> found, const ForceOptions& options) {
     forces_at<T>(charges, nullptr, found, options);
 }
 template <std::floating_point T>
-void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<PotentialAt<T>> found,
+void forces(const Charges<T>& charges, const Targets<T>& targets, PotentialsFound<T> found,
             const ForceOptions& options) {
     forces_at<T>(charges, &targets, found, options);
 }
@@ -162,14 +161,14 @@ std::vector<ActingCell> acting_cells(const Charges<T>& given, std::size_t i, con
     const detail::PlacesInCube<T> in_cube(given.places, cube);
     Charges<T> charges = given;
     charges.places = in_cube.places();
-    const NbodyKernels* const kernels = nbody_kernels();
-    if (kernels == nullptr || i >= charges.places.size()) return {};
+    const FmmKernels kernels;
+    if (!kernels || i >= charges.places.size()) return {};
     return in_ieee_mode([&] {
         const auto by = [&](const auto& kernel) {
             return cells_acting_on(charges, cube, i, plan, options, kernel, detail::Units(extremes));
         };
-        return plan.precision == Precision::single ? by(of_order(*kernels->fmm_float, plan.order))
-                                                   : by(of_order(*kernels->fmm_double, plan.order));
+        return plan.precision == Precision::single ? by(of_order(*kernels.of_float, plan.order))
+                                                   : by(of_order(*kernels.of_double, plan.order));
     });
 }
 

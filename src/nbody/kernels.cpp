@@ -18,30 +18,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace hedgerow::HWY_NAMESPACE {
 
-extern const FmmFloatKernels fmm_float_kernels;    // in fmm_float_kernels.cpp
-extern const FmmDoubleKernels fmm_double_kernels;  // in fmm_double_kernels.cpp
-
-inline constexpr NbodyKernels nbody_kernels{
-    direct<float>, direct<double>, direct<double, Pairs::exact>, &fmm_float_kernels, &fmm_double_kernels,
-    add_multipole, add_local};
+inline constexpr NbodyKernels nbody_kernels{direct<float>, direct<double>, direct<double, Pairs::exact>,
+                                            add_multipole, add_local};
 
 }  // namespace hedgerow::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::NbodyKernels* hedgerow::nbody_kernels() {
-    static constexpr KernelTables<NbodyKernels> tables = HEDGEROW_KERNEL_TABLES(nbody_kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::NbodyKernels* hedgerow::nbody_kernels() {
-    return nullptr;
-}
-
+HEDGEROW_KERNELS_IN_USE(NbodyKernels, nbody_kernels)
 #endif

@@ -25,19 +25,10 @@ inline constexpr detail::CellKernels cell_kernels{
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::detail::CellKernels* hedgerow::detail::cell_kernels() {
-    static constexpr KernelTables<CellKernels> tables = HEDGEROW_KERNEL_TABLES(cell_kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::detail::CellKernels* hedgerow::detail::cell_kernels() {
-    return nullptr;
-}
-
+HEDGEROW_KERNELS_IN_USE(detail::CellKernels, cell_kernels)
 #endif

@@ -67,7 +67,11 @@ struct CellKernels {
         return std::get<CellKernelsOf<T, D>>(all);
     }
 };
-/// The kernels in use, or nullptr where every pair is measured.
-const CellKernels* cell_kernels();
 
 }  // namespace hedgerow::detail
+
+namespace hedgerow {
+// Where none are in use, every pair is measured.
+template <>
+const detail::CellKernels* in_use<detail::CellKernels>();
+}  // namespace hedgerow

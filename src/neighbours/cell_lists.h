@@ -61,7 +61,7 @@ public:
     template <class Ids, class Distances>
     std::size_t list(std::size_t begin, std::size_t end, std::size_t* ends, Ids& ids, Distances& distances2) {
         const auto& cells = asking_.cells();
-        const CellKernels* const kernels = cell_kernels();
+        const CellKernels* const kernels = in_use<CellKernels>();
         const std::uint32_t first = cells[begin].first;
         const double points = cells[end].first - first;
         std::size_t size = 0;
@@ -97,7 +97,7 @@ public:
 
     /// Writes the squared distances from a point that asks to others. May write `CellOrder::padding` more.
     void measure(std::uint32_t i, const std::uint32_t* points, std::size_t size, T* distances2) const {
-        if (const CellKernels* const kernels = cell_kernels(); kernels != nullptr && plain_)
+        if (const CellKernels* const kernels = in_use<CellKernels>(); kernels != nullptr && plain_)
             return kernels->template of<T, D>().measure(order_, asking_.point(i), points, size, distances2);
         for (std::size_t k = 0; k < size; ++k) distances2[k] = distance2(i, points[k]);
     }

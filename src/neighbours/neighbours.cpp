@@ -81,7 +81,8 @@ public:
     const std::uint32_t* of(const std::uint32_t* numbers, std::size_t size) {
         if (ranks_.size() < size + room) ranks_.resize(2 * size + room);
         constexpr std::size_t longest = 512;  // that is not sorted
-        if (const auto* const kernels = detail::cell_kernels(); kernels != nullptr && size <= longest) {
+        if (const auto* const kernels = in_use<detail::CellKernels>();
+            kernels != nullptr && size <= longest) {
             kernels->rank(numbers, size, ranks_.data());
             return ranks_.data();
         }
@@ -131,7 +132,7 @@ private:
     static constexpr std::size_t room = Order::padding;
     /// Writes the numbers that are at least `least` to `list_`, and the points with them to `kept_`.
     std::size_t number(const std::uint32_t* points, std::size_t count, PrimitiveId least) {
-        if (const auto* const kernels = detail::cell_kernels(); kernels != nullptr)
+        if (const auto* const kernels = in_use<detail::CellKernels>(); kernels != nullptr)
             return kernels->number(order_.order().data(), points, count, least, kept_.data(), list_.data());
         std::size_t size = 0;
         for (std::size_t k = 0; k < count; ++k) {

@@ -22,19 +22,10 @@ inline constexpr BeamKernels beam_kernels{trace_beams};
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::BeamKernels* hedgerow::beam_kernels() {
-    static constexpr KernelTables<BeamKernels> tables = HEDGEROW_KERNEL_TABLES(beam_kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::BeamKernels* hedgerow::beam_kernels() {
-    return nullptr;
-}
-
+HEDGEROW_KERNELS_IN_USE(BeamKernels, beam_kernels)
 #endif

@@ -219,7 +219,7 @@ private:
             for (int x = pixels.left; x <= pixels.right; ++x) {
                 const int i = (y - pixels.top) * side + x - pixels.left;
                 *fill_.place_of(x, y) =
-                    answer_one<W, Wanted::closest>(scene_, rays_.ray(pixels.left, pixels.top, i));
+                    cast_one<W, Wanted::closest>(scene_, rays_.ray(pixels.left, pixels.top, i));
             }
     }
 

@@ -24,19 +24,10 @@ inline constexpr LightKernels light_kernels{write_importances_in_lanes};
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::LightKernels* hedgerow::light_kernels() {
-    static constexpr KernelTables<LightKernels> tables = HEDGEROW_KERNEL_TABLES(light_kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::LightKernels* hedgerow::light_kernels() {
-    return nullptr;
-}
-
+HEDGEROW_KERNELS_IN_USE(LightKernels, light_kernels)
 #endif

@@ -75,6 +75,7 @@ struct LightKernels {
 };
 
 /// The kernels in use, or nullptr.
-const LightKernels* light_kernels();
+template <>
+const LightKernels* in_use<LightKernels>();
 
 }  // namespace hedgerow

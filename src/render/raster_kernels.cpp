@@ -25,19 +25,10 @@ inline constexpr RasterKernels raster_kernels{pixel_bounds, triangle_functions, 
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::RasterKernels* hedgerow::raster_kernels() {
-    static constexpr KernelTables<RasterKernels> tables = HEDGEROW_KERNEL_TABLES(raster_kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::RasterKernels* hedgerow::raster_kernels() {
-    return nullptr;
-}
-
+HEDGEROW_KERNELS_IN_USE(RasterKernels, raster_kernels)
 #endif

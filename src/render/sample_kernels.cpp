@@ -24,19 +24,10 @@ inline constexpr SampleKernels sample_kernels{fill_pairs_in_lanes};
 HWY_AFTER_NAMESPACE();
 #endif
 
-#if HWY_ONCE
-#include "core/kernel_tables.h"
+#endif  // HEDGEROW_HAS_HIGHWAY
 
-const hedgerow::SampleKernels* hedgerow::sample_kernels() {
-    static constexpr KernelTables<SampleKernels> tables = HEDGEROW_KERNEL_TABLES(sample_kernels);
-    return in_use(tables);
-}
-#endif
+#if HWY_ONCE || !HEDGEROW_HAS_HIGHWAY
+#include "core/in_use.h"
 
-#else
-
-const hedgerow::SampleKernels* hedgerow::sample_kernels() {
-    return nullptr;
-}
-
+HEDGEROW_KERNELS_IN_USE(SampleKernels, sample_kernels)
 #endif

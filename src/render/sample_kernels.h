@@ -33,6 +33,7 @@ struct SampleKernels {
 };
 
 /// The kernels in use, or nullptr.
-const SampleKernels* sample_kernels();
+template <>
+const SampleKernels* in_use<SampleKernels>();
 
 }  // namespace hedgerow

@@ -3,11 +3,11 @@ cmake_minimum_required(VERSION 3.25)
 
 # Headers that compute nothing, or nothing of geometry.
 set(allowed version.h base/error.h base/column.h base/instruction_set.h nbody/kernels.h base/option.h base/scratch.h base/spelling.h base/bare_vector.h base/stored.h parallel/executor.h parallel/by.h parallel/progress.h
-            parallel/blocks.h parallel/radix_sort.h parallel/select.h geometry/morton_code.h base/strided.h base/buffer.h ask/truths.h io/load_options.h io/memory.h io/exr.h io/image.h io/notes.h io/state_file.h io/npy.h io/rows.h io/text_file.h
+            parallel/blocks.h parallel/radix_sort.h parallel/select.h geometry/morton_code.h base/strided.h base/buffer.h ask/truths.h io/load_options.h io/memory.h io/exr.h io/image.h looks/layers.h io/notes.h io/state_file.h io/npy.h io/rows.h io/text_file.h
             render/lettering.h render/film/around.h
             render/sampling/sobol.h measure/advice.h measure/break_even.h measure/clock.h measure/contest.h measure/costs.h measure/fit.h
             measure/growth.h measure/lists.h measure/machine.h measure/quantity.h measure/reason.h predicted_memory.h io/writable.h parallel/sort.h parallel/watched_executor.h structures/item_limit.h structures/hash_grid/cell_table.h
-            walks/kernel.h scenes/size_text.h)
+            walks/engine.h scenes/size_text.h)
 
 file(GLOB_RECURSE headers RELATIVE ${INCLUDE}/hedgerow ${INCLUDE}/hedgerow/*.h)
 foreach(header ${headers})

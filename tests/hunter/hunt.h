@@ -256,7 +256,7 @@ private:
     Random random_;
     Set set_;
     std::vector<Shape> shapes_;
-    Questions<T, D> questions_;
+    AllGiven<T, D> questions_;
     std::unique_ptr<const AnyIndex<T, D>> oracle_;
     std::vector<std::any> truth_;
     Report report_;

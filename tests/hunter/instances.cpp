@@ -136,7 +136,7 @@ private:
     Random random_;
     std::vector<Triangle<T, 3>> shapes_;
     std::vector<Transform<3>> places_;
-    Questions<T, 3> questions_;
+    AllGiven<T, 3> questions_;
     Report report_;
 };
 

@@ -131,7 +131,7 @@ std::vector<Shape> scene(Places<T, D>& places) {
 
 /// What is given to questions.
 template <class T, int D>
-struct Questions {
+struct AllGiven {
     std::vector<Ray<T, D>> rays;
     std::vector<HitsAlong<T, D>> hits_along;
     std::vector<Vec<T, D>> points;
@@ -170,8 +170,8 @@ public:
     Asking(Places<T, D>& places, std::vector<Vec<T, D>> corners)
         : places_(places), random_(places.random()), corners_(std::move(corners)) {}
 
-    Questions<T, D> questions(std::size_t rays, std::size_t others) {
-        Questions<T, D> all;
+    AllGiven<T, D> questions(std::size_t rays, std::size_t others) {
+        AllGiven<T, D> all;
         const bool picture = below(8) == 0;
         const Vec<T, D> eye = place(), target = place(), across = place() - eye;
         // In one round of eight the rays are those of a picture, 16 to a row.

@@ -12,13 +12,16 @@
 /// twice as much while the call runs over several threads.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/base/scratch.h>
 #include <hedgerow/base/strided.h>
 #include <hedgerow/index.h>
+#include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/queries/lists.h>
+#include <hedgerow/walks/engine.h>
 
 namespace hedgerow {
 
@@ -33,10 +36,11 @@ inline void expect_room(const std::string& asked, std::size_t count, std::size_t
                          asked);
 }
 
-/// The executor of a batch of `count` queries.
+/// The executor of a batch of `count` queries. A filter is called by other threads only if these are the
+/// caller's choice.
 template <class Filter>
 Executor& executor_for(Threads threads, std::size_t count) {
-    return threads.over(std::same_as<Filter, KeepAll> ? count : 0);
+    return std::same_as<Filter, KeepAll> || threads.chosen() ? threads.over(count) : serial_executor();
 }
 /// Answers by f(count), where the count is the visits of query i of a batch, or none.
 template <class F>
@@ -54,13 +58,85 @@ void ask_each(std::size_t queries, Executor& executor, std::span<Visits> visits,
             with_visits(visits, i, [&](auto& count) { return one(i, count); });
     });
 }
-/// Fills lists of one column: one(i, list, count) replaces what a vector holds by the list of query i.
-template <class C, class T, class One>
-void list_each(std::size_t queries, Executor& executor, Lists<C>& lists, Buffer<T> C::*column,
-               std::span<Visits> visits, One one) {
-    list_one_by_one(queries, executor, lists, column, [&](std::size_t i, std::vector<T>& list) {
-        with_visits(visits, i, [&](auto& count) { return one(i, list, count); });
+/// Has the engine of question Q answer a batch, if the index has one that takes such batches and is in use.
+/// rest(i) answers query i without it. No value, and nothing is written, where there is no such engine.
+template <class Q, class I, class Queries, class Answer, class Options, class Filter, class Rest>
+std::optional<KernelUse> answered_by_engine(const I& index, const Queries& queries, Answer* answers,
+                                            const Options& options, const Filter& filter, Executor& executor,
+                                            const Rest& rest) {
+    using How = HowAsked<Options, Filter>;
+    using E = EngineFor<Q, I>;
+    if constexpr (AnswersBatch<E, Queries, Answer*, How>) {
+        if (const E engine(index); engine)
+            return in_ieee_mode([&] {
+                IeeeExecutor threads(executor);
+                const How how{options, filter, threads, rest};
+                if constexpr (std::is_void_v<decltype(engine.answer_batch(queries, answers, how))>)
+                    return engine.answer_batch(queries, answers, how), KernelUse{};
+                else
+                    return engine.answer_batch(queries, answers, how);
+            });
+    }
+    return std::nullopt;
+}
+/// The same of a question of lists. rest(i, place) lists what query i finds.
+template <class Q, class Place, class I, class Queries, class L, class Options, class Filter, class Rest,
+          class... Arguments>
+bool listed_by_engine(const I& index, const Queries& queries, L& lists, const Options& options,
+                      const Filter& filter, Executor& executor, const Rest& rest,
+                      const Arguments&... arguments) {
+    using How = HowAsked<Options, Filter, Place>;
+    using E = EngineFor<Q, I>;
+    if constexpr (AnswersLists<E, Queries, L, How, Arguments...>) {
+        if (const E engine(index); engine) {
+            in_ieee_mode([&] {
+                IeeeExecutor threads(executor);
+                engine.answer_lists(queries, arguments..., lists, How{options, filter, threads, rest});
+            });
+            return true;
+        }
+    }
+    return false;
+}
+/// Answers each query of a batch: by the engine of question Q, or by one(i, count), which returns the answer.
+template <class Q, class I, class Queries, class Answer, class Options, class Filter, class One>
+KernelUse answer_batch(const I& index, const Queries& queries, Answer* answers, const Options& options,
+                       const Filter& filter, Executor& executor, std::span<Visits> visits, One one) {
+    if (visits.empty()) {
+        const auto rest = [&](std::size_t i) { answers[i] = one(i, no_visits); };
+        if (const auto use = answered_by_engine<Q>(index, queries, answers, options, filter, executor, rest))
+            return *use;
+    }
+    ask_each(queries.size(), executor, visits,
+             [&](std::size_t i, auto& count) { answers[i] = one(i, count); });
+    return {.single = queries.size()};
+}
+/// Fills lists: by the engine of question Q, or by append(i, to, count), which appends the list of query i.
+template <class Q, class I, class Queries, class C, class Options, class Filter, class Append,
+          class... Arguments>
+void list_batch(const I& index, const Queries& queries, Lists<C>& lists, const Options& options,
+                const Filter& filter, Executor& executor, std::span<Visits> visits, Append append,
+                const Arguments&... arguments) {
+    list_in_own_memory(lists, [&](Lists<C>& own) {
+        const auto rest = [&](std::size_t i, Lists<C>& to) { append(i, to, no_visits); };
+        if (visits.empty() && listed_by_engine<Q, Lists<C>&>(index, queries, own, options, filter, executor,
+                                                             rest, arguments...))
+            return;
+        list_in_pieces(queries.size(), executor, own, [&](std::size_t begin, std::size_t end, Lists<C>& to) {
+            for (std::size_t i = begin; i < end; ++i)
+                with_visits(visits, i, [&](auto& count) { return append(i, to, count), 0; });
+        });
     });
+}
+/// Appends lists of one column: one(i, list, count) replaces what a vector holds by the list of query i.
+template <class C, class T, class One>
+auto appending(Buffer<T> C::*column, One one) {
+    return [column, one](std::size_t i, Lists<C>& to, auto& count) {
+        const Scratch<std::vector<T>> list;
+        one(i, *list, count);
+        (to.*column).append(*list);
+        to.offsets.push_back((to.*column).size());
+    };
 }
 
 /// The number of primitives that a query may answer.

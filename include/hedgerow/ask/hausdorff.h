@@ -30,6 +30,22 @@ auto directed_hausdorff(const IA& a, const IB& b, const HausdorffOptions& option
     return in_ieee_mode([&] { return DirectedHausdorff<IA, IB>(a, b, options, executor, at_least).run(); });
 }
 
+template <class IA, class IB>
+auto symmetric_hausdorff(const IA& a, const IB& b, const HausdorffOptions& options) {
+    expect_tolerances(options);
+    Executor& executor = options.threads.over(std::max(a.size(), b.size()));
+    auto result = directed_hausdorff(a, b, options, executor, 0);
+    // What is no farther than the distance found is of no interest in the other direction.
+    const auto back = directed_hausdorff(b, a, options, executor, static_cast<double>(result.lower));
+    if (back && back.lower > result.lower) {
+        const auto upper = std::max(result.upper, back.upper);
+        result = {back.lower, upper, back.element_b, back.element_a, back.point_b, back.point_a, true};
+    }
+    result.upper = std::max(result.upper, back.upper);
+    result.lower = std::max(result.lower, back.lower);
+    return result;
+}
+
 }  // namespace detail
 
 /// The directed (one-sided) Hausdorff distance from A to B: how far the points of A are from B at most, not
@@ -56,18 +72,7 @@ requires FarFrom<A, B> Hausdorff<typename A::Scalar, A::dimension> directed_haus
 template <class SA, class A, class SB, class B>
 requires(FarFrom<A, B>&& FarFrom<B, A>) Hausdorff<typename A::Scalar, A::dimension> hausdorff_distance(
     const Index<SA, A>& a, const Index<SB, B>& b, const HausdorffOptions& options = {}) {
-    detail::expect_tolerances(options);
-    Executor& executor = options.threads.over(std::max(a.size(), b.size()));
-    auto result = detail::directed_hausdorff(a, b, options, executor, 0);
-    // What is no farther than the distance found is of no interest in the other direction.
-    const auto back = detail::directed_hausdorff(b, a, options, executor, static_cast<double>(result.lower));
-    if (back && back.lower > result.lower) {
-        const auto upper = std::max(result.upper, back.upper);
-        result = {back.lower, upper, back.element_b, back.element_a, back.point_b, back.point_a, true};
-    }
-    result.upper = std::max(result.upper, back.upper);
-    result.lower = std::max(result.lower, back.lower);
-    return result;
+    return detail::symmetric_hausdorff(a, b, options);
 }
 
 }  // namespace hedgerow

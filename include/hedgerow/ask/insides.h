@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include <hedgerow/ask/insides/caps.h>
 #include <hedgerow/ask/points.h>
@@ -29,6 +30,7 @@ enum class Side : std::uint8_t { outside, on, inside };
 /// - `expansion`: the winding number within a promised error, by multipole expansions (Barill et al. 2018).
 ///   For soups of triangles in space, most of whose edges are open. Points on the surface are not told.
 enum class SideBy : std::uint8_t { crossings, parity, pseudonormal, expansion };
+inline constexpr std::string_view side_by_names[] = {"crossings", "parity", "pseudonormal", "expansion"};
 
 struct SolidOptions {
     SideBy by = SideBy::crossings;
@@ -255,8 +257,10 @@ private:
     template <class J, class Count>
     static CrossingCount crossings(const J& index, const Ray& asked, bool past_surface, Count& count) {
         if (asked.box.empty()) return {};
-        if constexpr (HasKernel<Crossed<J>, J> && std::same_as<Count, const NoVisits>)
-            if (const Kernel<Crossed<J>, J> kernel; kernel) return kernel.answer(index, asked, past_surface);
+        if constexpr (AnswersOne<EngineFor<Crossed<J>, J>, const Ray, const bool> &&
+                      std::same_as<Count, const NoVisits>)
+            if (const EngineFor<Crossed<J>, J> engine(index); engine)
+                return engine.answer(asked, past_surface);
         Crossed<J> query(index, asked, past_surface);
         walk_through(index.structure(), detail::CrossedLeaves<J>(index), query, count);
         return query.answer();
@@ -285,9 +289,11 @@ private:
         }
     }
     void find_crossings(std::span<const Ray> rays, bool past_surface, CrossingCount* found) const {
-        if constexpr (HasKernel<Crossed<I>, I>)
-            if (const Kernel<Crossed<I>, I> kernel; kernel)
-                return kernel.answer_many(*index_, rays, past_surface, found);
+        if constexpr (requires(const EngineFor<Crossed<I>, I>& engine) {
+                          engine.answer_some(rays, past_surface, found);
+                      })
+            if (const EngineFor<Crossed<I>, I> engine(*index_); engine)
+                return engine.answer_some(rays, past_surface, found);
         for (std::size_t i = 0; i < rays.size(); ++i)
             found[i] = crossings(*index_, rays[i], past_surface, no_visits);
     }
@@ -405,14 +411,24 @@ typename S::Scalar signed_distance(const S& solid, const typename S::Point& poin
     return closest_side(solid, point, options, count).distance;
 }
 
+/// The questions of solids, as engines know them (walks/engine.h): EngineFor<Sides, Solid<I>>.
+struct Sides;
+struct WindingNumbers;
+struct SignedDistances;
+
 namespace detail {
-/// Answers for each point of a batch: by many(part), or where visits are counted by one(i, count).
-template <class S, class Answer, class Many, class One>
+/// Answers question Q of each point of a batch: by an engine of the solid, by many(part), or where visits are
+/// counted by one(i, count).
+template <class Q, class S, class Answer, class Many, class One>
 void ask_solid(const S& solid, const Strided<typename S::Point>& points, std::span<Answer> found,
                const SideOptions& options, std::span<Visits> visits, Many many, One one) {
     expect_room("points", points.size(), found.size());
     expect_visits(visits, points.size());
     IeeeExecutor executor(options.threads.over(points.size()));
+    const auto rest = [&](std::size_t i) { found[i] = one(points[i], no_visits); };
+    if (visits.empty() &&
+        answered_by_engine<Q>(solid, points, found.data(), options, KeepAll(), executor, rest))
+        return;
     for_each_part(points, solid.bounds(), solid.bytes_of_index(), executor, [&](const auto& part) {
         if (visits.empty()) return many(part);
         for (std::size_t k = 0; k < part.size(); ++k) {
@@ -429,14 +445,14 @@ void ask_solid(const S& solid, const Strided<typename S::Point>& points, std::sp
 template <class S>
 void sides(const S& solid, const Strided<typename S::Point>& points, std::span<Side> found,
            const SideOptions& options = {}, std::span<Visits> visits = {}) {
-    detail::ask_solid(
+    detail::ask_solid<Sides>(
         solid, points, found, options, visits, [&](const auto& part) { solid.write_sides(part, found); },
         [&](const auto& point, auto& count) { return solid.tell_side(point, count); });
 }
 template <class S>
 void winding_numbers(const S& solid, const Strided<typename S::Point>& points, std::span<double> found,
                      const SideOptions& options = {}, std::span<Visits> visits = {}) {
-    detail::ask_solid(
+    detail::ask_solid<WindingNumbers>(
         solid, points, found, options, visits,
         [&](const auto& part) { solid.write_winding_numbers(part, found); },
         [&](const auto& point, auto& count) { return solid.tell_winding_number(point, count); });
@@ -445,7 +461,7 @@ template <class S>
 void signed_distances(const S& solid, const Strided<typename S::Point>& points,
                       std::span<typename S::Scalar> found, const SideOptions& options = {},
                       std::span<Visits> visits = {}) {
-    detail::ask_solid(
+    detail::ask_solid<SignedDistances>(
         solid, points, found, options, visits, [&](const auto& part) { solid.write_distances(part, found); },
         [&](const auto& point, auto& count) { return solid.tell_distance(point, count).distance; });
 }

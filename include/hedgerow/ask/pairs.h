@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <tuple>
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
@@ -25,6 +26,26 @@ struct PairOptions {
     Threads threads = {};
 };
 
+/// The questions of whole sets, as engines know them (walks/engine.h): EngineFor<CrossingPairs, IA, IB>.
+struct CrossingPairs;
+struct SelfIntersections;
+struct PairsWithinRadius;
+
+namespace detail {
+// An IA or IB has a structure, primitives and a size, as an Index has.
+
+template <class IA, class IB, class Count>
+auto least_distance(const IA& a, const IB& b, const DistanceOptions& options, Count& count) {
+    const PointOptions near{.radius = options.radius, .radius2 = options.radius2, .factor = options.factor};
+    return in_ieee_mode([&] {
+        MinimumDistance query(a.primitives(), b.primitives(), NearLimits<typename IA::Scalar>(near));
+        walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
+                   query, count);
+        return query.answer();
+    });
+}
+}  // namespace detail
+
 /// The closest points of two sets within the options' distance, their squared distance, and the primitives
 /// that they are on; an Apart that is false if there are none so close. Equal distances go to the lowest
 /// (element_a, element_b). Triangles that meet are at distance 0 exactly. For triangles in space, and for
@@ -33,13 +54,7 @@ template <class SA, class A, class SB, class B, class Count = const NoVisits>
 Apart<typename A::Scalar, A::dimension> minimum_distance(const Index<SA, A>& a, const Index<SB, B>& b,
                                                          const DistanceOptions& options = {},
                                                          Count& count = no_visits) {
-    const PointOptions near{.radius = options.radius, .radius2 = options.radius2, .factor = options.factor};
-    return in_ieee_mode([&] {
-        MinimumDistance query(a.primitives(), b.primitives(), NearLimits<typename A::Scalar>(near));
-        walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
-                   query, count);
-        return query.answer();
-    });
+    return detail::least_distance(a, b, options, count);
 }
 
 namespace detail {
@@ -92,26 +107,46 @@ std::size_t sort_pairs(std::vector<Pair>& found, std::size_t size) {
     found.erase(std::unique(found.begin(), found.end()), found.end());
     return found.size();
 }
+/// Has the engine of question Q of one or two indexes find pairs, if there is one that is in use.
+template <class Q, class Pair, class... I, class... Arguments>
+bool found_by_engine(std::tuple<const I&...> indexes, std::vector<Pair>& found, Executor& executor,
+                     const Arguments&... arguments) {
+    using E = EngineFor<Q, I...>;
+    if constexpr (AnswersWhole<E, std::vector<Pair>, Arguments...>) {
+        if (const auto engine = std::make_from_tuple<E>(indexes); engine) {
+            in_ieee_mode([&] {
+                IeeeExecutor threads(executor);
+                engine.answer_whole(arguments..., found, threads);
+            });
+            return true;
+        }
+    }
+    return false;
+}
 /// Lists the pairs of two indexes, or of one, that the queries of `make` find: ascending, each once. Returns
-/// how many there are.
-template <class IA, class IB, class Make, class Pair>
+/// how many there are. An engine of Q may find them.
+template <class Q, class IA, class IB, class Make, class Pair>
 std::size_t list_pairs(const IA& a, const IB& b, Threads threads, Make make, std::vector<Pair>& found) {
     found.clear();
+    Executor& executor = threads.over(a.size() + b.size());
+    if (found_by_engine<Q>(std::tie(a, b), found, executor)) return found.size();
     return in_ieee_mode([&] {
         const auto of_a = hierarchy_of(a.structure(), a.primitives());
         const auto of_b = hierarchy_of(b.structure(), b.primitives());
         if (of_a.empty() || of_b.empty()) return std::size_t(0);
-        collect_pairs(of_a, of_b, {of_a.root(), of_b.root()}, threads.over(a.size() + b.size()), make, found);
+        collect_pairs(of_a, of_b, {of_a.root(), of_b.root()}, executor, make, found);
         return sort_pairs(found, a.primitives().size());
     });
 }
-template <class I, class Make, class Pair>
+template <class Q, class I, class Make, class Pair>
 std::size_t list_pairs(const I& index, Threads threads, Make make, std::vector<Pair>& found) {
     found.clear();
+    Executor& executor = threads.over(index.size());
+    if (found_by_engine<Q>(std::tie(index), found, executor)) return found.size();
     return in_ieee_mode([&] {
         const auto tree = hierarchy_of(index.structure(), index.primitives());
         if (tree.empty()) return std::size_t(0);
-        collect_pairs(tree, tree, {tree.root(), tree.root(), true}, threads.over(index.size()), make, found);
+        collect_pairs(tree, tree, {tree.root(), tree.root(), true}, executor, make, found);
         return sort_pairs(found, index.primitives().size());
     });
 }
@@ -122,6 +157,36 @@ struct StopAtFirst {
     Flow operator()(PrimitiveId, PrimitiveId) const { return *any = true, Flow::stop; }
 };
 
+template <class IA, class IB>
+std::size_t list_crossings(const IA& a, const IB& b, std::vector<ElementPair>& found, Threads threads) {
+    return list_pairs<CrossingPairs>(
+        a, b, threads, [&](auto f) { return Crossings(triangles_of(a), triangles_of(b), f); }, found);
+}
+template <class IA, class IB>
+bool has_crossing(const IA& a, const IB& b) {
+    return in_ieee_mode([&] {
+        bool any = false;
+        Crossings query(triangles_of(a), triangles_of(b), StopAtFirst{&any});
+        walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
+                   query, no_visits);
+        return any;
+    });
+}
+template <class I>
+std::size_t list_self_intersections(const I& index, std::vector<ElementPair>& found, Threads threads) {
+    return list_pairs<SelfIntersections>(
+        index, threads, [&](auto f) { return SelfCrossings(triangles_of(index), f); }, found);
+}
+template <class I>
+bool has_self_intersection(const I& index) {
+    return in_ieee_mode([&] {
+        bool any = false;
+        SelfCrossings query(triangles_of(index), StopAtFirst{&any});
+        walk_pairs(hierarchy_of(index.structure(), index.primitives()), query, no_visits);
+        return any;
+    });
+}
+
 }  // namespace detail
 
 /// Writes the pairs of triangles of two meshes that share a point to `found`, ascending: positions in both
@@ -130,8 +195,7 @@ struct StopAtFirst {
 template <class SA, TriangleSet A, class SB, TriangleSet B>
 std::size_t crossing_pairs(const Index<SA, A>& a, const Index<SB, B>& b, std::vector<ElementPair>& found,
                            const PairOptions& options = {}) {
-    return detail::list_pairs(
-        a, b, options.threads, [&](auto f) { return Crossings(triangles_of(a), triangles_of(b), f); }, found);
+    return detail::list_crossings(a, b, found, options.threads);
 }
 template <class SA, TriangleSet A, class SB, TriangleSet B>
 std::vector<ElementPair> crossing_pairs(const Index<SA, A>& a, const Index<SB, B>& b,
@@ -143,13 +207,7 @@ std::vector<ElementPair> crossing_pairs(const Index<SA, A>& a, const Index<SB, B
 /// Whether any triangles of two meshes share a point. Stops at the first pair.
 template <class SA, TriangleSet A, class SB, TriangleSet B>
 bool any_crossing(const Index<SA, A>& a, const Index<SB, B>& b) {
-    return in_ieee_mode([&] {
-        bool any = false;
-        Crossings query(triangles_of(a), triangles_of(b), detail::StopAtFirst{&any});
-        walk_pairs(hierarchy_of(a.structure(), a.primitives()), hierarchy_of(b.structure(), b.primitives()),
-                   query, no_visits);
-        return any;
-    });
+    return detail::has_crossing(a, b);
 }
 
 /// Writes the pairs (i, j), i < j, of triangles of one mesh that intersect to `found`, ascending. Neighbours,
@@ -159,8 +217,7 @@ bool any_crossing(const Index<SA, A>& a, const Index<SB, B>& b) {
 template <class S, TriangleSet P>
 std::size_t self_intersections(const Index<S, P>& index, std::vector<ElementPair>& found,
                                const PairOptions& options = {}) {
-    return detail::list_pairs(
-        index, options.threads, [&](auto f) { return SelfCrossings(triangles_of(index), f); }, found);
+    return detail::list_self_intersections(index, found, options.threads);
 }
 template <class S, TriangleSet P>
 std::vector<ElementPair> self_intersections(const Index<S, P>& index, const PairOptions& options = {}) {
@@ -171,12 +228,7 @@ std::vector<ElementPair> self_intersections(const Index<S, P>& index, const Pair
 /// Whether any triangles of a mesh intersect. Stops at the first pair.
 template <class S, TriangleSet P>
 bool any_self_intersection(const Index<S, P>& index) {
-    return in_ieee_mode([&] {
-        bool any = false;
-        SelfCrossings query(triangles_of(index), detail::StopAtFirst{&any});
-        walk_pairs(hierarchy_of(index.structure(), index.primitives()), query, no_visits);
-        return any;
-    });
+    return detail::has_self_intersection(index);
 }
 
 /// Writes all pairs (i, j), i < j, of points of one set that are within a radius of each other to `found`,
@@ -190,6 +242,9 @@ std::size_t pairs_within(const Index<S, P>& index, double radius,
                          std::vector<PairWithin<typename P::Scalar>>& found,
                          const PairOptions& options = {}) {
     using T = typename P::Scalar;
+    if (detail::found_by_engine<PairsWithinRadius>(std::tie(index), found, options.threads.over(index.size()),
+                                                   radius))
+        return found.size();
     std::vector<Vec<T, P::dimension>> copies;
     return detail::CellNeighbours<T, P::dimension>::pairs(detail::points_of(index.primitives(), copies),
                                                           square_within<T>(radius), found, options.threads);
@@ -207,6 +262,9 @@ std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b, double ra
                          std::vector<PairWithin<typename A::Scalar>>& found,
                          const PairOptions& options = {}) {
     using T = typename A::Scalar;
+    if (detail::found_by_engine<PairsWithinRadius>(std::tie(a, b), found,
+                                                   options.threads.over(a.size() + b.size()), radius))
+        return found.size();
     std::vector<Vec<T, A::dimension>> copies_of_a, copies_of_b;
     return detail::CellNeighbours<T, A::dimension>::pairs(detail::points_of(a.primitives(), copies_of_a),
                                                           detail::points_of(b.primitives(), copies_of_b),

@@ -2,7 +2,6 @@
 /// how many hits. ask/asking.h tells what all questions share.
 #pragma once
 
-#include <atomic>
 #include <span>
 #include <vector>
 
@@ -63,16 +62,6 @@ auto with_filter(const LeaveOut& leave_out, const Filter& filter, F f) {
     const auto enters = [&](std::uint32_t mask) { return hedgerow::enters(filter, mask); };
     return f(LeavingOut<T>{leave_out, keeps, enters});
 }
-template <class I, class Filter, class Count>
-std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits,
-                       const PlaceOfHit<typename I::Scalar>& after, const Filter& filter, Count& count) {
-    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
-                  requires { index.first_hits_uncounted(ray, hits, after); })
-        return index.first_hits_uncounted(ray, hits, after);
-    else
-        return index.template answer<FirstHits<typename I::Primitives, Filter>>(count, ray, hits, after,
-                                                                                filter);
-}
 }  // namespace detail
 
 // The first queries are declared inline so that an optimising compiler can inline those that `core` has
@@ -128,11 +117,7 @@ HitOf<I> last_hit(const I& index, const RayOf<I>& ray, const RayOptions& options
 template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
 std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits, const Filter& filter,
                      Count& count = no_visits) {
-    if constexpr (std::same_as<Filter, KeepAll> && std::same_as<Count, const NoVisits> &&
-                  requires { index.all_hits_uncounted(ray, hits); })
-        return index.all_hits_uncounted(ray, hits);
-    else
-        return index.template answer<AllHits<typename I::Primitives, Filter>>(count, ray, hits, filter);
+    return index.template answer<AllHits<typename I::Primitives, Filter>>(count, ray, hits, filter);
 }
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits,
@@ -165,7 +150,8 @@ std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> 
     using T = typename I::Scalar;
     const PlaceOfHit<T> after(options.after.of(0));
     return detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) {
-        return detail::first_hits(index, ray, hits, after, all, count);
+        using Query = FirstHits<typename I::Primitives, std::remove_cvref_t<decltype(all)>>;
+        return index.template answer<Query>(count, ray, hits, after, all);
     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter, class Count = const NoVisits>
@@ -197,58 +183,36 @@ std::size_t hit_count(const I& index, const RayOf<I>& ray, const RayOptions& opt
 }
 
 namespace detail {
-/// Sets answers[i] to the answer of Q for ray i, in pieces over the executor. The kernel of Q answers a piece
-/// if it takes many rays, else `one(i)` answers each ray.
-template <class Q, class I, class Answer, class Filter, class One>
-KernelUse answer_rays(const I& index, const RaysOf<I>& rays, Answer* answers, Executor& executor,
-                      bool one_by_one, const Filter& filter, One one) {
-    std::atomic<std::size_t> phased{0}, packets{0};
-    executor.for_each_piece(rays.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        const Kernel<Q, I> kernel;
-        const auto some = rays.part(begin, end - begin);
-        if constexpr (requires { kernel.answer_many(index, begin, some, answers, filter); })
-            if (kernel && !one_by_one) {
-                const KernelUse use = in_ieee_mode(
-                    [&] { return kernel.answer_many(index, begin, some, answers + begin, filter); });
-                phased += use.phased, packets += use.packets;
-                return;
-            }
-        for (std::size_t i = begin; i < end; ++i) answers[i] = one(i);
-    });
-    return {rays.size() - phased - packets, phased, packets};
-}
-/// The same of a query that has an answer for each ray: Q is ClosestHit or AnyHit.
-template <template <class, class> class Q, class I, class Answer, class Filter>
-KernelUse answer_each(const I& index, const RaysOf<I>& rays, Answer* answers, Executor& executor,
-                      const Filter& filter, std::span<Visits> visits = {}) {
-    using P = typename I::Primitives;
-    if constexpr (std::same_as<Filter, KeepAll> &&
-                  requires { index.rays_uncounted(rays, answers, executor); })
-        if (visits.empty()) return index.rays_uncounted(rays, answers, executor);
-    return answer_rays<Q<P, Filter>>(
-        index, rays, answers, executor, !visits.empty(), filter, [&](std::size_t i) {
-            const auto of_ray = filter_of_ray(filter, i);
-            return with_visits(visits, i, [&](auto& count) {
-                return index.template answer<Q<P, std::remove_const_t<decltype(of_ray)>>>(count, rays[i],
-                                                                                          of_ray);
-            });
-        });
-}
-template <template <class, class> class Q, class I, class Answer, class Filter>
-KernelUse answer_each(const I& index, const RaysOf<I>& rays, Answer* answers, const RayOptions& options,
-                      const Filter& filter, std::span<Visits> visits) {
+/// What batches of rays share: calls ask(filter, executor), with a filter that leaves out the options'
+/// elements too.
+template <class I, class Options, class Filter, class Ask>
+auto ask_rays(const RaysOf<I>& rays, const Options& options, const Filter& filter, std::span<Visits> visits,
+              Ask ask) {
     expect_visits(visits, rays.size());
     options.leave_out.expect(rays.size());
     Executor& executor = executor_for<Filter>(options.threads, rays.size());
-    return with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        return answer_each<Q>(index, rays, answers, executor, all, visits);
+    return with_filter<typename I::Scalar>(options.leave_out, filter,
+                                           [&](const auto& all) { return ask(all, executor); });
+}
+/// Sets answers[i] to the answer of Q, for ray i.
+template <template <class, class> class Q, class I, class Answer, class Filter>
+KernelUse answer_rays(const I& index, const RaysOf<I>& rays, Answer* answers, const RayOptions& options,
+                      const Filter& filter, std::span<Visits> visits) {
+    using P = typename I::Primitives;
+    return ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
+        return answer_batch<Q<P, All>>(
+            index, rays, answers, options, all, executor, visits, [&](std::size_t i, auto& count) {
+                const auto of_ray = filter_of_ray(all, i);
+                return index.template answer<Q<P, std::remove_const_t<decltype(of_ray)>>>(count, rays[i],
+                                                                                          of_ray);
+            });
     });
 }
 }  // namespace detail
 
 /// Writes the closest hit of ray i to hits[i], as `closest_hit` finds it. The rays may have any layout in
 /// memory (probes/ray_array.h); a vector or a span of rays will do. `filter(hit)` or `filter(i, hit)`, for
-/// ray i, may refuse a hit (queries/hit.h). Returns which algorithms answered (walks/kernel.h): only indexes
+/// ray i, may refuse a hit (queries/hit.h). Returns which algorithms answered (walks/engine.h): only indexes
 /// of float triangles in a WideBvh answer batches by kernels, all others ray by ray.
 ///
 ///   closest_hits(index, rays, hits, {.threads = 4});
@@ -259,7 +223,7 @@ KernelUse closest_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>
                        const RayOptions& options = {}, const Filter& filter = {},
                        std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), hits.size());
-    return detail::answer_each<ClosestHit>(index, rays, hits.data(), options, filter, visits);
+    return detail::answer_rays<ClosestHit>(index, rays, hits.data(), options, filter, visits);
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
 KernelUse closest_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits, const Filter& filter,
@@ -274,7 +238,7 @@ KernelUse any_hits(const I& index, const RaysOf<I>& rays, const Truths& hits, co
                    const Filter& filter = {}, std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), hits.size());
     return hits.written(rays.size(), [&](bool* answers) {
-        return detail::answer_each<AnyHit>(index, rays, answers, options, filter, visits);
+        return detail::answer_rays<AnyHit>(index, rays, answers, options, filter, visits);
     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
@@ -288,14 +252,7 @@ template <class I, class Filter = KeepAll>
 void last_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits,
                const RayOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), hits.size());
-    detail::expect_visits(visits, rays.size());
-    options.leave_out.expect(rays.size());
-    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
-    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        detail::ask_each(rays.size(), executor, visits, [&](std::size_t i, auto& count) {
-            hits[i] = last_hit(index, rays[i], filter_of_ray(all, i), count);
-        });
-    });
+    detail::answer_rays<LastHit>(index, rays, hits.data(), options, filter, visits);
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
 void last_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits, const Filter& filter,
@@ -310,14 +267,12 @@ void last_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits, 
 template <class I, class Filter = KeepAll>
 void all_hits(const I& index, const RaysOf<I>& rays, HitListsOf<I>& lists, const RayOptions& options = {},
               const Filter& filter = {}, std::span<Visits> visits = {}) {
-    detail::expect_visits(visits, rays.size());
-    options.leave_out.expect(rays.size());
-    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
-    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        detail::list_each(rays.size(), executor, lists, &HitListsOf<I>::hits, visits,
-                          [&](std::size_t i, auto& hits, auto& count) {
-                              return all_hits(index, rays[i], hits, filter_of_ray(all, i), count);
-                          });
+    detail::ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
+        detail::list_batch<AllHits<typename I::Primitives, All>>(
+            index, rays, lists, options, all, executor, visits,
+            detail::appending(&HitListsOf<I>::hits, [&](std::size_t i, auto& hits, auto& count) {
+                all_hits(index, rays[i], hits, filter_of_ray(all, i), count);
+            }));
     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
@@ -342,28 +297,22 @@ HitListsOf<I> all_hits(const I& index, const RaysOf<I>& rays, const Filter& filt
 template <class I, class Filter = KeepAll>
 void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf<I>& lists,
                 const HitsOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
-    detail::expect_visits(visits, rays.size());
     options.after.expect(rays.size());
-    options.leave_out.expect(rays.size());
-    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
-    using T = typename I::Scalar;
     // A ray has no more hits than there are primitives.
     k = std::min(k, detail::primitives_in(index.primitives()));
-    detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) {
-        detail::list_in_pieces(
-            rays.size(), executor, lists, [&](std::size_t begin, std::size_t end, HitListsOf<I>& to) {
-                for (std::size_t i = begin; i < end; ++i) {
-                    const std::size_t before = to.hits.size();
-                    to.hits.resize(before + k);
-                    const std::size_t found = detail::with_visits(visits, i, [&](auto& count) {
-                        return detail::first_hits(index, rays[i], std::span(to.hits.data() + before, k),
-                                                  PlaceOfHit<T>(options.after.of(i)), filter_of_ray(all, i),
-                                                  count);
-                    });
-                    to.hits.resize(before + found);
-                    to.offsets.push_back(to.hits.size());
-                }
-            });
+    detail::ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
+        detail::list_batch<FirstHits<typename I::Primitives, All>>(
+            index, rays, lists, options, all, executor, visits,
+            [&](std::size_t i, HitListsOf<I>& to, auto& count) {
+                const std::size_t before = to.hits.size();
+                to.hits.resize(before + k);
+                const std::size_t found =
+                    first_hits(index, rays[i], std::span(to.hits.data() + before, k),
+                               {.after = options.after.of(i)}, filter_of_ray(all, i), count);
+                to.hits.resize(before + found);
+                to.offsets.push_back(before + found);
+            },
+            k);
     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
@@ -385,13 +334,11 @@ template <class I, class Filter = KeepAll>
 void hit_counts(const I& index, const RaysOf<I>& rays, std::span<std::size_t> counts,
                 const RayOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), counts.size());
-    detail::expect_visits(visits, rays.size());
-    options.leave_out.expect(rays.size());
-    Executor& executor = detail::executor_for<Filter>(options.threads, rays.size());
-    detail::with_filter<typename I::Scalar>(options.leave_out, filter, [&](const auto& all) {
-        detail::ask_each(rays.size(), executor, visits, [&](std::size_t i, auto& count) {
-            return counts[i] = hit_count(index, rays[i], filter_of_ray(all, i), count);
-        });
+    detail::ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
+        detail::answer_batch<HitCount<typename I::Primitives, All>>(
+            index, rays, counts.data(), options, all, executor, visits, [&](std::size_t i, auto& count) {
+                return hit_count(index, rays[i], filter_of_ray(all, i), count);
+            });
     });
 }
 

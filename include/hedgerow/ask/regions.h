@@ -110,23 +110,30 @@ concept RegionsFor = RegionFor<typename detail::RegionOf<Rs>::Type, I> &&
     std::convertible_to<const Rs&, Strided<typename detail::RegionOf<Rs>::Type>>;
 
 namespace detail {
-/// Lists what one(region, found, count) finds of each region of a batch.
-template <class I, class Rs, class One>
-void list_regions(const I&, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options,
-                  std::span<Visits> visits, One one) {
-    const Strided<typename RegionOf<Rs>::Type> all(regions);
+/// Lists what one(region, found, count) finds of each region of a batch. An engine of Q gets what is to be
+/// found too.
+template <template <class, class> class Q, class I, class Rs, class One>
+void list_regions(const I& index, const Rs& regions, Finds finds, IdListsOf<I>& lists,
+                  const RegionOptions& options, std::span<Visits> visits, One one) {
+    using R = typename RegionOf<Rs>::Type;
+    const Strided<R> all(regions);
     expect_visits(visits, all.size());
-    list_each(all.size(), options.threads.over(all.size()), lists, &IdListsOf<I>::ids, visits,
-              [&](std::size_t i, auto& found, auto& count) { return one(all[i], found, count); });
+    list_batch<Q<typename I::Primitives, R>>(
+        index, all, lists, options, KeepAll(), options.threads.over(all.size()), visits,
+        appending(&IdListsOf<I>::ids,
+                  [&](std::size_t i, auto& found, auto& count) { one(all[i], found, count); }),
+        finds);
 }
 /// Sets answers[i] to what one(region, count) answers of region i.
-template <class Rs, class Answer, class One>
-void answer_regions(const Rs& regions, Answer* answers, const RegionOptions& options,
-                    std::span<Visits> visits, One one) {
-    const Strided<typename RegionOf<Rs>::Type> all(regions);
+template <template <class, class> class Q, class I, class Rs, class Answer, class One>
+KernelUse answer_regions(const I& index, const Rs& regions, Answer* answers, const RegionOptions& options,
+                         std::span<Visits> visits, One one) {
+    using R = typename RegionOf<Rs>::Type;
+    const Strided<R> all(regions);
     expect_visits(visits, all.size());
-    ask_each(all.size(), options.threads.over(all.size()), visits,
-             [&](std::size_t i, auto& count) { return answers[i] = one(all[i], count); });
+    return answer_batch<Q<typename I::Primitives, R>>(
+        index, all, answers, options, KeepAll(), options.threads.over(all.size()), visits,
+        [&](std::size_t i, auto& count) { return one(all[i], count); });
 }
 }  // namespace detail
 
@@ -134,10 +141,9 @@ void answer_regions(const Rs& regions, Answer* answers, const RegionOptions& opt
 template <class I, RegionsFor<I> Rs>
 void overlapping(const I& index, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options = {},
                  std::span<Visits> visits = {}) {
-    detail::list_regions(index, regions, lists, options, visits,
-                         [&](const auto& region, auto& found, auto& count) {
-                             return overlapping(index, region, found, {}, count);
-                         });
+    detail::list_regions<Overlapping>(
+        index, regions, Finds::overlapping, lists, options, visits,
+        [&](const auto& region, auto& found, auto& count) { overlapping(index, region, found, {}, count); });
 }
 template <class I, RegionsFor<I> Rs>
 IdListsOf<I> overlapping(const I& index, const Rs& regions, const RegionOptions& options = {},
@@ -149,10 +155,9 @@ IdListsOf<I> overlapping(const I& index, const Rs& regions, const RegionOptions&
 template <class I, RegionsFor<I> Rs>
 void contained(const I& index, const Rs& regions, IdListsOf<I>& lists, const RegionOptions& options = {},
                std::span<Visits> visits = {}) {
-    detail::list_regions(index, regions, lists, options, visits,
-                         [&](const auto& region, auto& found, auto& count) {
-                             return contained(index, region, found, {}, count);
-                         });
+    detail::list_regions<Overlapping>(
+        index, regions, Finds::contained, lists, options, visits,
+        [&](const auto& region, auto& found, auto& count) { contained(index, region, found, {}, count); });
 }
 template <class I, RegionsFor<I> Rs>
 IdListsOf<I> contained(const I& index, const Rs& regions, const RegionOptions& options = {},
@@ -166,9 +171,9 @@ template <class I, RegionsFor<I> Rs>
 void overlap_counts(const I& index, const Rs& regions, std::span<std::size_t> counts,
                     const RegionOptions& options = {}, std::span<Visits> visits = {}) {
     detail::expect_room("regions", std::size(regions), counts.size());
-    detail::answer_regions(regions, counts.data(), options, visits, [&](const auto& region, auto& count) {
-        return overlap_count(index, region, {}, count);
-    });
+    detail::answer_regions<OverlapCount>(
+        index, regions, counts.data(), options, visits,
+        [&](const auto& region, auto& count) { return overlap_count(index, region, {}, count); });
 }
 /// Writes whether any primitive overlaps region i to place i of `found`: an array of bool or of bytes, or a
 /// std::vector<bool>.
@@ -177,10 +182,9 @@ void any_overlaps(const I& index, const Rs& regions, const Truths& found, const 
                   std::span<Visits> visits = {}) {
     detail::expect_room("regions", std::size(regions), found.size());
     found.written(std::size(regions), [&](bool* answers) {
-        detail::answer_regions(regions, answers, options, visits, [&](const auto& region, auto& count) {
-            return any_overlap(index, region, {}, count);
-        });
-        return true;
+        return detail::answer_regions<AnyOverlap>(
+            index, regions, answers, options, visits,
+            [&](const auto& region, auto& count) { return any_overlap(index, region, {}, count); });
     });
 }
 

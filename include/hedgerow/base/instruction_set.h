@@ -4,7 +4,6 @@
 /// compiler knows (AVX-512, AVX2, SSE4; NEON) and chosen at run time.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string_view>
 #include <vector>
@@ -26,13 +25,10 @@ std::vector<std::string_view> instruction_sets();
 /// not in the list.
 void use_instruction_set(std::string_view name);
 
-/// The kernels of a component for each InstructionSet, or nullptr where it has none.
+/// The kernels of a kind that are in use, or nullptr where there are none and plain code answers. A kind is a
+/// struct of functions. Its header declares a specialisation, and the source that compiles them for each
+/// instruction set defines it (src/core/in_use.h), so that a new kind touches no other.
 template <class Kernels>
-using KernelTables = std::array<const Kernels*, 5>;
-
-template <class Kernels>
-const Kernels* in_use(const KernelTables<Kernels>& tables) {
-    return tables[static_cast<std::size_t>(instruction_set())];
-}
+const Kernels* in_use();
 
 }  // namespace hedgerow

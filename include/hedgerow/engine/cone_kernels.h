@@ -1,10 +1,9 @@
-/// The engine's specialisation of Kernel (walks/kernel.h) for what a cone sees of float triangles in a
-/// WideBvh in space.
+/// The engine of what a cone sees of float triangles in a WideBvh in space (walks/engine.h).
 #pragma once
 
 #include <hedgerow/engine/kernel_scenes.h>
 #include <hedgerow/queries/cone_fragments.h>
-#include <hedgerow/walks/kernel.h>
+#include <hedgerow/walks/engine.h>
 
 namespace hedgerow {
 
@@ -15,21 +14,23 @@ struct ConeKernels {
     ConeView::Share (*share)(const ConeView&, std::uint64_t id);
 };
 /// The kernels in use, or nullptr.
-const ConeKernels* cone_kernels();
+template <>
+const ConeKernels* in_use<ConeKernels>();
 
 template <class Set, detail::TrianglesForKernels I>
 requires std::same_as<Set, typename I::Primitives>
-struct Kernel<ConeFragments<Set>, I> {
+struct EngineFor<ConeFragments<Set>, I> {
+    explicit EngineFor(const I& index) : index_(index) {}
     explicit operator bool() const { return kernels_ != nullptr; }
-    std::size_t answer(const I& index, const ConeRays<float, 3>& cone,
-                       std::vector<ConeFragment<float>>& found) const {
+    std::size_t answer(const ConeRays<float, 3>& cone, std::vector<ConeFragment<float>>& found) const {
         ConeView view;
-        kernels_->look(detail::kernel_scene(index), {cone, index.bounds()}, view);
+        kernels_->look(detail::kernel_scene(index_), {cone, index_.bounds()}, view);
         return view.write(found, kernels_->share);
     }
 
 private:
-    const ConeKernels* kernels_ = cone_kernels();
+    const I& index_;
+    const ConeKernels* kernels_ = in_use<ConeKernels>();
 };
 
 }  // namespace hedgerow

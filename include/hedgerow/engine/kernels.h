@@ -22,7 +22,7 @@
 #include <hedgerow/queries/first_hits.h>
 #include <hedgerow/queries/point_query.h>
 #include <hedgerow/queries/signed_crossings.h>
-#include <hedgerow/walks/kernel.h>
+#include <hedgerow/walks/engine.h>
 
 namespace hedgerow {
 
@@ -132,7 +132,7 @@ struct PointKernels : ClosestKernels<Scene> {
     /// Appends all within the distance to the keys, in no order.
     void (*within)(const Scene&, const Vec<float, 3>&, float max_distance2, NearKeys& keys);
 };
-/// The kernels of points of one instruction set.
+/// The kernels of points.
 struct AllPointKernels {
     PointKernels<WideScene> triangles;
     PointKernels<WidePoints> points;
@@ -171,28 +171,33 @@ struct WideExpansion {
     const TriangleBlock<float>* blocks;
     WindingLeaves leaves = {};
 };
-/// The winding number, without the terms that `leaves` added.
-using WindingKernel = double (*)(const WideExpansion&, const WindingQuery&);
+struct WindingKernels {
+    /// The winding number, without the terms that `leaves` added.
+    double (*winding_number)(const WideExpansion&, const WindingQuery&);
+};
 
-/// The kernels of one instruction set.
-struct WideKernels {
-    /// The width (children per node) that these kernels are best at.
+/// The kernels of rays.
+struct AllRayKernels {
+    /// The width (children per node) that all kernels of the instruction set are best at.
     int width;
     RayKernels<Hit<float>> closest;
     RayKernels<bool> any;
     FirstHitsKernel first_hits;
-    const AllPointKernels* points;
-    const ElementKernels* elements;
-    const WindingKernel* winding_number;
-    const AllCrossingKernels* crossings;
 };
 
-/// The kernels in use, or nullptr for the plain walk.
-const WideKernels* wide_kernels();
+// Where none are in use, the plain walk answers.
+template <>
+const AllRayKernels* in_use<AllRayKernels>();
+template <>
+const AllPointKernels* in_use<AllPointKernels>();
+template <>
+const AllCrossingKernels* in_use<AllCrossingKernels>();
+template <>
+const WindingKernels* in_use<WindingKernels>();
 
 /// The width (children per node) of new indexes: what the kernels in use are best at, or 8 without kernels.
 inline int preferred_wide_width() {
-    const WideKernels* const kernels = wide_kernels();
+    const AllRayKernels* const kernels = in_use<AllRayKernels>();
     return kernels != nullptr ? kernels->width : 8;
 }
 

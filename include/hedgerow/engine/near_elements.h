@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include <hedgerow/base/instruction_set.h>
 #include <hedgerow/geometry/shapes.h>
 
 namespace hedgerow {
@@ -51,7 +52,9 @@ struct ElementKernels {
     void (*measure)(const NearElements&, const DistanceMargin&, const Vec3d* points, int count,
                     ToElements* found);
 };
-/// Those for the instruction set in use (engine/kernels.h).
+template <>
+const ElementKernels* in_use<ElementKernels>();
+/// Those in use, or plain ones.
 const ElementKernels& element_kernels();
 
 }  // namespace hedgerow

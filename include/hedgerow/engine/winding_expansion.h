@@ -129,8 +129,8 @@ public:
         const WindingQuery query = this->query(tree, point, error, *memory);
         typename Parts::Sum exact(parts, point, query.to_unit);
         if constexpr (std::same_as<T, float> && std::same_as<std::remove_const_t<Count>, NoVisits>)
-            if (const WideKernels* const kernels = wide_kernels(); kernels != nullptr) {
-                const WindingKernel answer = *kernels->winding_number;
+            if (const WindingKernels* const kernels = in_use<WindingKernels>(); kernels != nullptr) {
+                const auto answer = kernels->winding_number;
                 if (blocks != nullptr) return answer({tree, rows(), blocks}, query);
                 auto add = [&](std::uint32_t block, std::uint32_t primitives) {
                     return detail::add_exactly(exact, tree, block, primitives);

@@ -7,7 +7,7 @@
 
 #include <hedgerow/instances/placed_index.h>
 #include <hedgerow/queries/filter.h>
-#include <hedgerow/walks/kernel.h>
+#include <hedgerow/walks/engine.h>
 #include <hedgerow/walks/structure.h>
 
 namespace hedgerow {
@@ -89,7 +89,7 @@ public:
     using T = Scalar;
     static constexpr int D = dimension;
 
-    using ForKernels = typename InstanceKernel<I>::Instance;
+    using ForKernels = typename InstanceForEngine<I>::Instance;
 
     InstanceSetView() = default;
     InstanceSetView(std::span<const PlacedIndex<I>> all, const ForKernels* for_kernels, double error,
@@ -159,15 +159,14 @@ public:
     }
 
 private:
-    /// Queries one instance by a ray. A kernel, if there is one for the index, offers only the one candidate
+    /// Queries one instance by a ray. An engine, if there is one for the index, offers only the one candidate
     /// that the query needs.
     template <class Q>
     static Flow ask_inside(const PlacedIndex<I>& placed, std::uint32_t instance, const RayProbe<T, D>& probe,
                            Q& query) {
-        if constexpr (HasKernel<Q, I>)
-            if (const Kernel<Q, I> kernel; kernel)
-                return kernel.offer_inside(placed.index(), placed.inside(probe.ray()), instance,
-                                           placed.geometry(), query);
+        if constexpr (AnswersInside<EngineFor<Q, I>, Ray<T, D>, Q>)
+            if (const EngineFor<Q, I> engine(placed.index()); engine)
+                return engine.offer_inside(placed.inside(probe.ray()), instance, placed.geometry(), query);
         detail::RayInside<I, Q> inside(placed, instance, probe, query);
         placed.index().ask(inside);
         return inside.flow();
@@ -220,9 +219,9 @@ public:
             placed_.emplace_back(instance);
             error_ = std::max(error_, placed_.back().ray_error());
             error_by_origin_ = std::max(error_by_origin_, placed_.back().ray_error_by_origin());
-            if constexpr (requires { &InstanceKernel<I>::of; })
-                for_kernels_.push_back(InstanceKernel<I>::of(*instance.index, instance.transform.back(),
-                                                             instance.mask, instance.geometry));
+            if constexpr (requires { &InstanceForEngine<I>::of; })
+                for_kernels_.push_back(InstanceForEngine<I>::of(*instance.index, instance.transform.back(),
+                                                                instance.mask, instance.geometry));
         }
     }
     explicit InstanceSet(const std::vector<Instance<I>>& instances) : InstanceSet(std::span(instances)) {}
@@ -234,7 +233,7 @@ public:
 
 private:
     std::vector<PlacedIndex<I>> placed_;
-    std::vector<typename InstanceKernel<I>::Instance> for_kernels_;
+    std::vector<typename InstanceForEngine<I>::Instance> for_kernels_;
     double error_ = 0, error_by_origin_ = 0;
 };
 

@@ -1,31 +1,13 @@
-/// Images with named channels of numbers, and OpenEXR files.
+/// OpenEXR files.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <string>
-#include <variant>
-#include <vector>
 
-#include <hedgerow/base/strided.h>
 #include <hedgerow/io/notes.h>
+#include <hedgerow/looks/layers.h>
 #include <hedgerow/parallel/progress.h>
 
 namespace hedgerow {
-
-/// One value per pixel, in rows from the top, each from left to right. Borrows the caller's array.
-struct Channel {
-    /// A name such as "R", or "normal.X" for X of the layer "normal": 1 to 255 bytes, none of them 0.
-    std::string name;
-    std::variant<Strided<float>, Strided<std::uint32_t>> values;
-};
-
-/// Channels of width × height pixels each. Viewers show R, G and B, as linear light with the primaries of
-/// sRGB.
-struct Layers {
-    int width = 0, height = 0;
-    std::vector<Channel> channels;
-};
 
 /// Writes an EXR file: scan lines of FLOAT and UINT channels, compressed without loss (ZIP), so that every
 /// value is kept, infinities and NaN included. The format is "OpenEXR File Layout",

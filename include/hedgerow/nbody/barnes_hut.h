@@ -141,7 +141,6 @@ struct BarnesHutOptions {
 /// Throws as `forces` does, and UsageError for an angle out of its range. In the library `nbody`; T is float
 /// or double.
 template <std::floating_point T>
-void barnes_hut(const Charges<T>& charges, std::span<PotentialAt<T>> found,
-                const BarnesHutOptions& options = {});
+void barnes_hut(const Charges<T>& charges, PotentialsFound<T> found, const BarnesHutOptions& options = {});
 
 }  // namespace hedgerow

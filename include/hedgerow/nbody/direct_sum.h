@@ -63,13 +63,13 @@ struct SumOptions {
 ///
 /// In the library `nbody`; T is float or double.
 template <std::floating_point T>
-void direct_sum(const Charges<T>& sources, const Targets<T>& targets, std::span<PotentialAt<T>> found,
+void direct_sum(const Charges<T>& sources, const Targets<T>& targets, PotentialsFound<T> found,
                 const SumOptions& options = {});
 
 /// The same at the charges themselves, or at as many of the first ones as `found` has room for: what all
 /// others do.
 template <std::floating_point T>
-void direct_sum(const Charges<T>& charges, std::span<PotentialAt<T>> found, const SumOptions& options = {});
+void direct_sum(const Charges<T>& charges, PotentialsFound<T> found, const SumOptions& options = {});
 
 /// Writes the tidal tensor of the charges at each target, likewise, pair by pair in double. A softened charge
 /// acts at its own place too, unless the target says that it is the charge (`Targets::charges`). O(sources ·

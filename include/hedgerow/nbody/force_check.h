@@ -2,6 +2,7 @@
 /// charges.
 #pragma once
 
+#include <concepts>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,17 @@ public:
     /// for each. O(charges).
     template <std::floating_point T>
     ForceErrors errors_of(std::span<const PotentialAt<T>> found) const;
+    /// Of a vector or another array of them.
+    template <class Found>
+    requires(std::convertible_to<const Found&, std::span<const PotentialAt<float>>> ||
+             std::convertible_to<const Found&, std::span<const PotentialAt<double>>>) ForceErrors
+        errors_of(const Found& found)
+    const {
+        if constexpr (std::convertible_to<const Found&, std::span<const PotentialAt<float>>>)
+            return errors_of(std::span<const PotentialAt<float>>(found));
+        else
+            return errors_of(std::span<const PotentialAt<double>>(found));
+    }
 
 private:
     std::vector<double> charges_;

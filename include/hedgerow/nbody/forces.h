@@ -41,12 +41,12 @@ struct ForceOptions {
 ///
 /// In the library `nbody`; T is float or double.
 template <std::floating_point T>
-void forces(const Charges<T>& charges, std::span<PotentialAt<T>> found, const ForceOptions& options = {});
+void forces(const Charges<T>& charges, PotentialsFound<T> found, const ForceOptions& options = {});
 
 /// The same at other places, which may be few: a target costs about as much as a charge, and charges cost
 /// little beside. A charge at a target's own place does nothing there.
 template <std::floating_point T>
-void forces(const Charges<T>& charges, const Targets<T>& targets, std::span<PotentialAt<T>> found,
+void forces(const Charges<T>& charges, const Targets<T>& targets, PotentialsFound<T> found,
             const ForceOptions& options = {});
 
 }  // namespace hedgerow

@@ -115,19 +115,31 @@ using AddMultipole = void (*)(const ChargeRows<double>&, int order, double* mult
 using AddLocal = void (*)(const double* local, int order, const TargetRows<double>&);
 inline constexpr int most_order_at_run_time = 20;
 
+/// Those of ascending orders.
 using FmmFloatKernels = std::array<FmmKernel<float>, 4>;
 using FmmDoubleKernels = std::array<FmmKernel<double>, 2>;
 
-/// The kernels of one instruction set. Orders ascend.
 struct NbodyKernels {
     DirectKernel<float> direct_float;
     DirectKernel<double> direct_double, direct_exact;
-    const FmmFloatKernels* fmm_float;
-    const FmmDoubleKernels* fmm_double;
     AddMultipole add_multipole;
     AddLocal add_local;
 };
-/// The kernels in use, or nullptr where plain code answers.
-const NbodyKernels* nbody_kernels();
+
+// Where none are in use, plain code answers.
+template <>
+const NbodyKernels* in_use<NbodyKernels>();
+template <>
+const FmmFloatKernels* in_use<FmmFloatKernels>();
+template <>
+const FmmDoubleKernels* in_use<FmmDoubleKernels>();
+
+/// The kernels of the fast multipole method that are in use.
+struct FmmKernels {
+    const FmmFloatKernels* of_float = in_use<FmmFloatKernels>();
+    const FmmDoubleKernels* of_double = in_use<FmmDoubleKernels>();
+
+    explicit operator bool() const { return of_float != nullptr && of_double != nullptr; }
+};
 
 }  // namespace hedgerow

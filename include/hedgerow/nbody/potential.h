@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <string>
+#include <type_traits>
 
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/vec.h>
@@ -16,6 +18,10 @@ struct PotentialAt {
     T potential{};
     Vec<T, D> gradient{};
 };
+
+/// Where the potentials of many places are written: a vector of them will do, since T is that of the charges.
+template <class T>
+using PotentialsFound = std::type_identity_t<std::span<PotentialAt<T>>>;
 
 /// A tidal tensor: the second derivatives of a potential Σ q·φ(r). Where charges are masses, G times these
 /// are how fast the acceleration changes from place to place.

@@ -91,11 +91,15 @@ bool is_worker();
 class Threads {
 public:
     Threads() = default;
-    Threads(Executor& given) : given_(&given) {}  // NOLINT(google-explicit-constructor): an executor will do
+    Threads(Executor& given)  // NOLINT(google-explicit-constructor): an executor will do
+        : given_(&given), chosen_(true) {}
     /// At most so many threads; 0 or less means all.
     template <std::integral Number>
-    Threads(Number most) : most_(most > 0 ? static_cast<std::size_t>(most) : 0) {}  // NOLINT: a number too
+    Threads(Number most)  // NOLINT: a number too
+        : most_(most > 0 ? static_cast<std::size_t>(most) : 0), chosen_(true) {}
 
+    /// Whether they are the caller's choice.
+    bool chosen() const { return chosen_; }
     Executor& over(std::size_t items) const {
         if (given_ != nullptr) return *given_;
         if (items < worth_a_task || is_worker()) return serial_executor();
@@ -105,6 +109,7 @@ public:
 private:
     Executor* given_ = nullptr;
     std::size_t most_ = 0;
+    bool chosen_ = false;
 };
 
 /// Limits oneTBB to a number of threads for as long as the object lives; 0 means all cores. Has no effect if

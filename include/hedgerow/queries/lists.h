@@ -1,6 +1,7 @@
 /// The answers of questions that give a list for each of many queries.
 #pragma once
 
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -161,38 +162,25 @@ void list_in_own_memory(L& lists, F f) {
 }
 /// Fills `lists` with those of `count` queries, in pieces over the executor: answer(begin, end, to) appends
 /// the lists of queries `begin` to `end` to some. The lists do not depend on how the work is cut. Over
-/// several threads it takes the memory of the answers twice.
+/// several threads it takes the memory of the answers twice; in one, lists that have the memory allocate
+/// nothing.
 template <class C, class Answer>
 void list_in_pieces(std::size_t count, Executor& executor, Lists<C>& lists, Answer answer) {
     constexpr std::size_t piece = 256;
     // The executor cuts the row of pieces; the lists of each cut are joined in the order of the queries.
-    std::vector<Lists<C>> cuts((count + piece - 1) / piece);
-    bool whole = false;
+    const std::size_t pieces = (count + piece - 1) / piece;
+    std::vector<Lists<C>> cuts;
+    std::once_flag cut_at_all;
     lists.clear();
-    executor.for_each_piece(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    executor.for_each_piece(pieces, 1, [&](std::size_t begin, std::size_t end) {
         if (begin == end) return;  // an executor may cut empty pieces
-        if (end - begin == cuts.size() && lists.own()) {
-            whole = true;
-            return answer(std::size_t(0), count, lists);
-        }
+        if (end - begin == pieces && lists.own()) return answer(std::size_t(0), count, lists);
+        std::call_once(cut_at_all, [&] { cuts.resize(pieces); });
         Lists<C>& cut = cuts[begin];
         cut.clear();
         answer(begin * piece, std::min(end * piece, count), cut);
     });
-    if (whole) return;
-    lists.join(cuts);
-}
-/// The same for lists of one column: one(i, list) replaces what a vector holds by the list of query i.
-template <class C, class T, class One>
-void list_one_by_one(std::size_t count, Executor& executor, Lists<C>& lists, Buffer<T> C::*column, One one) {
-    list_in_pieces(count, executor, lists, [&](std::size_t begin, std::size_t end, Lists<C>& to) {
-        std::vector<T> list;
-        for (std::size_t i = begin; i < end; ++i) {
-            one(i, list);
-            (to.*column).append(list);
-            to.offsets.push_back((to.*column).size());
-        }
-    });
+    if (!cuts.empty()) lists.join(cuts);
 }
 }  // namespace detail
 

@@ -72,6 +72,11 @@ struct NearLimits {
         if (!(static_cast<double>(distance2) < options.radius2))
             distance2 = greatest_at_most<T>(options.radius2);
     }
+    /// Those of a batch, which leave out nothing.
+    static NearLimits of_batch(PointOptions options) {
+        options.leave_out = {};
+        return NearLimits(options);
+    }
     /// Whether nothing is within them.
     bool nothing() const { return !(distance2 >= 0); }
     /// The limit of a walk that has found something at a squared distance.

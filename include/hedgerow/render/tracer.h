@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include <hedgerow/ask/rays.h>
-#include <hedgerow/walks/kernel.h>
+#include <hedgerow/walks/engine.h>
 
 namespace hedgerow {
 

@@ -9,6 +9,7 @@
 
 #include <hedgerow/geometry/box.h>
 #include <hedgerow/render/camera/camera.h>
+#include <hedgerow/scenes/views.h>
 
 namespace hedgerow {
 
@@ -86,27 +87,11 @@ inline std::optional<Camera> named_view(std::string_view name, const Box3f& box,
     return c;
 }
 
-/// The best camera for a generated scene that the automatic camera does not suit; nothing for other scenes.
+/// The camera for a generated scene that has a view of its own (scenes/views.h); nothing for other scenes.
 inline std::optional<Camera> camera_for(std::string_view scene) {
-    // From a few paces away, with the stands behind the teapot: from afar the teapot is a dot.
-    if (scene == "teapot-in-stadium") return Camera{{7, -12, 5.5f}, {0, 0, 2.4f}, {0, 0, 1}, 45};
-    // The camera of the stadium, turned as the scene is.
-    if (scene == "turned-stadium") {
-        const auto turned = [](const Vec3f& p) {
-            const float c = 0.8660254f, s = 0.5f, y = c * p[1] - s * p[2], z = s * p[1] + c * p[2];
-            return Vec3f(c * p[0] + s * z, y, c * z - s * p[0]);
-        };
-        Camera c = *camera_for("teapot-in-stadium");
-        c.eye = turned(c.eye), c.target = turned(c.target), c.up = turned(c.up);
-        return c;
-    }
-    // Through the open side of the box, as it was photographed (Goral et al. 1984).
-    if (scene == "cornell-box")
-        return Camera{{278, 273, -800}, {278, 273, 0}, {0, 1, 0}, 39.3f, {0.3f, 0.25f, -1}};
-    // From a corner of the living room, through the next room; the sun shines in.
-    if (scene == "interior")
-        return Camera{{0.5f, 4.2f, 1.6f}, {3.6f, 1.4f, 1}, {0, 0, 1}, 62, {0.35f, -1, 0.6f}};
-    return std::nullopt;
+    const auto view = view_of_scene(scene);
+    if (!view) return std::nullopt;
+    return Camera{view->eye, view->target, view->up, view->degrees, view->light};
 }
 
 }  // namespace hedgerow

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <hedgerow/geometry/vec.h>
-#include <hedgerow/io/exr.h>
+#include <hedgerow/looks/layers.h>
 #include <hedgerow/queries/hit.h>
 
 namespace hedgerow {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 #include <hedgerow/geometry/elementary.h>
@@ -30,11 +31,11 @@ constexpr bool is_lit(Shading s) {
 constexpr bool counts_visits(Shading s) {
     return s == Shading::steps || s == Shading::tests;
 }
-/// The shading of this name; diffuse for a name that there is not.
-constexpr Shading parse_shading(std::string_view name) {
+/// The shading of this name; nothing for a name that there is not.
+constexpr std::optional<Shading> named_shading(std::string_view name) {
     for (std::size_t i = 0; i < shading_names.size(); ++i)
         if (shading_names[i] == name) return static_cast<Shading>(i);
-    return Shading::diffuse;
+    return std::nullopt;
 }
 
 /// Colours, as linear light, of grey surfaces; lit by a sky and a distant light.

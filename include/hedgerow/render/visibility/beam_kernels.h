@@ -31,6 +31,7 @@ struct BeamKernels {
 };
 
 /// The kernels in use, or nullptr.
-const BeamKernels* beam_kernels();
+template <>
+const BeamKernels* in_use<BeamKernels>();
 
 }  // namespace hedgerow

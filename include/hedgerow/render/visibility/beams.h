@@ -97,7 +97,8 @@ BeamCounts beam_hits(const Index<S, P>& index, const PictureSamples<float>& samp
         throw UsageError("beams are 64, 32, 16 or 8 pixels wide, or 0 for none: not " + std::to_string(w));
     BeamCounts sum;
     if constexpr (detail::TrianglesForKernels<Index<S, P>>) {
-        if (const BeamKernels* const kernels = beam_kernels(); kernels != nullptr && samples.from_one_eye()) {
+        if (const BeamKernels* const kernels = in_use<BeamKernels>();
+            kernels != nullptr && samples.from_one_eye()) {
             const detail::BeamPicture picture(detail::kernel_scene(index), samples, options);
             std::vector<BeamCounts> counts(picture.tiles());
             IeeeExecutor threads(options.threads.over(samples.size()));

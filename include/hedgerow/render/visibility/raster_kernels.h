@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include <hedgerow/base/instruction_set.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/hit.h>
 #include <hedgerow/render/visibility/pixel_bounds.h>
@@ -114,6 +115,7 @@ struct RasterKernels {
 inline constexpr PixelBox uncut{-2, -2, -2, -2};
 
 /// The kernels in use, or nullptr for the plain loops.
-const RasterKernels* raster_kernels();
+template <>
+const RasterKernels* in_use<RasterKernels>();
 
 }  // namespace hedgerow

@@ -194,7 +194,8 @@ private:
     /// The kernels for such triangles, or null.
     template <class Triangles>
     const RasterKernels* kernels() const {
-        return std::is_same_v<Triangles, TriangleMeshView<float>> && !counts_ ? raster_kernels() : nullptr;
+        return std::is_same_v<Triangles, TriangleMeshView<float>> && !counts_ ? in_use<RasterKernels>()
+                                                                              : nullptr;
     }
     template <class Triangles>
     bool uses_kernels() const {

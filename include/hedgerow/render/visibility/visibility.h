@@ -10,7 +10,7 @@
 #include <hedgerow/queries/hit.h>
 #include <hedgerow/render/shading/layer_walk.h>
 #include <hedgerow/render/visibility/samples.h>
-#include <hedgerow/walks/kernel.h>
+#include <hedgerow/walks/engine.h>
 #include <hedgerow/walks/visits.h>
 
 namespace hedgerow {

@@ -13,12 +13,12 @@
 namespace hedgerow::cli {
 
 /// The file of a state. Without a name there is none: nothing is loaded, and nothing must be saved.
-class PathState {
+class SavedPicture {
 public:
     /// For pictures of a scene by these options: all that their light depends on, but for the number of
     /// samples.
     template <class T>
-    PathState(const RenderArguments& a, const ShownModel<T>& shown, const PathPictureOptions& options);
+    SavedPicture(const RenderArguments& a, const ShownModel<T>& shown, const PathPictureOptions& options);
 
     bool has_file() const { return !file_.empty(); }
     /// The picture that work goes on from: that of the file, if it exists. If that has no direct light, the
@@ -41,9 +41,9 @@ private:
     PathPicture copy_{1, 1};
     std::future<void> saving_;  // its destructor waits
 };
-extern template PathState::PathState(const RenderArguments&, const ShownModel<float>&,
-                                     const PathPictureOptions&);
-extern template PathState::PathState(const RenderArguments&, const ShownModel<double>&,
-                                     const PathPictureOptions&);
+extern template SavedPicture::SavedPicture(const RenderArguments&, const ShownModel<float>&,
+                                           const PathPictureOptions&);
+extern template SavedPicture::SavedPicture(const RenderArguments&, const ShownModel<double>&,
+                                           const PathPictureOptions&);
 
 }  // namespace hedgerow::cli

@@ -55,16 +55,16 @@ private:
 
 /// Many queries of one kind, with memory for their answers, so that repeating the queries allocates nothing.
 template <std::floating_point T, int D>
-class Questions {
+class QuerySet {
 public:
-    virtual ~Questions() = default;
+    virtual ~QuerySet() = default;
     /// The name of the question in the table of questions, and the kind of queries: "closest hit, random
     /// rays".
     virtual Ask ask() const = 0;
     virtual const std::string& kind() const = 0;
     virtual std::size_t size() const = 0;
     /// Every step-th query, from the first on.
-    virtual std::unique_ptr<Questions> thinned(std::size_t step) const = 0;
+    virtual std::unique_ptr<QuerySet> thinned(std::size_t step) const = 0;
     /// Makes all queries and discards the answers. This is the timed work.
     virtual void put_to(const AnyIndex<T, D>& index) = 0;
     /// Makes all queries, adds their visits to `visits`, and returns a fingerprint of each answer. Checks the
@@ -75,12 +75,12 @@ public:
 
 /// Many queries of one question of the table.
 template <class Question, std::floating_point T, int D>
-class QuestionsOf final : public Questions<T, D> {
+class QuerySetOf final : public QuerySet<T, D> {
 public:
     using Given = typename Question::Given;
     using Answer = typename Question::Answer;
 
-    QuestionsOf(std::string kind, std::vector<Given> given)
+    QuerySetOf(std::string kind, std::vector<Given> given)
         : kind_(std::move(kind)),
           given_(std::move(given)),
           answers_(new Answer[AsksMany<Question> ? size() : 1]) {}
@@ -88,10 +88,10 @@ public:
     Ask ask() const override { return Question::name; }
     const std::string& kind() const override { return kind_; }
     std::size_t size() const override { return given_.size(); }
-    std::unique_ptr<Questions<T, D>> thinned(std::size_t step) const override {
+    std::unique_ptr<QuerySet<T, D>> thinned(std::size_t step) const override {
         std::vector<Given> some;
         for (std::size_t i = 0; i < size(); i += step) some.push_back(given_[i]);
-        return std::make_unique<QuestionsOf>(kind_, std::move(some));
+        return std::make_unique<QuerySetOf>(kind_, std::move(some));
     }
     void put_to(const AnyIndex<T, D>& index) override {
         each_answer(index, 0, size(), {}, [](const Answer&) {});

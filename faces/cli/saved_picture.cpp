@@ -1,4 +1,4 @@
-#include "path_state.h"
+#include "saved_picture.h"
 
 #include <array>
 #include <cstring>
@@ -30,7 +30,8 @@ std::string text_of(const Camera& c) {
 }  // namespace
 
 template <class T>
-PathState::PathState(const RenderArguments& a, const ShownModel<T>& shown, const PathPictureOptions& options)
+SavedPicture::SavedPicture(const RenderArguments& a, const ShownModel<T>& shown,
+                           const PathPictureOptions& options)
     : file_(a.resume), halves_(options.division == Division::even ? 1 : 2) {
     if (!has_file()) return;
     of_ = {{"version", std::string(version)},
@@ -44,10 +45,12 @@ PathState::PathState(const RenderArguments& a, const ShownModel<T>& shown, const
            {"division", std::string(division_names[static_cast<std::size_t>(options.division)])},
            {"bounces", std::to_string(a.bounces)}};
 }
-template PathState::PathState(const RenderArguments&, const ShownModel<float>&, const PathPictureOptions&);
-template PathState::PathState(const RenderArguments&, const ShownModel<double>&, const PathPictureOptions&);
+template SavedPicture::SavedPicture(const RenderArguments&, const ShownModel<float>&,
+                                    const PathPictureOptions&);
+template SavedPicture::SavedPicture(const RenderArguments&, const ShownModel<double>&,
+                                    const PathPictureOptions&);
 
-PathPicture PathState::begun(const RenderArguments& a, PathPictureOptions& options) const {
+PathPicture SavedPicture::begun(const RenderArguments& a, PathPictureOptions& options) const {
     if (!has_file() || !std::filesystem::exists(file_))
         return {options.width, options.height, options.keeps_direct};
     PathPicture picture = load(options.width, options.height);
@@ -61,7 +64,7 @@ PathPicture PathState::begun(const RenderArguments& a, PathPictureOptions& optio
 
 // The bytes of a state: the picture's samples, whether it keeps direct light and has spreads, the sums of the
 // halves of its light and of its direct light, and its spreads.
-void PathState::write(const PathPicture& picture) const {
+void SavedPicture::write(const PathPicture& picture) const {
     const std::array<std::uint64_t, 3> head{picture.samples, picture.keeps_direct(),
                                             !picture.spreads[0].empty()};
     std::vector<std::span<const std::byte>> parts{std::as_bytes(std::span(head))};
@@ -71,7 +74,7 @@ void PathState::write(const PathPicture& picture) const {
     for (const auto& spreads : picture.spreads) parts.push_back(std::as_bytes(std::span(spreads)));
     save_state(file_, kind_of_state, state_version, of_, parts);
 }
-PathPicture PathState::load(int width, int height) const {
+PathPicture SavedPicture::load(int width, int height) const {
     const WorkState state = load_state(file_, kind_of_state, state_version, of_);
     std::span<const std::byte> rest = state.bytes;
     const auto take = [&rest](auto& numbers) {
@@ -102,14 +105,14 @@ PathPicture PathState::load(int width, int height) const {
     return picture;
 }
 
-void PathState::finish_copy() {
+void SavedPicture::finish_copy() {
     if (saving_.valid()) saving_.get();
 }
-void PathState::save(const PathPicture& picture) {
+void SavedPicture::save(const PathPicture& picture) {
     finish_copy();
     write(picture);
 }
-void PathState::begin_to_save(const PathPicture& picture) {
+void SavedPicture::begin_to_save(const PathPicture& picture) {
     finish_copy();
     copy_ = picture;
     saving_ = std::async(std::launch::async, [this] { write(copy_); });
