@@ -136,6 +136,16 @@ TEST(Batches, WithAFilterUseTheThreadsThatTheyAreGiven) {
     EXPECT_EQ(&detail::executor_for<KeepAll>({}, many), &default_executor());
 }
 
+TEST(Batches, OfNothingLeaveOutNothing) {
+    const auto cloud = points<float>(100);
+    const auto index = build(cloud);
+    const std::vector<Vec3f> none;
+    const std::vector<PrimitiveId> own;
+    EXPECT_EQ(within(index, none, 0.1, {.leave_out = own}).size(), 0u);
+    EXPECT_EQ(nearest(index, none, 3, {.leave_out = own}).size(), 0u);
+    closest_points(index, none, std::span<Near<float, 3>>(), {.leave_out = own});
+}
+
 TEST(Batches, KeepToTheDistanceAndTheRoom) {
     const auto cloud = points<double>(500);
     const auto index = build<PointKdTree>(cloud);

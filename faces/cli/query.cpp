@@ -135,12 +135,6 @@ int query_saved(const QueryArguments& a) {
         a, [&](const auto& o, auto& threads) { return load_point_index<T, 3>(a.scene, o, threads); });
 }
 
-/// What rows are asked, in space, for people.
-std::vector<const QuestionInfo*> row_questions() {
-    std::vector<const QuestionInfo*> all;
-    for (const auto* const question : any_questions<float, 3>()) all.push_back(&question->info());
-    return all;
-}
 std::vector<std::string_view> kind_names() {
     auto names = question_names<TriangleMesh<float>>();
     for (const PairKind& kind : pair_kinds()) names.push_back(kind.name);
@@ -150,8 +144,10 @@ std::vector<std::string_view> kind_names() {
 template <class Holds>
 std::string kinds_that(Holds holds, bool pairs_of_points = false) {
     std::vector<std::string_view> names;
-    for (const QuestionInfo* const info : row_questions())
-        if (holds(*info) && (names.empty() || names.back() != info->name)) names.push_back(info->name);
+    for (const auto* const question : any_questions<float, 3>()) {
+        const QuestionInfo& info = question->info();
+        if (holds(info) && (names.empty() || names.back() != info.name)) names.push_back(info.name);
+    }
     if (pairs_of_points)
         for (const PairKind& kind : pair_kinds())
             if (kind.takes_radius) names.push_back(kind.name);
@@ -183,19 +179,20 @@ std::string radius_help() {
 /// The kinds of queries, with what each reads and writes, for people.
 std::string kinds_help() {
     std::string text = "KIND, the columns of --from in space, and the columns of -o:\n";
-    for (const QuestionInfo* const info : row_questions()) {
-        const InputColumns& in = info->asked;
+    for (const auto* const question : any_questions<float, 3>()) {
+        const QuestionInfo& info = question->info();
+        const InputColumns& in = info.asked;
         std::string reads;
         for (std::size_t i = 0; i < in.size(); ++i)
             reads += (i == 0 ? "" : " ") + std::string(i == in.required() ? "[" : "") + in.names[i];
         if (!in.defaults.empty()) reads += "]";
         std::string writes;
-        for (const Column& c : info->answered) writes += (writes.empty() ? "" : " ") + c.name;
-        std::string name(info->name);
-        if (const auto* const radius = info->option("radius"); radius != nullptr && radius->needed)
+        for (const Column& c : info.answered) writes += (writes.empty() ? "" : " ") + c.name;
+        std::string name(info.name);
+        if (const auto* const radius = info.option("radius"); radius != nullptr && radius->needed)
             name += " --radius";
-        if (info->variant == "feature") name += " --feature";
-        text += fmt::format("  {:19} {}\n  {:19}   {}\n  {:19}   -> {}\n", name, reads, "", info->meaning, "",
+        if (info.variant == "feature") name += " --feature";
+        text += fmt::format("  {:19} {}\n  {:19}   {}\n  {:19}   -> {}\n", name, reads, "", info.meaning, "",
                             writes);
     }
     for (const PairKind& kind : pair_kinds()) text += fmt::format("  {:19} {}\n", kind.name, kind.meaning);

@@ -76,11 +76,12 @@ private:
     void answer_by_rows(const RowsAsked<T, D>& asked, const T* rows, std::uint64_t first, std::size_t count,
                         AnsweredRows& answers) const {
         const Scratch<std::vector<Given>> all;
-        const Scratch<Answers> found;
+        const Scratch<Answers> kept;
+        const std::span<Answer> found = kept->of(count);
         const auto row = [&](std::size_t i) { return rows + i * info_.asked.size(); };
         all->clear();
         for (std::size_t i = 0; i < count; ++i) all->push_back(Rows::of(row(i), asked.options));
-        ask_all(asked, *all, found->of(count));
+        ask_all(asked, *all, found);
         const Answer none = no_answer<Question>();
         const auto list = [&]<class R>(const Answer& answer, R& record) {
             ByNumbers<R> numbered{record, asked.numbers};
@@ -91,7 +92,7 @@ private:
         append_records(answers.records, count, size.bytes, [&](std::size_t i, Record& record) {
             const bool usable = Rows::usable(row(i));
             if (!usable) answers.refuse(first + i);
-            list(usable ? found->of(count)[i] : none, record);
+            list(usable ? found[i] : none, record);
         });
         answers.rows += count;
     }

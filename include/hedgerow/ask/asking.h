@@ -124,7 +124,7 @@ void list_batch(const I& index, const Queries& queries, Lists<C>& lists, const O
             return;
         list_in_pieces(queries.size(), executor, own, [&](std::size_t begin, std::size_t end, Lists<C>& to) {
             for (std::size_t i = begin; i < end; ++i)
-                with_visits(visits, i, [&](auto& count) { return append(i, to, count), 0; });
+                with_visits(visits, i, [&](auto& count) { append(i, to, count); });
         });
     });
 }

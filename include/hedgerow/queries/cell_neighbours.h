@@ -69,8 +69,9 @@ bool listed_by_cells(const P& set, const Strided<Vec<T, P::dimension>>& points, 
                      const PointOptions& options) {
     if constexpr (PointSet<P> && CellNeighbours<T, P::dimension>::compiled) {
         std::vector<Vec<T, P::dimension>> copies;
-        if (!CellNeighbours<T, P::dimension>::within(
-                points_of(set, copies), points, NearLimits<T>(options).distance2, lists, options.threads))
+        if (!CellNeighbours<T, P::dimension>::within(points_of(set, copies), points,
+                                                     NearLimits<T>::of_batch(options).distance2, lists,
+                                                     options.threads))
             return false;
         leave_out_of(lists, options.leave_out);
         return true;
