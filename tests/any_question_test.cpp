@@ -1,9 +1,7 @@
 /// The questions of the table behind one type: what they say of themselves, and their answers to rows.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include <hedgerow/any_question.h>
 #include <hedgerow/hedgerow.h>
@@ -13,17 +11,6 @@
 using namespace hedgerow;
 
 namespace {
-
-std::string joined(const std::vector<std::string>& words) {
-    std::string all;
-    for (const auto& word : words) all += (all.empty() ? "" : " ") + word;
-    return all;
-}
-std::string columns_of(const QuestionInfo& info) {
-    std::vector<std::string> names;
-    for (const Column& c : info.answered) names.push_back(c.name);
-    return joined(names);
-}
 
 template <class T, int D>
 void expect_described() {
@@ -112,40 +99,6 @@ TEST(AnyQuestion, KnowsWhoAnswers) {
         const auto& info = question->info();
         // A k-d tree walks rays, and finds that they pass between points.
         EXPECT_EQ(question->answered_by(*index), !info.of_facets) << info.name;
-    }
-}
-
-// The table of docs/queries.md is what the questions say.
-TEST(AnyQuestion, IsWhatTheDocumentSays) {
-    std::ifstream file(std::string(HEDGEROW_SOURCE) + "/docs/queries.md");
-    std::vector<std::vector<std::string>> table;  // the three cells of each row
-    for (std::string line; std::getline(file, line);) {
-        if (!line.starts_with("| `")) continue;
-        std::vector<std::string> cells;
-        std::istringstream in(line.substr(2));
-        for (std::string cell; std::getline(in, cell, '|');) cells.push_back(cell);
-        if (cells[1] == " the same ") cells[1] = table.back()[1];
-        table.push_back(cells);
-    }
-    for (const auto* const question : any_questions<float, 3>()) {
-        const QuestionInfo& info = question->info();
-        const std::string name = "`" + std::string(info.name) + "`";
-        const auto row = std::find_if(table.begin(), table.end(),
-                                      [&](const auto& cells) { return cells[0].starts_with(name); });
-        ASSERT_NE(row, table.end()) << name << " is not in docs/queries.md";
-        std::vector<std::string> asked = info.asked.names;
-        if (!info.asked.defaults.empty()) asked[info.asked.required()].insert(0, "["), asked.back() += "]";
-        EXPECT_NE((*row)[1].find(joined(asked)), std::string::npos) << name << " reads " << joined(asked);
-        // What a feature tells comes after what a closest point does.
-        std::string columns = columns_of(info);
-        if (info.variant == "feature") columns = columns.substr(columns.find("feature"));
-        EXPECT_NE((*row)[2].find(columns), std::string::npos) << name << " answers " << columns;
-        for (const auto& option : info.options) {
-            if (option.name == "error") continue;  // of `--by expansion`, below the table
-            const std::string said = (*row)[0] + (*row)[1];
-            EXPECT_NE(said.find("--" + std::string(option.name)), std::string::npos)
-                << name << " takes --" << option.name;
-        }
     }
 }
 

@@ -16,14 +16,19 @@
 ///   another command.
 ///
 /// HEDGEROW_REWRITE=1 corrects the documents instead (scripts/figures).
+///
+/// The columns and options of queries in docs/queries.md are those that the questions tell of themselves.
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <regex>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
+#include <hedgerow/any_question.h>
 #include <hedgerow/measure/quantity.h>
 
 #include "tool.h"
@@ -356,6 +361,51 @@ TEST(Figures, OfStructuresAreWhatTheCommandsPrint) {
 }
 TEST(Figures, OfClaimsAreWhatTheCommandsPrint) {
     Document("claims.md").check();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string all;
+    for (const auto& word : words) all += (all.empty() ? "" : " ") + word;
+    return all;
+}
+std::string columns_of(const QuestionInfo& info) {
+    std::vector<std::string> names;
+    for (const Column& c : info.answered) names.push_back(c.name);
+    return joined(names);
+}
+
+// The table of docs/queries.md is what the questions say.
+TEST(Figures, ColumnsOfQueriesAreThoseOfTheQuestions) {
+    std::ifstream file(std::string(HEDGEROW_SOURCE) + "/docs/queries.md");
+    std::vector<std::vector<std::string>> table;  // the three cells of each row
+    for (std::string line; std::getline(file, line);) {
+        if (!line.starts_with("| `")) continue;
+        std::vector<std::string> cells;
+        std::istringstream in(line.substr(2));
+        for (std::string cell; std::getline(in, cell, '|');) cells.push_back(cell);
+        if (cells[1] == " the same ") cells[1] = table.back()[1];
+        table.push_back(cells);
+    }
+    for (const auto* const question : any_questions<float, 3>()) {
+        const QuestionInfo& info = question->info();
+        const std::string name = "`" + std::string(info.name) + "`";
+        const auto row = std::find_if(table.begin(), table.end(),
+                                      [&](const auto& cells) { return cells[0].starts_with(name); });
+        ASSERT_NE(row, table.end()) << name << " is not in docs/queries.md";
+        std::vector<std::string> asked = info.asked.names;
+        if (!info.asked.defaults.empty()) asked[info.asked.required()].insert(0, "["), asked.back() += "]";
+        EXPECT_NE((*row)[1].find(joined(asked)), std::string::npos) << name << " reads " << joined(asked);
+        // What a feature tells comes after what a closest point does.
+        std::string columns = columns_of(info);
+        if (info.variant == "feature") columns = columns.substr(columns.find("feature"));
+        EXPECT_NE((*row)[2].find(columns), std::string::npos) << name << " answers " << columns;
+        for (const auto& option : info.options) {
+            if (option.name == "error") continue;  // of `--by expansion`, below the table
+            const std::string said = (*row)[0] + (*row)[1];
+            EXPECT_NE(said.find("--" + std::string(option.name)), std::string::npos)
+                << name << " takes --" << option.name;
+        }
+    }
 }
 
 }  // namespace
