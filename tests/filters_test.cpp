@@ -22,7 +22,7 @@ void expect_all_filters(const Index& index, const Expected<T>& expected) {
     for (std::size_t i = 0; i < masks.size(); ++i) masks[i] = 1u << i % 3;
     expect_filtered("all", index, expected, [](const H&) { return true; });
     expect_filtered("none", index, expected, [](const H&) { return false; });
-    expect_filtered("masks", index, expected, Masked{masks, 5});
+    expect_filtered("masks", index, expected, [&](const H& h) { return (masks[h.element] & 5) != 0; });
     expect_filtered("by t", index, expected, [](const H& h) { return h.t > T(0.7); });
     expect_filtered("by u and v", index, expected, [](const H& h) { return h.u < h.v; });
     expect_filtered("by ray", index, expected, [](std::size_t i, const H&) { return i % 3 != 0; });

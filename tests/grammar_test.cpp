@@ -71,6 +71,7 @@ void expect_points(const I& index, const Oracle& oracle, const Points& points) {
         ASSERT_EQ(nearest(index, p, 5), kept(
                                             all, [](const Found&) { return true; }, 5));
         ASSERT_EQ(nearest(index, p, 5, {}, is_even), kept(all, is_even, 5));
+        ASSERT_TRUE(nearest(index, p, 0, {}, is_even).empty());
         ASSERT_EQ(nearest(index, p, 5, found, is_even), std::min<std::size_t>(5, kept(all, is_even).size()));
         const auto is_other = [&](const Found& near) { return near.element != own[i]; };
         ASSERT_EQ(nearest(index, p, 5, {.leave_out = own[i]}), kept(all, is_other, 5));

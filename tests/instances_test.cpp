@@ -1,5 +1,6 @@
 /// Two-level scenes: any structure over instances of any structure gives the bits of brute force over brute
 /// force.
+#include <hedgerow/any_index.h>
 #include <hedgerow/any_structure.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
@@ -143,6 +144,22 @@ struct Case {
                                                {matrix::named_for<P>(outer)}, {matrix::named_for<P>(inner)});
         if constexpr (std::is_same_v<P, TriangleMesh<float>>)  // which has kernels
             expect<WideBvh, WideBvh>("wide in wide, by their types");
+        expect_of_any();
+    }
+    /// Of indexes of different structures in one scene.
+    void expect_of_any() const {
+        SCOPED_TRACE("of any index");
+        using Any = AnyIndex<T, D>;
+        const char* const specs[] = {"wide", "grid", "kdtree:leaf_size=2", "bvh"};
+        std::vector<std::unique_ptr<Any>> indexes;
+        for (std::size_t i = 0; i < 4 * sets.size(); ++i)
+            indexes.push_back(build_any(specs[i / sets.size()], sets[i % sets.size()]));
+        std::vector<Instance<Any>> placed;
+        for (std::size_t i = 0; i < transforms.size(); ++i)
+            placed.emplace_back(*indexes[i % sets.size() + i % 4 * sets.size()], transforms[i]);
+        const InstanceSet<Any> world(placed);
+        expect_same(want, ask(build<Bvh>(world), questions, regions));
+        expect_same(want, ask(build<AnyStructure>(world, {"kdtree"}), questions, regions));
     }
 };
 
@@ -221,6 +238,56 @@ TYPED_TEST(Instances, SayWhatIsHit) {
     overlapping(index, Box<T, 3>{{T(3), T(-2), T(-2)}, {T(3), T(2), T(2)}}, found);
     ASSERT_FALSE(found.empty());
     for (const auto& id : found) EXPECT_EQ(id.instance, 1u);
+}
+
+/// Triangles, spheres and points in one world: its answers are those of each instance alone, put together.
+TYPED_TEST(Instances, OfManyKindsInOneWorld) {
+    using T = TypeParam;
+    using Any = AnyIndex<T, 3>;
+    const auto mesh = teapot<T>(100);
+    const auto balls = spheres<T>(60);
+    const auto cloud = points<T>(60);
+    const std::unique_ptr<Any> indexes[] = {build_any("wide", mesh), build_any("octree", balls),
+                                            build_any("hash-grid", cloud), build_any("bsp", mesh)};
+    std::vector<Instance<Any>> placed;
+    for (const auto& transform : transforms<3>(16, Scales::even, 6)) {
+        const auto i = static_cast<std::uint32_t>(placed.size());
+        if (i % 4 == 2) continue;  // a hash grid answers no rays
+        placed.emplace_back(*indexes[i % 4], transform, 1u << i % 3, 5 * i);
+    }
+    const auto merged = [&](const auto& ask) {
+        decltype(ask(build<BruteForce>(InstanceSet<Any>(std::span(placed).first(1))))) all;
+        for (std::uint32_t i = 0; i < placed.size(); ++i)
+            for (auto found : ask(build<BruteForce>(InstanceSet<Any>{placed[i]}))) {
+                found.instance = i;
+                all.push_back(found);
+            }
+        return all;
+    };
+    const auto world = build<Bvh>(InstanceSet<Any>(placed));
+    std::size_t hits = 0;
+    for (std::size_t k = 0; k < 100; ++k) {
+        const auto ray = matrix::ray_of(world.bounds(), {world.bounds().center()}, k);
+        auto all = merged([&](const auto& one) { return all_hits(one, ray); });
+        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return hit_before(a, b); });
+        ASSERT_EQ(all_hits(world, ray), all) << "ray " << k;
+        ASSERT_EQ(closest_hit(world, ray), all.empty() ? Hit<T>() : all[0]) << "ray " << k;
+        ASSERT_EQ(any_hit(world, ray), !all.empty()) << "ray " << k;
+        hits += all.size();
+        auto seen = all;
+        std::erase_if(seen, [&](const Hit<T>& hit) { return (placed[hit.instance].mask & 5) == 0; });
+        ASSERT_EQ(closest_hit(world, ray, {.mask = 5}), seen.empty() ? Hit<T>() : seen[0]) << "ray " << k;
+        Random random(3, k);
+        const auto p = matrix::point_in(world.bounds(), 0.5, random);
+        auto near = merged([&](const auto& one) { return nearest(one, p, 100); });
+        std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return nearer(a, b); });
+        near.resize(100);
+        ASSERT_EQ(nearest(world, p, 100), near) << "point " << k;
+        const Sphere<T, 3> ball{p, T(1)};
+        ASSERT_EQ(overlapping(world, ball), merged([&](const auto& one) { return overlapping(one, ball); }))
+            << "ball " << k;
+    }
+    EXPECT_GT(hits, 100u);
 }
 
 TEST(Transforms, GoThereAndBack) {

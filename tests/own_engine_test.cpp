@@ -285,6 +285,12 @@ TEST_F(OwnEngineTest, GetsBatchesWholeWithFiltersAndWithoutElements) {
     expect_whole(rays.size());
     closest_hits(oracle, rays, expected, {.leave_out = own}, every_third);
     EXPECT_EQ(hits, expected);
+    std::vector<std::uint32_t> bits(mesh.size());
+    for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = 1u << i % 3;
+    closest_hits(index, rays, hits, {.mask = {bits, 0x3}});
+    expect_whole(rays.size());
+    closest_hits(oracle, rays, expected, {.mask = {bits, 0x3}});
+    EXPECT_EQ(hits, expected);
 }
 
 TEST_F(OwnEngineTest, AnswersPointsListsAndRegions) {
@@ -298,6 +304,11 @@ TEST_F(OwnEngineTest, AnswersPointsListsAndRegions) {
     EXPECT_EQ(found, expected);
 
     EXPECT_EQ(nearest(index, points, 4, {.leave_out = own}), nearest(oracle, points, 4, {.leave_out = own}));
+    expect_whole(points.size());
+    std::vector<std::uint32_t> bits(mesh.size(), 0x1);
+    bits[7] = bits[9] = 0x2;
+    EXPECT_EQ(nearest(index, points, 4, {.mask = {bits, 0x6}}),
+              nearest(oracle, points, 4, {.mask = {bits, 0x6}}));
     expect_whole(points.size());
     EXPECT_EQ(all_hits(index, questions.rays), all_hits(oracle, questions.rays));
     expect_whole(questions.rays.size());

@@ -51,6 +51,12 @@ struct Scene {
     }
 };
 
+/// Enters only instances whose mask has a wanted bit.
+struct InMasks {
+    std::uint32_t wanted;
+    bool enters(std::uint32_t mask) const { return (mask & wanted) != 0; }
+    bool operator()(const Hit<float>&) const { return true; }
+};
 /// The filter of hits that keeps what InMasks keeps.
 struct OfMask {
     std::uint32_t wanted;

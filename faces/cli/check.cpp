@@ -8,7 +8,6 @@
 
 #include <hedgerow/ask/pairs.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/hedgerow.h>
 #include <hedgerow/primitives/boundary.h>
 
 namespace hedgerow::cli {

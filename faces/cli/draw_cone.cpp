@@ -7,7 +7,6 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/geometry/elementary.h>
-#include <hedgerow/hedgerow.h>
 #include <hedgerow/render/lettering.h>
 #include <hedgerow/render/shading/footprint.h>
 #include <hedgerow/surface.h>

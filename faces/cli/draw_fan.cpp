@@ -5,7 +5,6 @@
 #include <hedgerow/any_index.h>
 #include <hedgerow/ask/families.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/hedgerow.h>
 #include <hedgerow/io/text_file.h>
 
 #include "draw.h"

@@ -11,7 +11,6 @@
 #include <hedgerow/ask/points.h>
 #include <hedgerow/ask/regions.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/hedgerow.h>
 #include <hedgerow/io/image.h>
 
 #include "draw.h"

@@ -6,7 +6,6 @@
 
 #include <hedgerow/ask/hausdorff.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/hedgerow.h>
 #include <hedgerow/io/text_file.h>
 
 #include "draw.h"

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <hedgerow/all.h>
 #include <hedgerow/base/error.h>
 #include <hedgerow/index.h>
 #include <hedgerow/nbody/barnes_hut.h>
@@ -15,6 +14,8 @@
 #include <hedgerow/nbody/forces.h>
 #include <hedgerow/nbody/plain_fmm.h>
 #include <hedgerow/primitives/point_cloud.h>
+#include <hedgerow/structures/kdtree/point_kdtree.h>
+#include <hedgerow/structures/orthtree/point_orthtree.h>
 
 #include "nbody.h"
 #include "report/plot.h"

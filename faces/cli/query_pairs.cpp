@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 
+#include <hedgerow/ask/hausdorff.h>
+#include <hedgerow/ask/neighbours.h>
+#include <hedgerow/ask/pairs.h>
 #include <hedgerow/base/error.h>
-#include <hedgerow/hedgerow.h>
 
 #include "query.h"
 

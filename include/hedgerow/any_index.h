@@ -14,6 +14,7 @@
 #include <hedgerow/ask.h>
 #include <hedgerow/base/option.h>
 #include <hedgerow/geometry/any_region.h>
+#include <hedgerow/instances/placed.h>
 #include <hedgerow/primitives/point_cloud.h>
 #include <hedgerow/primitives/segment_set.h>
 #include <hedgerow/primitives/sphere_set.h>
@@ -75,13 +76,33 @@ public:
         else
             return in_ieee_mode([&] {
                 Q query(*this, arguments...);
-                Virtual<Q> asked(query);
-                detail::count_virtually<typename Q::Probe>(count,
-                                                           [&](auto& counted) { walk(asked, counted); });
+                ask(query, count);
                 return query.answer();
             });
     }
-    /// The same of a query of a region. Shapes that have no walk of their own share one.
+    /// Runs any query of yours by a walk: of a ray, a point, a FarProbe, a box or an AnyRegion. `count` is a
+    /// Visits, or NoVisits.
+    template <Query Q, class Count>
+    void ask(Q& query, Count& count) const {
+        in_ieee_mode([&] {
+            Virtual<Q> asked(query);
+            detail::count_virtually<typename Q::Probe>(count, [&](auto& counted) { walk(asked, counted); });
+        });
+    }
+    template <Query Q>
+    void ask(Q& query) const {
+        NoVisits none;
+        ask(query, none);
+    }
+    /// Runs a query of a point or a box over leaves of yours. Nothing is counted.
+    template <class Leaves, Query Q>
+    void ask_over(const Leaves& leaves, Q& query) const {
+        in_ieee_mode([&] {
+            LeafTests<Q, Leaves> asked(std::as_const(query).probe(), query, leaves);
+            walk_leaves(asked);
+        });
+    }
+    /// The answer of a query of a region. Shapes that have no walk of their own share one.
     template <template <class, class> class Q, class R, class Count, class... Arguments>
     auto answer_region(const R& region, Count& count, Arguments&&... arguments) const {
         using Query = Q<AnyIndex, R>;
@@ -174,6 +195,8 @@ protected:
     virtual void walk(VirtualQuery<FarProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<BoxProbe<T, D>>& query, Visits& count) const = 0;
     virtual void walk(VirtualQuery<RegionProbe<AnyRegion<T, D>>>& query, Visits& count) const = 0;
+    virtual void walk_leaves(LeafQuery<PointProbe<T, D>>& query) const = 0;
+    virtual void walk_leaves(LeafQuery<BoxProbe<T, D>>& query) const = 0;
 
 private:
     mutable std::mutex making_solid_;
@@ -212,17 +235,28 @@ struct AnyEngineOfRays : AnyEngine<T, D> {
     KernelUse answer_batch(const RayArray<T, D>& rays, Answer* answers, const auto& how) const {
         return this->index().rays_uncounted(rays, answers, how.executor);
     }
+    /// Where the index is an instance in a world.
+    template <class Q>
+    Flow offer_inside(Ray<T, D> ray, std::uint32_t instance, std::uint32_t, Q& query) const {
+        ray.t_max = query.limit();
+        const Answer found = answer(ray);
+        if (!found) return Flow::go_on;
+        if constexpr (std::same_as<Answer, bool>)
+            return query.found();
+        else
+            return query.offer({found.t, found.u, found.v, found.element, instance});
+    }
 };
 }  // namespace detail
 
 // What an AnyIndex has virtual functions for comes through the door for engines (walks/engine.h).
 
-template <std::floating_point T, int D>
-struct EngineFor<ClosestHit<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngineOfRays<T, D, Hit<T>> {
+template <class Set, std::floating_point T, int D>
+struct EngineFor<ClosestHit<Set>, AnyIndex<T, D>> : detail::AnyEngineOfRays<T, D, Hit<T>> {
     using detail::AnyEngineOfRays<T, D, Hit<T>>::AnyEngineOfRays;
 };
-template <std::floating_point T, int D>
-struct EngineFor<AnyHit<AnyIndex<T, D>>, AnyIndex<T, D>> : detail::AnyEngineOfRays<T, D, bool> {
+template <class Set, std::floating_point T, int D>
+struct EngineFor<AnyHit<Set>, AnyIndex<T, D>> : detail::AnyEngineOfRays<T, D, bool> {
     using detail::AnyEngineOfRays<T, D, bool>::AnyEngineOfRays;
 };
 template <std::floating_point T, int D>
@@ -290,6 +324,32 @@ template <std::floating_point T, int D, detail::BoxOrBall<T, D> R>
 struct EngineFor<AnyOverlap<AnyIndex<T, D>, R>, AnyIndex<T, D>> : detail::AnyEngine<T, D> {
     using detail::AnyEngine<T, D>::AnyEngine;
     bool answer(const R& region) const { return this->index().any_uncounted(region); }
+};
+
+/// The primitives of an AnyIndex under a transform.
+template <std::floating_point T, int D>
+class Placed<AnyIndex<T, D>> {
+public:
+    using Scalar = T;
+    static constexpr int dimension = D;
+
+    Placed(const AnyIndex<T, D>& index, const Affine<D>& there, const Affine<D>& back, double scale)
+        : set_(index.set()), there_(there), back_(back), scale_(scale) {}
+
+    template <class Probe, class Query>
+    Flow test_leaf(const Probe& probe, const Leaf& leaf, Query& query) const {
+        return std::visit(
+            [&]<class P>(const P& set) {
+                return Placed<P>(set, there_, back_, scale_).test_leaf(probe, leaf, query);
+            },
+            set_);
+    }
+
+private:
+    SetOfIndex<T, D> set_;
+    const Affine<D>& there_;
+    const Affine<D>& back_;
+    double scale_;
 };
 
 struct StructureInfo {

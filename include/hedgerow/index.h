@@ -111,6 +111,8 @@ public:
         else
             return structure_.bytes();
     }
+    /// Whether the structure holds each primitive once.
+    bool exclusive() const { return structure_.exclusive(); }
     std::string validate() const { return structure_.validate(primitives_); }
 
     /// Inserts primitive `id` of the caller's set as it is now. The set's arrays may have grown and moved.
@@ -198,6 +200,13 @@ public:
     void ask(Q& query) const {
         NoVisits none;
         ask(query, none);
+    }
+    /// Runs a query over leaves of yours, such as this index's primitives as the world sees them
+    /// (instances/placed.h). Nothing is counted.
+    template <class Leaves, Query Q>
+    void ask_over(const Leaves& leaves, Q& query) const {
+        const NoVisits none;
+        in_ieee_mode([&] { walk_through(structure_, leaves, query, none); });
     }
     /// The answer of Q(*this, arguments...): by an engine (walks/engine.h) if there is one and nothing is
     /// counted, else by a walk. The query is constructed in IEEE mode too, since its probe computes.

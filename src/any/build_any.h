@@ -177,6 +177,9 @@ public:
         index_.ask(query, count);
     }
 
+    void walk_leaves(LeafQuery<PointProbe<T, D>>& query) const override { walk_over(query); }
+    void walk_leaves(LeafQuery<BoxProbe<T, D>>& query) const override { walk_over(query); }
+
     bool has_facets() const override { return facets; }
     FeatureOfNear<T, D> feature(const Vec<T, D>& point, const Near<T, D>& near) const override {
         if constexpr (facets)
@@ -227,6 +230,10 @@ private:
     static constexpr bool is_any = std::same_as<typename I::Structure, AnyStructure<T, D>>;
     static constexpr bool facets = FacetSet<P>;
 
+    template <class Probe>
+    void walk_over(LeafQuery<Probe>& query) const {
+        index_.ask_over(LeavesOfQuery<Probe>{query}, query);
+    }
     template <class R>
     std::size_t list_in(const R& region, std::vector<PrimitiveId>& found, Finds finds) const {
         return finds == Finds::contained ? contained(index_, region, found)

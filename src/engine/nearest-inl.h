@@ -101,15 +101,12 @@ public:
 
     HWY_INLINE void end() const {
         if (given_up()) {
-            if (ids_ != nullptr) *ids_ = gave_up_id;
-            if (distances2_ != nullptr) *distances2_ = gave_up_distance2;
+            *ids_ = gave_up_id;
             return;
         }
-        if (ids_ != nullptr)
-            for (std::size_t i = 0; i < k(); ++i) ids_[i] = element_of(key(i));
-        if (distances2_ != nullptr)
-            for (std::size_t i = 0; i < k(); ++i)
-                distances2_[i] = none(i) ? std::numeric_limits<float>::infinity() : distance2_of(key(i));
+        for (std::size_t i = 0; i < k(); ++i) ids_[i] = element_of(key(i));
+        for (std::size_t i = 0; i < k(); ++i)
+            distances2_[i] = none(i) ? std::numeric_limits<float>::infinity() : distance2_of(key(i));
     }
 
 private:
@@ -225,8 +222,8 @@ void nearest_many(const Scene& scene, const PointBatch<float, 3>& points, std::s
     alignas(64) NearKey keys[Searches::most][most_nearest];
     const auto sink = [&](std::size_t i, int flight) __attribute__((always_inline)) {
         const std::size_t first = k * points.number(i);
-        return LeastKeysInRow(k, max_distance2, keys[flight], ids == nullptr ? nullptr : ids + first,
-                              distances2 == nullptr ? nullptr : distances2 + first, most_ties(scene));
+        return LeastKeysInRow(k, max_distance2, keys[flight], ids + first, distances2 + first,
+                              most_ties(scene));
     };
     if (scene.tree.empty() || !(max_distance2 >= 0)) {
         for (std::size_t i = 0; i < points.size(); ++i) sink(i, 0).end();

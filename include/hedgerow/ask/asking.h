@@ -26,6 +26,7 @@
 namespace hedgerow {
 
 inline constexpr NoVisits no_visits{};
+inline constexpr KeepAll keep_all{};
 
 namespace detail {
 /// Throws InputError if there are fewer places for answers than queries.
@@ -50,27 +51,31 @@ auto with_visits(std::span<Visits> visits, std::size_t i, F f) {
 inline void expect_visits(std::span<Visits> visits, std::size_t queries) {
     if (!visits.empty()) expect_room("queries", queries, visits.size());
 }
-/// Calls one(i, count) for each of `queries`, in pieces over the executor.
-template <class One>
-void ask_each(std::size_t queries, Executor& executor, std::span<Visits> visits, One one) {
-    executor.for_each_piece(queries, 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            with_visits(visits, i, [&](auto& count) { return one(i, count); });
-    });
-}
-/// Has the engine of question Q answer a batch, if the index has one that takes such batches and is in use.
-/// rest(i) answers query i without it. No value, and nothing is written, where there is no such engine.
+/// How a batch is asked. Visits are empty where nothing is counted, else one for each query.
+template <class Options, class Filter = KeepAll>
+struct Batch {
+    const Options& options;
+    const Filter& filter;
+    Executor& executor;
+    std::span<Visits> visits;
+};
+template <class Options, class Filter>
+Batch(const Options&, const Filter&, Executor&, std::span<Visits>) -> Batch<Options, Filter>;
+
+/// Has the engine of question Q answer a batch, if nothing is counted and the index has one that takes such
+/// batches and is in use. rest(i) answers query i without it. No value, and nothing is written, where there
+/// is no such engine.
 template <class Q, class I, class Queries, class Answer, class Options, class Filter, class Rest>
 std::optional<KernelUse> answered_by_engine(const I& index, const Queries& queries, Answer* answers,
-                                            const Options& options, const Filter& filter, Executor& executor,
-                                            const Rest& rest) {
+                                            const Batch<Options, Filter>& batch, const Rest& rest) {
     using How = HowAsked<Options, Filter>;
     using E = EngineFor<Q, I>;
     if constexpr (AnswersBatch<E, Queries, Answer*, How>) {
+        if (!batch.visits.empty()) return std::nullopt;
         if (const E engine(index); engine)
             return in_ieee_mode([&] {
-                IeeeExecutor threads(executor);
-                const How how{options, filter, threads, rest};
+                IeeeExecutor threads(batch.executor);
+                const How how{batch.options, batch.filter, threads, rest};
                 if constexpr (std::is_void_v<decltype(engine.answer_batch(queries, answers, how))>)
                     return engine.answer_batch(queries, answers, how), KernelUse{};
                 else
@@ -82,16 +87,17 @@ std::optional<KernelUse> answered_by_engine(const I& index, const Queries& queri
 /// The same of a question of lists. rest(i, place) lists what query i finds.
 template <class Q, class Place, class I, class Queries, class L, class Options, class Filter, class Rest,
           class... Arguments>
-bool listed_by_engine(const I& index, const Queries& queries, L& lists, const Options& options,
-                      const Filter& filter, Executor& executor, const Rest& rest,
-                      const Arguments&... arguments) {
+bool listed_by_engine(const I& index, const Queries& queries, L& lists, const Batch<Options, Filter>& batch,
+                      const Rest& rest, const Arguments&... arguments) {
     using How = HowAsked<Options, Filter, Place>;
     using E = EngineFor<Q, I>;
     if constexpr (AnswersLists<E, Queries, L, How, Arguments...>) {
+        if (!batch.visits.empty()) return false;
         if (const E engine(index); engine) {
             in_ieee_mode([&] {
-                IeeeExecutor threads(executor);
-                engine.answer_lists(queries, arguments..., lists, How{options, filter, threads, rest});
+                IeeeExecutor threads(batch.executor);
+                engine.answer_lists(queries, arguments..., lists,
+                                    How{batch.options, batch.filter, threads, rest});
             });
             return true;
         }
@@ -100,32 +106,29 @@ bool listed_by_engine(const I& index, const Queries& queries, L& lists, const Op
 }
 /// Answers each query of a batch: by the engine of question Q, or by one(i, count), which returns the answer.
 template <class Q, class I, class Queries, class Answer, class Options, class Filter, class One>
-KernelUse answer_batch(const I& index, const Queries& queries, Answer* answers, const Options& options,
-                       const Filter& filter, Executor& executor, std::span<Visits> visits, One one) {
-    if (visits.empty()) {
-        const auto rest = [&](std::size_t i) { answers[i] = one(i, no_visits); };
-        if (const auto use = answered_by_engine<Q>(index, queries, answers, options, filter, executor, rest))
-            return *use;
-    }
-    ask_each(queries.size(), executor, visits,
-             [&](std::size_t i, auto& count) { answers[i] = one(i, count); });
+KernelUse answer_batch(const I& index, const Queries& queries, Answer* answers,
+                       const Batch<Options, Filter>& batch, One one) {
+    const auto rest = [&](std::size_t i) { answers[i] = one(i, no_visits); };
+    if (const auto use = answered_by_engine<Q>(index, queries, answers, batch, rest)) return *use;
+    batch.executor.for_each_piece(queries.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            with_visits(batch.visits, i, [&](auto& count) { answers[i] = one(i, count); });
+    });
     return {.single = queries.size()};
 }
 /// Fills lists: by the engine of question Q, or by append(i, to, count), which appends the list of query i.
 template <class Q, class I, class Queries, class C, class Options, class Filter, class Append,
           class... Arguments>
-void list_batch(const I& index, const Queries& queries, Lists<C>& lists, const Options& options,
-                const Filter& filter, Executor& executor, std::span<Visits> visits, Append append,
-                const Arguments&... arguments) {
+void list_batch(const I& index, const Queries& queries, Lists<C>& lists, const Batch<Options, Filter>& batch,
+                Append append, const Arguments&... arguments) {
     list_in_own_memory(lists, [&](Lists<C>& own) {
         const auto rest = [&](std::size_t i, Lists<C>& to) { append(i, to, no_visits); };
-        if (visits.empty() && listed_by_engine<Q, Lists<C>&>(index, queries, own, options, filter, executor,
-                                                             rest, arguments...))
-            return;
-        list_in_pieces(queries.size(), executor, own, [&](std::size_t begin, std::size_t end, Lists<C>& to) {
-            for (std::size_t i = begin; i < end; ++i)
-                with_visits(visits, i, [&](auto& count) { append(i, to, count); });
-        });
+        if (listed_by_engine<Q, Lists<C>&>(index, queries, own, batch, rest, arguments...)) return;
+        list_in_pieces(queries.size(), batch.executor, own,
+                       [&](std::size_t begin, std::size_t end, Lists<C>& to) {
+                           for (std::size_t i = begin; i < end; ++i)
+                               with_visits(batch.visits, i, [&](auto& count) { append(i, to, count); });
+                       });
     });
 }
 /// Appends lists of one column: one(i, list, count) replaces what a vector holds by the list of query i.
@@ -153,14 +156,7 @@ std::size_t primitives_in(const P& set) {
 /// Whether a walk offers each primitive once: not where a structure has it in several cells.
 template <class I>
 bool offers_each_once(const I& index) {
-    if constexpr (requires {
-                      index.structure();
-                      index.primitives();
-                      index.structure().exclusive();
-                  })
-        return index.structure().exclusive() && offers_once(index.primitives());
-    else
-        return index.exclusive();
+    return index.exclusive() && offers_once(index.primitives());
 }
 }  // namespace detail
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/ask/many.h>
 #include <hedgerow/ask/neighbours.h>
 #include <hedgerow/probes/point_batch.h>
 #include <hedgerow/queries/closest_point.h>
@@ -30,6 +31,11 @@ using NearListsOf = NearLists<typename I::Scalar, IdOf<typename I::Primitives>>;
 template <class F, class I>
 concept NearFilterOf = detail::Asks<F, NearOf<I>> || detail::Asks<F, std::size_t, NearOf<I>>;
 
+/// A filter of what is near, asked of each or of many (ask/many.h).
+template <class F, class I>
+concept NearBatchFilterOf =
+    NearFilterOf<F, I> || FilterOfManyNear<F, typename I::Scalar, IdOf<typename I::Primitives>>;
+
 namespace detail {
 /// The answer of a query Q of a point. Engines have no filter of points, so none is named where none is
 /// given.
@@ -40,6 +46,12 @@ auto answer_near(const I& index, const Filter& filter, Count& count, Arguments&&
         return index.template answer<Q<P, KeepAll>>(count, arguments...);
     else
         return index.template answer<Q<P, Filter>>(count, arguments..., filter);
+}
+/// The options of one query, as its walk reads them. Throws InputError for a bad factor or mask.
+template <class I>
+NearLimits<typename I::Scalar> limits_of(const I& index, const PointOptions& options) {
+    options.mask.expect(index.primitives());
+    return NearLimits<typename I::Scalar>(options);
 }
 /// The options of a question that has a radius of its own. Both hold; nothing is within NaN.
 inline PointOptions within_both(double radius, PointOptions options) {
@@ -53,8 +65,7 @@ inline PointOptions within_both(double radius, PointOptions options) {
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 inline NearOf<I> closest_point(const I& index, const PointOf<I>& point, const PointOptions& options = {},
                                const Filter& filter = {}, Count& count = no_visits) {
-    return detail::answer_near<ClosestPoint>(index, filter, count, point,
-                                             NearLimits<typename I::Scalar>(options));
+    return detail::answer_near<ClosestPoint>(index, filter, count, point, detail::limits_of(index, options));
 }
 template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
 NearOf<I> closest_point(const I& index, const PointOf<I>& point, const Filter& filter,
@@ -68,8 +79,7 @@ NearOf<I> closest_point(const I& index, const PointOf<I>& point, const Filter& f
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 NearOf<I> farthest_point(const I& index, const PointOf<I>& point, const PointOptions& options = {},
                          const Filter& filter = {}, Count& count = no_visits) {
-    return detail::answer_near<FarthestPoint>(index, filter, count, point,
-                                              NearLimits<typename I::Scalar>(options));
+    return detail::answer_near<FarthestPoint>(index, filter, count, point, detail::limits_of(index, options));
 }
 template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
 NearOf<I> farthest_point(const I& index, const PointOf<I>& point, const Filter& filter,
@@ -82,8 +92,8 @@ NearOf<I> farthest_point(const I& index, const PointOf<I>& point, const Filter& 
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t nearest(const I& index, const PointOf<I>& point, std::size_t k, std::vector<NearOf<I>>& found,
                     const PointOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
-    return detail::answer_near<Nearest>(index, filter, count, point, k,
-                                        NearLimits<typename I::Scalar>(options), found);
+    return detail::answer_near<Nearest>(index, filter, count, point, k, detail::limits_of(index, options),
+                                        found);
 }
 template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
 std::size_t nearest(const I& index, const PointOf<I>& point, std::size_t k, std::vector<NearOf<I>>& found,
@@ -104,7 +114,7 @@ std::vector<NearOf<I>> nearest(const I& index, const PointOf<I>& point, std::siz
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t within(const I& index, const PointOf<I>& point, double radius, std::vector<NearOf<I>>& found,
                    const PointOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
-    const NearLimits<typename I::Scalar> limits(detail::within_both(radius, options));
+    const auto limits = detail::limits_of(index, detail::within_both(radius, options));
     return detail::answer_near<Within>(index, filter, count, point, limits, found);
 }
 template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
@@ -122,14 +132,15 @@ std::vector<NearOf<I>> within(const I& index, const PointOf<I>& point, double ra
 }
 
 namespace detail {
-/// What batches of points share: checks, and ask(executor).
+/// What batches of points share: checks, and ask(batch).
 template <class I, class Filter, class Ask>
-void ask_points(const PointsOf<I>& points, const PointOptions& options, const Filter&,
+void ask_points(const I& index, const PointsOf<I>& points, const PointOptions& options, const Filter& filter,
                 std::span<Visits> visits, Ask ask) {
     expect_visits(visits, points.size());
     options.leave_out.expect(points.size());
+    options.mask.expect(index.primitives());
     static_cast<void>(NearLimits<typename I::Scalar>::of_batch(options));  // throws for a bad factor
-    ask(executor_for<Filter>(options.threads, points.size()));
+    ask(Batch(options, filter, executor_for<Filter>(options.threads, points.size()), visits));
 }
 /// Calls one(i) for each of many points, in an order in which walks share what the caches hold.
 template <class I, class One>
@@ -148,17 +159,16 @@ void closest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<
                     std::span<Visits> visits = {}) {
     using T = typename I::Scalar;
     detail::expect_room("points", points.size(), found.size());
-    detail::ask_points<I>(points, options, filter, visits, [&](Executor& executor) {
+    detail::ask_points(index, points, options, filter, visits, [&](const auto& batch) {
         const auto one = [&](std::size_t i) {
             found[i] = detail::with_visits(visits, i, [&](auto& count) {
                 return detail::answer_near<ClosestPoint>(index, filter_of_ray(filter, i), count, points[i],
                                                          NearLimits<T>(options, i));
             });
         };
-        if (visits.empty() && detail::answered_by_engine<ClosestPoint<typename I::Primitives, Filter>>(
-                                  index, points, found.data(), options, filter, executor, one))
-            return;
-        detail::each_along_curve(index, points, executor, one);
+        if (!detail::answered_by_engine<ClosestPoint<typename I::Primitives, Filter>>(
+                index, points, found.data(), batch, one))
+            detail::each_along_curve(index, points, batch.executor, one);
     });
 }
 template <class I, NearFilterOf<I> Filter>
@@ -173,9 +183,9 @@ void farthest_points(const I& index, const PointsOf<I>& points, std::span<NearOf
                      const PointOptions& options = {}, const Filter& filter = {},
                      std::span<Visits> visits = {}) {
     detail::expect_room("points", points.size(), found.size());
-    detail::ask_points<I>(points, options, filter, visits, [&](Executor& executor) {
+    detail::ask_points(index, points, options, filter, visits, [&](const auto& batch) {
         detail::answer_batch<FarthestPoint<typename I::Primitives, Filter>>(
-            index, points, found.data(), options, filter, executor, visits, [&](std::size_t i, auto& count) {
+            index, points, found.data(), batch, [&](std::size_t i, auto& count) {
                 return detail::answer_near<FarthestPoint>(index, filter_of_ray(filter, i), count, points[i],
                                                           NearLimits<typename I::Scalar>(options, i));
             });
@@ -188,7 +198,8 @@ void farthest_points(const I& index, const PointsOf<I>& points, std::span<NearOf
 }
 
 /// Writes the k nearest primitives for each of `points` to lists, as `nearest` finds them: their positions in
-/// the set, or PlacedIds among instances, and their squared distances.
+/// the set, or PlacedIds among instances, and their squared distances. The filter may be one of many
+/// (ask/many.h).
 template <class I, class Filter = KeepAll>
 void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearListsOf<I>& lists,
              const PointOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
@@ -196,30 +207,34 @@ void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearLists
     using T = typename I::Scalar;
     using Row = NearRow<T, IdOf<P>>;
     k = std::min(k, detail::primitives_in(index.primitives()));
-    detail::ask_points<I>(points, options, filter, visits, [&](Executor& executor) {
-        const auto one = [&](std::size_t i, const Row& row) {
-            const Scratch<std::vector<NearOf<I>>> found;
-            detail::with_visits(visits, i, [&](auto& count) {
-                return detail::answer_near<Nearest>(index, filter_of_ray(filter, i), count, points[i], k,
-                                                    NearLimits<T>(options, i), *found);
-            });
-            found->resize(row.ids.size());
-            for (std::size_t j = 0; j < row.ids.size(); ++j) {
-                row.ids[j] = Identity<P>::of((*found)[j]);
-                row.distances2[j] = (*found)[j].distance2;
-            }
-        };
-        detail::list_in_own_memory(lists, [&](NearListsOf<I>& own) {
-            if (visits.empty() && detail::listed_by_engine<Nearest<P, Filter>, const Row&>(
-                                      index, points, own, options, filter, executor, one, k))
-                return;
-            detail::list_by_rows(own, points.size(), k, options.leave_out, [&](const auto& rows) {
-                detail::each_along_curve(index, points, executor, [&](std::size_t i) { one(i, rows[i]); });
+    if constexpr (FilterOfManyNear<Filter, T, IdOf<P>>)
+        return detail::nearest_kept(index, points, k, lists, options, filter, visits);
+    else
+        detail::ask_points(index, points, options, filter, visits, [&](const auto& batch) {
+            const auto one = [&](std::size_t i, const Row& row) {
+                const Scratch<std::vector<NearOf<I>>> found;
+                detail::with_visits(visits, i, [&](auto& count) {
+                    return detail::answer_near<Nearest>(index, filter_of_ray(filter, i), count, points[i], k,
+                                                        NearLimits<T>(options, i), *found);
+                });
+                found->resize(row.ids.size());
+                for (std::size_t j = 0; j < row.ids.size(); ++j) {
+                    row.ids[j] = Identity<P>::of((*found)[j]);
+                    row.distances2[j] = (*found)[j].distance2;
+                }
+            };
+            detail::list_in_own_memory(lists, [&](NearListsOf<I>& own) {
+                if (detail::listed_by_engine<Nearest<P, Filter>, const Row&>(index, points, own, batch, one,
+                                                                             k))
+                    return;
+                detail::list_by_rows(own, points.size(), k, options, [&](const auto& rows) {
+                    detail::each_along_curve(index, points, batch.executor,
+                                             [&](std::size_t i) { one(i, rows[i]); });
+                });
             });
         });
-    });
 }
-template <class I, NearFilterOf<I> Filter>
+template <class I, NearBatchFilterOf<I> Filter>
 void nearest(const I& index, const PointsOf<I>& points, std::size_t k, NearListsOf<I>& lists,
              const Filter& filter, std::span<Visits> visits = {}) {
     nearest(index, points, k, lists, PointOptions(), filter, visits);
@@ -233,7 +248,8 @@ NearListsOf<I> nearest(const I& index, const PointsOf<I>& points, std::size_t k,
     return lists;
 }
 
-/// Writes all primitives within a radius of each of `points` to lists, as `within` finds them.
+/// Writes all primitives within a radius of each of `points` to lists, as `within` finds them. The filter may
+/// be one of many (ask/many.h).
 ///
 /// Many questions among points are answered by cells that are sorted for them (ask/neighbours.h) where these
 /// are faster than the index; the answers are the same.
@@ -243,35 +259,39 @@ void within(const I& index, const PointsOf<I>& points, double radius, NearListsO
     using P = typename I::Primitives;
     using T = typename I::Scalar;
     const PointOptions both = detail::within_both(radius, options);
-    detail::ask_points<I>(points, both, filter, visits, [&](Executor& executor) {
-        const auto one = [&](std::size_t i, NearListsOf<I>& to) {
-            const Scratch<std::vector<NearOf<I>>> found;
-            detail::with_visits(visits, i, [&](auto& count) {
-                return detail::answer_near<Within>(index, filter_of_ray(filter, i), count, points[i],
-                                                   NearLimits<T>(both, i), *found);
-            });
-            for (const auto& near : *found) {
-                to.ids.push_back(Identity<P>::of(near));
-                to.distances2.push_back(near.distance2);
-            }
-            to.offsets.push_back(to.ids.size());
-        };
-        detail::list_in_own_memory(lists, [&](NearListsOf<I>& own) {
-            if (visits.empty()) {
-                if (detail::listed_by_engine<Within<P, Filter>, NearListsOf<I>&>(index, points, own, both,
-                                                                                 filter, executor, one))
+    if constexpr (FilterOfManyNear<Filter, T, IdOf<P>>)
+        return detail::list_kept(lists, points.size(), filter, [&](NearListsOf<I>& own) {
+            within(index, points, radius, own, options, KeepAll(), visits);
+        });
+    else
+        detail::ask_points(index, points, both, filter, visits, [&](const auto& batch) {
+            const auto one = [&](std::size_t i, NearListsOf<I>& to) {
+                const Scratch<std::vector<NearOf<I>>> found;
+                detail::with_visits(visits, i, [&](auto& count) {
+                    return detail::answer_near<Within>(index, filter_of_ray(filter, i), count, points[i],
+                                                       NearLimits<T>(both, i), *found);
+                });
+                for (const auto& near : *found) {
+                    to.ids.push_back(Identity<P>::of(near));
+                    to.distances2.push_back(near.distance2);
+                }
+                to.offsets.push_back(to.ids.size());
+            };
+            detail::list_in_own_memory(lists, [&](NearListsOf<I>& own) {
+                if (detail::listed_by_engine<Within<P, Filter>, NearListsOf<I>&>(index, points, own, batch,
+                                                                                 one))
                     return;
                 if constexpr (std::same_as<Filter, KeepAll>)
-                    if (detail::listed_by_cells(index.primitives(), points, own, both)) return;
-            }
-            detail::list_in_pieces(points.size(), executor, own,
-                                   [&](std::size_t begin, std::size_t end, NearListsOf<I>& to) {
-                                       for (std::size_t i = begin; i < end; ++i) one(i, to);
-                                   });
+                    if (visits.empty() && detail::listed_by_cells(index.primitives(), points, own, both))
+                        return;
+                detail::list_in_pieces(points.size(), batch.executor, own,
+                                       [&](std::size_t begin, std::size_t end, NearListsOf<I>& to) {
+                                           for (std::size_t i = begin; i < end; ++i) one(i, to);
+                                       });
+            });
         });
-    });
 }
-template <class I, NearFilterOf<I> Filter>
+template <class I, NearBatchFilterOf<I> Filter>
 void within(const I& index, const PointsOf<I>& points, double radius, NearListsOf<I>& lists,
             const Filter& filter, std::span<Visits> visits = {}) {
     within(index, points, radius, lists, PointOptions(), filter, visits);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <hedgerow/ask/asking.h>
+#include <hedgerow/ask/many.h>
 #include <hedgerow/ask/truths.h>
 #include <hedgerow/geometry/offset.h>
 #include <hedgerow/probes/ray_array.h>
@@ -28,39 +29,33 @@ using HitOf = Hit<typename I::Scalar>;
 template <class I>
 using HitListsOf = HitLists<typename I::Scalar>;
 
-/// What a question of rays leaves out, and by which threads a batch is answered. A ray has its own `t_min`
-/// and `t_max`.
-struct RayOptions {
-    LeaveOut leave_out = {};
-    Threads threads = {};
-};
-/// Those of first hits, which may go on after others.
-struct HitsOptions {
-    AfterHits after = {};
-    LeaveOut leave_out = {};
-    Threads threads = {};
-};
+/// A filter of hits, asked of each or of many (ask/many.h).
+template <class F, class T>
+concept BatchFilterOf = FilterOf<F, T> || FilterOfManyHits<F, T>;
 
 namespace detail {
-/// A filter that leaves out the element of each query, of one type whatever the filter of the caller.
+/// A filter that refuses what the options do, of one type whatever the filter of the caller.
 template <std::floating_point T>
-struct LeavingOut {
+struct ByOptions {
     LeaveOut leave_out;
+    Mask mask;
     FunctionRef<bool(std::size_t, const Hit<T>&)> keeps;
     FunctionRef<bool(std::uint32_t)> lets_in;
 
     bool operator()(std::size_t ray, const Hit<T>& hit) const {
-        return hit.element != leave_out.of(ray) && keeps(ray, hit);
+        return hit.element != leave_out.of(ray) && mask.sees(hit.element) && keeps(ray, hit);
     }
-    bool enters(std::uint32_t mask) const { return lets_in(mask); }
+    bool enters(std::uint32_t bits) const { return mask.enters(bits) && lets_in(bits); }
 };
-/// Answers by f(filter): that of the caller, or one that leaves elements out too.
-template <std::floating_point T, class Filter, class F>
-auto with_filter(const LeaveOut& leave_out, const Filter& filter, F f) {
-    if (leave_out.none()) return f(filter);
+/// Answers by f(filter): that of the caller, or one that refuses what the options do too.
+template <class I, class Options, class Filter, class F>
+auto with_filter(const I& index, const Options& options, const Filter& filter, F f) {
+    using T = typename I::Scalar;
+    if (options.leave_out.none() && options.mask.none()) return f(filter);
+    options.mask.expect(index.primitives());
     const auto keeps = [&](std::size_t ray, const Hit<T>& hit) { return hedgerow::keeps(filter, ray, hit); };
-    const auto enters = [&](std::uint32_t mask) { return hedgerow::enters(filter, mask); };
-    return f(LeavingOut<T>{leave_out, keeps, enters});
+    const auto enters = [&](std::uint32_t bits) { return hedgerow::enters(filter, bits); };
+    return f(ByOptions<T>{options.leave_out, options.mask, keeps, enters});
 }
 }  // namespace detail
 
@@ -80,8 +75,8 @@ inline HitOf<I> closest_hit(const I& index, const RayOf<I>& ray) {
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 HitOf<I> closest_hit(const I& index, const RayOf<I>& ray, const RayOptions& options,
                      const Filter& filter = {}, Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(
-        options.leave_out, filter, [&](const auto& all) { return closest_hit(index, ray, all, count); });
+    return detail::with_filter(index, options, filter,
+                               [&](const auto& all) { return closest_hit(index, ray, all, count); });
 }
 
 /// Whether the ray hits anything in [t_min, t_max].
@@ -96,8 +91,8 @@ inline bool any_hit(const I& index, const RayOf<I>& ray) {
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 bool any_hit(const I& index, const RayOf<I>& ray, const RayOptions& options, const Filter& filter = {},
              Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(
-        options.leave_out, filter, [&](const auto& all) { return any_hit(index, ray, all, count); });
+    return detail::with_filter(index, options, filter,
+                               [&](const auto& all) { return any_hit(index, ray, all, count); });
 }
 
 /// The hit of greatest t in [t_min, t_max]; a Hit that is false if nothing is hit.
@@ -108,8 +103,8 @@ HitOf<I> last_hit(const I& index, const RayOf<I>& ray, const Filter& filter, Cou
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 HitOf<I> last_hit(const I& index, const RayOf<I>& ray, const RayOptions& options = {},
                   const Filter& filter = {}, Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(
-        options.leave_out, filter, [&](const auto& all) { return last_hit(index, ray, all, count); });
+    return detail::with_filter(index, options, filter,
+                               [&](const auto& all) { return last_hit(index, ray, all, count); });
 }
 
 /// Writes every hit to `hits`, each primitive once, in the order of (t, instance, element). Returns how many
@@ -122,17 +117,28 @@ std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>&
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits,
                      const RayOptions& options, const Filter& filter = {}, Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(
-        options.leave_out, filter, [&](const auto& all) { return all_hits(index, ray, hits, all, count); });
+    return detail::with_filter(index, options, filter,
+                               [&](const auto& all) { return all_hits(index, ray, hits, all, count); });
 }
 template <class I>
 std::size_t all_hits(const I& index, const RayOf<I>& ray, std::vector<HitOf<I>>& hits) {
     return all_hits(index, ray, hits, KeepAll());
 }
+template <class I, FilterOf<typename I::Scalar> Filter>
+std::vector<HitOf<I>> all_hits(const I& index, const RayOf<I>& ray, const Filter& filter) {
+    std::vector<HitOf<I>> hits;
+    all_hits(index, ray, hits, filter);
+    return hits;
+}
 template <class I>
 std::vector<HitOf<I>> all_hits(const I& index, const RayOf<I>& ray) {
+    return all_hits(index, ray, KeepAll());
+}
+template <class I, class Filter = KeepAll, class Count = const NoVisits>
+std::vector<HitOf<I>> all_hits(const I& index, const RayOf<I>& ray, const RayOptions& options,
+                               const Filter& filter = {}, Count& count = no_visits) {
     std::vector<HitOf<I>> hits;
-    all_hits(index, ray, hits);
+    all_hits(index, ray, hits, options, filter, count);
     return hits;
 }
 
@@ -149,7 +155,7 @@ std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> 
                        const HitsOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
     using T = typename I::Scalar;
     const PlaceOfHit<T> after(options.after.of(0));
-    return detail::with_filter<T>(options.leave_out, filter, [&](const auto& all) {
+    return detail::with_filter(index, options, filter, [&](const auto& all) {
         using Query = FirstHits<typename I::Primitives, std::remove_cvref_t<decltype(all)>>;
         return index.template answer<Query>(count, ray, hits, after, all);
     });
@@ -178,42 +184,42 @@ std::size_t hit_count(const I& index, const RayOf<I>& ray) {
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t hit_count(const I& index, const RayOf<I>& ray, const RayOptions& options,
                       const Filter& filter = {}, Count& count = no_visits) {
-    return detail::with_filter<typename I::Scalar>(
-        options.leave_out, filter, [&](const auto& all) { return hit_count(index, ray, all, count); });
+    return detail::with_filter(index, options, filter,
+                               [&](const auto& all) { return hit_count(index, ray, all, count); });
 }
 
 namespace detail {
-/// What batches of rays share: calls ask(filter, executor), with a filter that leaves out the options'
-/// elements too.
+/// What batches of rays share: calls ask(batch), with a filter that refuses what the options do too.
 template <class I, class Options, class Filter, class Ask>
-auto ask_rays(const RaysOf<I>& rays, const Options& options, const Filter& filter, std::span<Visits> visits,
-              Ask ask) {
+auto ask_rays(const I& index, const RaysOf<I>& rays, const Options& options, const Filter& filter,
+              std::span<Visits> visits, Ask ask) {
     expect_visits(visits, rays.size());
     options.leave_out.expect(rays.size());
     Executor& executor = executor_for<Filter>(options.threads, rays.size());
-    return with_filter<typename I::Scalar>(options.leave_out, filter,
-                                           [&](const auto& all) { return ask(all, executor); });
+    return with_filter(index, options, filter,
+                       [&](const auto& all) { return ask(Batch(options, all, executor, visits)); });
 }
 /// Sets answers[i] to the answer of Q, for ray i.
 template <template <class, class> class Q, class I, class Answer, class Filter>
 KernelUse answer_rays(const I& index, const RaysOf<I>& rays, Answer* answers, const RayOptions& options,
                       const Filter& filter, std::span<Visits> visits) {
     using P = typename I::Primitives;
-    return ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
-        return answer_batch<Q<P, All>>(
-            index, rays, answers, options, all, executor, visits, [&](std::size_t i, auto& count) {
-                const auto of_ray = filter_of_ray(all, i);
+    return ask_rays(
+        index, rays, options, filter, visits, [&]<class All>(const Batch<RayOptions, All>& batch) {
+            return answer_batch<Q<P, All>>(index, rays, answers, batch, [&](std::size_t i, auto& count) {
+                const auto of_ray = filter_of_ray(batch.filter, i);
                 return index.template answer<Q<P, std::remove_const_t<decltype(of_ray)>>>(count, rays[i],
                                                                                           of_ray);
             });
-    });
+        });
 }
 }  // namespace detail
 
 /// Writes the closest hit of ray i to hits[i], as `closest_hit` finds it. The rays may have any layout in
 /// memory (probes/ray_array.h); a vector or a span of rays will do. `filter(hit)` or `filter(i, hit)`, for
-/// ray i, may refuse a hit (queries/hit.h). Returns which algorithms answered (walks/engine.h): only indexes
-/// of float triangles in a WideBvh answer batches by kernels, all others ray by ray.
+/// ray i, may refuse a hit (queries/hit.h); one of many hits may refuse some of them (ask/many.h). Returns
+/// which algorithms answered (walks/engine.h): only indexes of float triangles in a WideBvh answer batches by
+/// kernels, all others ray by ray.
 ///
 ///   closest_hits(index, rays, hits, {.threads = 4});
 ///   closest_hits(index, rays, hits,
@@ -223,9 +229,12 @@ KernelUse closest_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>
                        const RayOptions& options = {}, const Filter& filter = {},
                        std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), hits.size());
-    return detail::answer_rays<ClosestHit>(index, rays, hits.data(), options, filter, visits);
+    if constexpr (FilterOfManyHits<Filter, typename I::Scalar>)
+        return detail::closest_kept(index, rays, hits, options, filter, visits);
+    else
+        return detail::answer_rays<ClosestHit>(index, rays, hits.data(), options, filter, visits);
 }
-template <class I, FilterOf<typename I::Scalar> Filter>
+template <class I, BatchFilterOf<typename I::Scalar> Filter>
 KernelUse closest_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits, const Filter& filter,
                        std::span<Visits> visits = {}) {
     return closest_hits(index, rays, hits, RayOptions(), filter, visits);
@@ -238,10 +247,17 @@ KernelUse any_hits(const I& index, const RaysOf<I>& rays, const Truths& hits, co
                    const Filter& filter = {}, std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), hits.size());
     return hits.written(rays.size(), [&](bool* answers) {
-        return detail::answer_rays<AnyHit>(index, rays, answers, options, filter, visits);
+        if constexpr (FilterOfManyHits<Filter, typename I::Scalar>) {
+            std::vector<HitOf<I>> closest(rays.size());
+            const KernelUse use = closest_hits(index, rays, closest, options, filter, visits);
+            for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = bool(closest[i]);
+            return use;
+        } else {
+            return detail::answer_rays<AnyHit>(index, rays, answers, options, filter, visits);
+        }
     });
 }
-template <class I, FilterOf<typename I::Scalar> Filter>
+template <class I, BatchFilterOf<typename I::Scalar> Filter>
 KernelUse any_hits(const I& index, const RaysOf<I>& rays, const Truths& hits, const Filter& filter,
                    std::span<Visits> visits = {}) {
     return any_hits(index, rays, hits, RayOptions(), filter, visits);
@@ -267,15 +283,22 @@ void last_hits(const I& index, const RaysOf<I>& rays, std::span<HitOf<I>> hits, 
 template <class I, class Filter = KeepAll>
 void all_hits(const I& index, const RaysOf<I>& rays, HitListsOf<I>& lists, const RayOptions& options = {},
               const Filter& filter = {}, std::span<Visits> visits = {}) {
-    detail::ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
-        detail::list_batch<AllHits<typename I::Primitives, All>>(
-            index, rays, lists, options, all, executor, visits,
-            detail::appending(&HitListsOf<I>::hits, [&](std::size_t i, auto& hits, auto& count) {
-                all_hits(index, rays[i], hits, filter_of_ray(all, i), count);
-            }));
-    });
+    if constexpr (FilterOfManyHits<Filter, typename I::Scalar>)
+        return detail::list_kept(lists, rays.size(), filter, [&](HitListsOf<I>& own) {
+            all_hits(index, rays, own, options, KeepAll(), visits);
+        });
+    else
+        detail::ask_rays(
+            index, rays, options, filter, visits,
+            [&]<class All>(const detail::Batch<RayOptions, All>& batch) {
+                detail::list_batch<AllHits<typename I::Primitives, All>>(
+                    index, rays, lists, batch,
+                    detail::appending(&HitListsOf<I>::hits, [&](std::size_t i, auto& hits, auto& count) {
+                        all_hits(index, rays[i], hits, filter_of_ray(batch.filter, i), count);
+                    }));
+            });
 }
-template <class I, FilterOf<typename I::Scalar> Filter>
+template <class I, BatchFilterOf<typename I::Scalar> Filter>
 void all_hits(const I& index, const RaysOf<I>& rays, HitListsOf<I>& lists, const Filter& filter,
               std::span<Visits> visits = {}) {
     all_hits(index, rays, lists, RayOptions(), filter, visits);
@@ -287,7 +310,7 @@ HitListsOf<I> all_hits(const I& index, const RaysOf<I>& rays, const RayOptions& 
     all_hits(index, rays, lists, options, filter, visits);
     return lists;
 }
-template <class I, FilterOf<typename I::Scalar> Filter>
+template <class I, BatchFilterOf<typename I::Scalar> Filter>
 HitListsOf<I> all_hits(const I& index, const RaysOf<I>& rays, const Filter& filter) {
     return all_hits(index, rays, RayOptions(), filter);
 }
@@ -300,20 +323,21 @@ void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf
     options.after.expect(rays.size());
     // A ray has no more hits than there are primitives.
     k = std::min(k, detail::primitives_in(index.primitives()));
-    detail::ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
-        detail::list_batch<FirstHits<typename I::Primitives, All>>(
-            index, rays, lists, options, all, executor, visits,
-            [&](std::size_t i, HitListsOf<I>& to, auto& count) {
-                const std::size_t before = to.hits.size();
-                to.hits.resize(before + k);
-                const std::size_t found =
-                    first_hits(index, rays[i], std::span(to.hits.data() + before, k),
-                               {.after = options.after.of(i)}, filter_of_ray(all, i), count);
-                to.hits.resize(before + found);
-                to.offsets.push_back(before + found);
-            },
-            k);
-    });
+    detail::ask_rays(
+        index, rays, options, filter, visits, [&]<class All>(const detail::Batch<HitsOptions, All>& batch) {
+            detail::list_batch<FirstHits<typename I::Primitives, All>>(
+                index, rays, lists, batch,
+                [&](std::size_t i, HitListsOf<I>& to, auto& count) {
+                    const std::size_t before = to.hits.size();
+                    to.hits.resize(before + k);
+                    const std::size_t found =
+                        first_hits(index, rays[i], std::span(to.hits.data() + before, k),
+                                   {.after = options.after.of(i)}, filter_of_ray(batch.filter, i), count);
+                    to.hits.resize(before + found);
+                    to.offsets.push_back(before + found);
+                },
+                k);
+        });
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
 void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf<I>& lists,
@@ -334,12 +358,13 @@ template <class I, class Filter = KeepAll>
 void hit_counts(const I& index, const RaysOf<I>& rays, std::span<std::size_t> counts,
                 const RayOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), counts.size());
-    detail::ask_rays<I>(rays, options, filter, visits, [&]<class All>(const All& all, Executor& executor) {
-        detail::answer_batch<HitCount<typename I::Primitives, All>>(
-            index, rays, counts.data(), options, all, executor, visits, [&](std::size_t i, auto& count) {
-                return hit_count(index, rays[i], filter_of_ray(all, i), count);
-            });
-    });
+    detail::ask_rays(index, rays, options, filter, visits,
+                     [&]<class All>(const detail::Batch<RayOptions, All>& batch) {
+                         detail::answer_batch<HitCount<typename I::Primitives, All>>(
+                             index, rays, counts.data(), batch, [&](std::size_t i, auto& count) {
+                                 return hit_count(index, rays[i], filter_of_ray(batch.filter, i), count);
+                             });
+                     });
 }
 
 }  // namespace hedgerow

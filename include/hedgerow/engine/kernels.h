@@ -125,8 +125,8 @@ struct PointKernels : ClosestKernels<Scene> {
     /// be room, aligned to 64 bytes. Returns how many there are.
     std::size_t (*nearest)(const Scene&, const Vec<float, 3>&, std::size_t k, float max_distance2,
                            NearKey* keys);
-    /// Writes the k nearest to point number n to the places from k·n on of each array that is there, for k up
-    /// to `most_nearest`.
+    /// Writes the k nearest to point number n to the places from k·n on of each array, for k up to
+    /// `most_nearest`.
     void (*nearest_of_many)(const Scene&, const PointBatch<float, 3>&, std::size_t k, float max_distance2,
                             PrimitiveId* ids, float* distances2);
     /// Appends all within the distance to the keys, in no order.

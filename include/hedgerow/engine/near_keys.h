@@ -29,12 +29,11 @@ inline std::uint32_t element_of(NearKey key) {
     return static_cast<std::uint32_t>(key);
 }
 
-/// What a kernel answers in place of the number of keys, and in place of the first id or squared distance of
-/// a row, where it gave up: many points are at one place, and most of them only tie with those that are
+/// What a kernel answers in place of the number of keys, and in place of the first id of a row, where it gave
+/// up: many points are at one place, and most of them only tie with those that are
 /// found. A walk that takes the first points of a place answers then (NearestAmongTies).
 inline constexpr std::size_t gave_up = std::size_t(-1);
 inline constexpr PrimitiveId gave_up_id = no_primitive - 1;
-inline constexpr float gave_up_distance2 = -1;
 
 /// A list of keys in the caller's memory. `grow` makes room for at least eight more.
 struct NearKeys {

@@ -62,12 +62,8 @@ protected:
         const auto& bounds = index_.bounds();
         return takes(bounds.low) && takes(bounds.high) && max_component(bounds.extent()) > T(0x1p-40);
     }
-    // Kernels leave nothing out, not even what is a little nearer.
-    static bool exact(const NearLimits<T>& limits) {
-        return limits.factor == 1 && limits.leave_out == no_primitive;
-    }
     bool takes(const Vec<T, 3>& point, const NearLimits<T>& limits) const {
-        return takes(point) && takes_index() && exact(limits);
+        return takes(point) && takes_index() && limits.plain();
     }
     static bool takes_all(const PointBatch<T, 3>& points) {
         bool all = true;
@@ -214,7 +210,7 @@ struct EngineFor<ClosestPoint<Set>, I> : detail::PointEngine<I> {
     void answer_batch(const Strided<Vec<T, 3>>& points, Near<T, 3>* found, const How& how) const {
         const auto limits = NearLimits<T>::of_batch(how.options);
         this->for_each_taken(
-            points, limits.factor == 1 && how.options.leave_out.none() && this->takes_index(), how.executor,
+            points, limits.plain() && how.options.leave_out.none() && this->takes_index(), how.executor,
             [&](const PointBatch<T, 3>& part) {
                 if constexpr (detail::CloudForKernels<I>)
                     if (this->crowded()) {
@@ -257,9 +253,9 @@ struct EngineFor<Nearest<Set>, I> : detail::PointEngine<I> {
                       const How& how) const {
         // Rows have a place more for what is left out.
         const auto limits = NearLimits<float>::of_batch(how.options);
-        detail::list_by_rows(lists, points.size(), k, how.options.leave_out, [&](const auto& rows) {
+        detail::list_by_rows(lists, points.size(), k, how.options, [&](const auto& rows) {
             this->for_each_taken(
-                points, k > 0 && rows.width <= most_nearest && limits.factor == 1, how.executor,
+                points, k > 0 && rows.width <= most_nearest && limits.plain(), how.executor,
                 [&](const PointBatch<float, 3>& part) {
                     this->kernels().nearest_of_many(this->scene(), part, rows.width, limits.distance2,
                                                     rows.ids, rows.distances2);
@@ -310,7 +306,7 @@ struct EngineFor<Within<Set>, I> : detail::PointEngine<I> {
                                    for (std::size_t i = begin; i < end; ++i)
                                        taken ? append(points[i], limits, to) : how.rest(i, to);
                                });
-        detail::leave_out_of(lists, how.options.leave_out);
+        detail::leave_out_of(lists, how.options);
     }
 
 private:

@@ -8,7 +8,6 @@
 #include <hedgerow/instances/placed_index.h>
 #include <hedgerow/queries/filter.h>
 #include <hedgerow/walks/engine.h>
-#include <hedgerow/walks/structure.h>
 
 namespace hedgerow {
 
@@ -105,7 +104,7 @@ public:
     /// several cells, and so offers them several times. O(instances).
     bool offers_once() const {
         return std::all_of(all_.begin(), all_.end(),
-                           [](const auto& placed) { return placed.index().structure().exclusive(); });
+                           [](const auto& placed) { return placed.index().exclusive(); });
     }
     /// The id that a hit reports for an element of an instance.
     std::uint32_t id(PrimitiveId element, std::uint32_t instance) const {
@@ -128,8 +127,7 @@ public:
     Flow test_leaf(const RayProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             const PlacedIndex<I>& placed = all_[leaf.ids[i]];
-            if constexpr (requires { query.enters(placed.mask()); })
-                if (!query.enters(placed.mask())) continue;
+            if (!lets_in(placed, query)) continue;
             if (ask_inside(placed, leaf.ids[i], probe, query) == Flow::stop) return Flow::stop;
         }
         return Flow::go_on;
@@ -138,6 +136,7 @@ public:
     Flow test_leaf(const PointProbe<T, D>& probe, const Leaf& leaf, Q& query) const {
         for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
             const PlacedIndex<I>& placed = all_[leaf.ids[i]];
+            if (!lets_in(placed, query)) continue;
             const typename PlacedIndex<I>::Ball ball(placed, probe.point());
             if (walk(placed, detail::PointInside<I, Q>(ball, leaf.ids[i], query)) == Flow::stop)
                 return Flow::stop;
@@ -159,6 +158,14 @@ public:
     }
 
 private:
+    /// Whether the query's mask lets it into an instance.
+    template <class Q>
+    static bool lets_in(const PlacedIndex<I>& placed, const Q& query) {
+        if constexpr (requires { query.enters(placed.mask()); })
+            return query.enters(placed.mask());
+        else
+            return true;
+    }
     /// Queries one instance by a ray. An engine, if there is one for the index, offers only the one candidate
     /// that the query needs.
     template <class Q>
@@ -173,10 +180,9 @@ private:
     }
     template <class Inside>
     static Flow walk(const PlacedIndex<I>& placed, Inside inside) {
-        walk_through(placed.index().structure(), placed.primitives(), inside, uncounted);
+        placed.index().ask_over(placed.primitives(), inside);
         return inside.flow();
     }
-    static constexpr NoVisits uncounted{};
 
     std::span<const PlacedIndex<I>> all_;
     const ForKernels* for_kernels_ = nullptr;
@@ -185,7 +191,8 @@ private:
 
 /// Instances as primitives: `build<Bvh>(InstanceSet{...})` is a BVH whose leaves are grids, if the indexes
 /// are grids. Any structure can hold instances of indexes of any structure. All indexes of one set are of one
-/// type.
+/// type; those of an InstanceSet<AnyIndex> (any_index.h) may be of any structures and primitives, but rays
+/// need structures that answer them.
 ///
 ///   const auto grid = build<Grid>(mesh);
 ///   const InstanceSet scene{Instance(grid), Instance(grid, Transform<3>::translation({4, 0, 0}))};

@@ -8,8 +8,8 @@
 
 namespace hedgerow {
 
-/// A borrowed index and the transform from the index's space to the world. Filters may refuse the instance by
-/// its `mask` (`InMasks`). Hits report its `geometry` beside its number.
+/// A borrowed index and the transform from the index's space to the world. Options and filters may refuse the
+/// instance by its `mask`. Hits report its `geometry` beside its number.
 template <class I>
 struct Instance {
     const I* index;

@@ -73,7 +73,7 @@ bool listed_by_cells(const P& set, const Strided<Vec<T, P::dimension>>& points, 
                                                      NearLimits<T>::of_batch(options).distance2, lists,
                                                      options.threads))
             return false;
-        leave_out_of(lists, options.leave_out);
+        leave_out_of(lists, options);
         return true;
     } else {
         return false;

@@ -65,6 +65,14 @@ private:
     bool of_each_ = false;
 };
 
+/// The options of first hits, which may go on after others.
+struct HitsOptions {
+    AfterHits after = {};
+    LeaveOut leave_out = {};
+    Mask mask = {};
+    Threads threads = {};
+};
+
 /// A place as a walk compares it with hits, whose t is a T.
 template <std::floating_point T>
 struct PlaceOfHit {

@@ -1,7 +1,6 @@
 /// The answer of a ray query, and filters that refuse hits.
 #pragma once
 
-#include <hedgerow/base/strided.h>
 #include <hedgerow/walks/query.h>
 
 namespace hedgerow {
@@ -58,24 +57,5 @@ struct CullBackFaces {
 };
 template <class View, class T>
 CullBackFaces(View, Vec<T, 3>) -> CullBackFaces<View>;
-/// Keeps elements whose mask has a bit in common with `wanted`.
-struct Masked {
-    Strided<std::uint32_t> masks;
-    std::uint32_t wanted;
-    template <class H>
-    bool operator()(const H& h) const {
-        return (masks[h.element] & wanted) != 0;
-    }
-};
-
-/// Queries only instances whose mask has a bit in common with `wanted`, and keeps every hit there.
-struct InMasks {
-    std::uint32_t wanted;
-    bool enters(std::uint32_t mask) const { return (mask & wanted) != 0; }
-    template <class H>
-    constexpr bool operator()(const H&) const {
-        return true;
-    }
-};
 
 }  // namespace hedgerow

@@ -6,6 +6,7 @@
 #include <hedgerow/parallel/executor.h>
 #include <hedgerow/queries/filter.h>
 #include <hedgerow/queries/leave_out.h>
+#include <hedgerow/queries/mask.h>
 #include <hedgerow/walks/query.h>
 
 namespace hedgerow {
@@ -53,6 +54,7 @@ struct PointOptions {
     /// found by a walk.
     double factor = 1;
     LeaveOut leave_out = {};
+    Mask mask = {};
     Threads threads = {};  ///< of a batch
 };
 
@@ -62,12 +64,14 @@ struct NearLimits {
     T distance2;  ///< the largest squared distance, finite; nothing is within what is negative or NaN
     T factor;
     PrimitiveId leave_out;
+    Mask mask;
 
     /// Throws InputError for a factor that is not at least 1.
     explicit NearLimits(const PointOptions& options = {}, std::size_t query = 0)
         : distance2(square_within<T>(options.radius)),
           factor(options.factor == 1 ? T(1) : greatest_at_most<T>(options.factor)),
-          leave_out(options.leave_out.of(query)) {
+          leave_out(options.leave_out.of(query)),
+          mask(options.mask) {
         if (!(factor >= 1)) throw InputError("the factor of a point's question is below 1: give 1 or more");
         if (!(static_cast<double>(distance2) < options.radius2))
             distance2 = greatest_at_most<T>(options.radius2);
@@ -77,6 +81,8 @@ struct NearLimits {
         options.leave_out = {};
         return NearLimits(options);
     }
+    /// Whether all that is near is answered, and exactly.
+    bool plain() const { return factor == 1 && leave_out == no_primitive && mask.none(); }
     /// Whether nothing is within them.
     bool nothing() const { return !(distance2 >= 0); }
     /// The limit of a walk that has found something at a squared distance.
@@ -102,8 +108,10 @@ public:
 
     const Probe& probe() const { return probe_; }
     bool done() const { return limits_.nothing(); }
-    /// Whether the filter lets an instance with this mask be queried.
-    bool enters(std::uint32_t mask) const { return hedgerow::enters(filter_, mask); }
+    /// Whether the options and the filter let an instance with this mask be queried.
+    bool enters(std::uint32_t mask) const {
+        return limits_.mask.enters(mask) && hedgerow::enters(filter_, mask);
+    }
 
 protected:
     const NearLimits<Scalar>& limits() const { return limits_; }
@@ -112,7 +120,7 @@ protected:
     }
     /// Whether a candidate counts that is near enough.
     bool counts(const Candidate& c) const {
-        if (c.element == limits_.leave_out) return false;
+        if (c.element == limits_.leave_out || !limits_.mask.sees(c.element)) return false;
         if constexpr (std::same_as<Filter, KeepAll>)
             return true;
         else

@@ -1,9 +1,20 @@
-/// The base of the ray queries: the probe, the interval and the filter.
+/// The base of the ray queries: the options, the probe, the interval and the filter.
 #pragma once
 
+#include <hedgerow/parallel/executor.h>
 #include <hedgerow/queries/filter.h>
+#include <hedgerow/queries/leave_out.h>
+#include <hedgerow/queries/mask.h>
 
 namespace hedgerow {
+
+/// What a question of rays leaves out or does not see, and by which threads a batch is answered. A ray has
+/// its own `t_min` and `t_max`.
+struct RayOptions {
+    LeaveOut leave_out = {};
+    Mask mask = {};
+    Threads threads = {};
+};
 
 /// `Set` gives the ids that hits report, and `Filter` decides which candidates count. The query of an
 /// unusable ray is done before it begins.

@@ -18,10 +18,7 @@ public:
     template <class Index>
     RegionQuery(const Index& index, const R& region, Finds finds)
         : probe_(region, index.bounds(), finds), done_(is_empty(region)) {
-        if constexpr (requires { index.structure().exclusive(); })
-            takes_subtrees_ = !Instanced<Set> && index.structure().exclusive();
-        else if constexpr (requires { index.exclusive(); })
-            takes_subtrees_ = index.exclusive();
+        takes_subtrees_ = !Instanced<Set> && index.exclusive();
     }
 
     const Probe& probe() const { return probe_; }

@@ -49,9 +49,9 @@ concept AnswersOne = Engine<E> && requires(const E& engine, Arguments&... argume
 /// How a batch is asked: what an engine gets beside the queries.
 template <class Options, class Filter, class... Place>
 struct HowAsked {
-    const Options& options;  ///< of the call; a factor and what is left out of points are to be obeyed too
-    const Filter& filter;    ///< of the call; of rays it also refuses what the options leave out
-    Executor& executor;      ///< the threads of the call, which it keeps in IEEE mode
+    const Options& options;  ///< of the call; of points, factor, mask and what is left out are to be obeyed
+    const Filter& filter;  ///< of the call; of rays it also refuses what is left out, and what the mask does
+    Executor& executor;    ///< the threads of the call, which it keeps in IEEE mode
     /// Asks query i alone, and writes the answer to its place: for queries that the engine cannot take. The
     /// walk answers, or the engine's own `answer` if it has one, which then must not come back here. May be
     /// called by several threads.

@@ -16,10 +16,10 @@ enum class Order { none, nearest };
 /// - `limit` is the largest t (of a ray), distance² (of a point) or −distance² (of a point whose farthest is
 ///   asked for) that can still change the answer. It may only shrink. Infinity excludes nothing; the largest
 ///   number excludes distances that overflow. Of a query of a region only the sign counts.
-/// - `done`, if there is one, says that nothing can change the answer, so that no walk begins.
+/// - `done`, if there is one, says that nothing can change the answer, so that no walk begins and no limit is
+///   asked.
 /// - `offer` is called with each candidate that a primitive's test gives, and may stop the walk. A structure
-/// may
-///   offer a primitive more than once. The distance of a candidate may be infinite or NaN.
+///   may offer a primitive more than once. The distance of a candidate may be infinite or NaN.
 /// - `order` is a wish: a walk may ignore it, and a VirtualQuery has the order of its probe.
 template <class Q>
 concept Query = requires(Q& q, const Q& asked, const CandidateOf<typename Q::Probe>& candidate) {

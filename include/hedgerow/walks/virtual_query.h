@@ -87,19 +87,19 @@ protected:
     /// The probe has to outlive the walk.
     template <class Q>
     VirtualQuery(const Probe& probe, const Q& query)
-        : probe_(probe),
-          limit_(query.limit()),
-          done_(hedgerow::done(query)),
-          takes_subtrees_(detail::takes_subtrees(query)) {}
+        : probe_(probe), takes_subtrees_(detail::takes_subtrees(query)) {
+        follow(query);
+    }
     ~VirtualQuery() = default;
 
     /// What the query says of a subtree that lies in its region.
     virtual Verdict take(const SubtreeRef<Probe::dimension>& node) = 0;
 
-    /// Copies what the query has become.
+    /// Copies what the query has become. One that is done has no limit.
     template <class Q>
     void follow(const Q& query) {
-        limit_ = query.limit(), done_ = hedgerow::done(query);
+        done_ = hedgerow::done(query);
+        if (!done_) limit_ = query.limit();
     }
 
 private:
@@ -112,8 +112,8 @@ private:
     }
 
     const Probe& probe_;
-    Scalar limit_;
-    bool done_, takes_subtrees_;
+    Scalar limit_ = 0;
+    bool done_ = false, takes_subtrees_;
 };
 
 /// A query as a VirtualQuery. The query must outlive the VirtualQuery.

@@ -1,0 +1,220 @@
+/// Filters of batches that are called once for many answers, where a call for each would cost too much: from
+/// other languages, or with data in columns. A batch is first answered without the filter; the queries whose
+/// answers are refused are then asked for their next ones.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <hedgerow/ask/asking.h>
+#include <hedgerow/probes/ray_array.h>
+#include <hedgerow/queries/filter.h>
+#include <hedgerow/queries/first_hits.h>
+#include <hedgerow/queries/near_rows.h>
+
+namespace hedgerow {
+
+/// A filter of many hits: `filter(rays, hits, keep)` sets keep[j] to whether hits[j] counts, a hit of ray
+/// rays[j] of the batch. Hits stand in the order of the rays, and `keep` is true before. The filter is called
+/// by the calling thread alone, in some rounds, perhaps again for the same hit; threads that the options give
+/// are those of the search. Its exceptions reach the caller, with no refused answer written.
+///
+///   closest_hits(index, rays, hits, [&](auto of_rays, auto found, auto keep) {
+///       for (std::size_t j = 0; j < found.size(); ++j) keep[j] = opaque[found[j].element];
+///   });
+template <class F, class T>
+concept FilterOfManyHits =
+    detail::Asks<F, std::span<const std::size_t>, std::span<const Hit<T>>, std::span<bool>>;
+/// A filter of many primitives that are near: `filter(points, ids, distances2, keep)`, called as one of hits
+/// is. The ids are positions in the set, or PlacedIds among instances.
+template <class F, class T, class Id>
+concept FilterOfManyNear =
+    detail::Asks<F, std::span<const std::size_t>, std::span<const Id>, std::span<const T>, std::span<bool>>;
+
+namespace detail {
+
+/// Which elements of lists a filter keeps. List i is that of query numbers[i].
+template <class C, class Filter>
+std::unique_ptr<bool[]> kept_of(const Lists<C>& lists, const std::vector<std::size_t>& numbers,
+                                const Filter& filter) {
+    const std::size_t count = lists.count();
+    std::unique_ptr<bool[]> keep(new bool[count]);
+    if (count == 0) return keep;
+    std::fill_n(keep.get(), count, true);
+    std::vector<std::size_t> queries;
+    queries.reserve(count);
+    for (std::size_t i = 0; i < lists.size(); ++i) queries.resize(lists.offsets[i + 1], numbers[i]);
+    const std::span<const std::size_t> of(queries);
+    const std::span<bool> kept(keep.get(), count);
+    const auto all = lists.row(0, count);
+    if constexpr (requires { all.ids; })
+        filter(of, all.ids, all.distances2, kept);
+    else
+        filter(of, all, kept);
+    return keep;
+}
+/// Leaves in lists what is kept.
+template <class C>
+void keep_only(Lists<C>& lists, const bool* keep) {
+    const std::size_t count = lists.count();
+    std::size_t end = 0, begin = 0;
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        const std::size_t next = lists.offsets[i + 1];
+        end += static_cast<std::size_t>(std::count(keep + begin, keep + next, true));
+        lists.offsets[i + 1] = end, begin = next;
+    }
+    C::each([&](auto column) {
+        auto& all = lists.*column;
+        std::size_t to = 0;
+        for (std::size_t j = 0; j < count; ++j)
+            if (keep[j]) all[to++] = all[j];
+        all.resize(to);
+    });
+}
+inline std::vector<std::size_t> numbers_below(std::size_t count) {
+    std::vector<std::size_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), std::size_t(0));
+    return numbers;
+}
+/// Lists for each of `count` queries what list(lists) finds and a filter of many keeps.
+template <class L, class Filter, class List>
+void list_kept(L& lists, std::size_t count, const Filter& filter, List list) {
+    list_in_own_memory(lists, [&](L& own) {
+        list(own);
+        try {
+            keep_only(own, kept_of(own, numbers_below(count), filter).get());
+        } catch (...) {
+            own.clear();
+            throw;
+        }
+    });
+}
+
+/// Some of the queries of a batch, which are asked again: their numbers, and what they leave out and count.
+struct Again {
+    std::vector<std::size_t> numbers;
+    std::vector<PrimitiveId> without;
+    std::vector<Visits> visits;
+
+    template <class Options>
+    void set(Options& options, std::span<Visits> counts) {
+        without.clear();
+        if (!options.leave_out.none())
+            for (const std::size_t i : numbers) without.push_back(options.leave_out.of(i));
+        if (!without.empty()) options.leave_out = without;
+        visits.assign(counts.empty() ? 0 : numbers.size(), {});
+    }
+    /// Adds what was counted to the counts of the batch.
+    void add_to(std::span<Visits> counts) const {
+        for (std::size_t j = 0; j < visits.size(); ++j) counts[numbers[j]] += visits[j];
+    }
+};
+
+/// Writes the closest hit of each ray that a filter of many keeps: the filter is asked of the closest hits of
+/// all rays, then of more and more of the next hits of those rays whose hits it refused.
+template <class I, class Rays, class H, class Options, class Filter>
+KernelUse closest_kept(const I& index, const Rays& rays, std::span<H> hits, const Options& options,
+                       const Filter& filter, std::span<Visits> visits) {
+    using T = typename I::Scalar;
+    const KernelUse use = closest_hits(index, rays, hits, options, KeepAll(), visits);
+    Again asked;
+    HitLists<T> lists;
+    lists.clear();
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (!hits[i]) continue;
+        asked.numbers.push_back(i);
+        lists.hits.push_back(std::exchange(hits[i], H()));
+        lists.offsets.push_back(lists.hits.size());
+    }
+    for (std::size_t most = 1; !asked.numbers.empty();) {
+        const auto keep = kept_of(lists, asked.numbers, filter);
+        std::vector<Ray<T, I::dimension>> rays_again;
+        std::vector<AfterHit> after;
+        std::vector<std::size_t> again;
+        for (std::size_t j = 0; j < lists.size(); ++j) {
+            const std::size_t i = asked.numbers[j], begin = lists.offsets[j], end = lists.offsets[j + 1];
+            const auto first =
+                static_cast<std::size_t>(std::find(keep.get() + begin, keep.get() + end, true) - keep.get());
+            if (first < end) hits[i] = lists.hits[first];
+            if (first < end || end - begin < most) continue;
+            again.push_back(i), rays_again.push_back(rays[i]), after.push_back(lists.hits[end - 1]);
+        }
+        asked.numbers = std::move(again);
+        most = std::min<std::size_t>(2 * most, 64);
+        HitsOptions next{
+            .after = after, .leave_out = options.leave_out, .mask = options.mask, .threads = options.threads};
+        asked.set(next, visits);
+        first_hits(index, rays_again, most, lists, next, KeepAll(), std::span(asked.visits));
+        asked.add_to(visits);
+    }
+    return use;
+}
+
+/// Lists the k nearest of each point that a filter of many keeps. Points whose lists would be shorter are
+/// asked for twice as many, and beyond 256 for all, one point at a time.
+template <class I, class Points, class L, class Filter>
+void nearest_kept(const I& index, const Points& points, std::size_t k, L& lists, const PointOptions& options,
+                  const Filter& filter, std::span<Visits> visits) {
+    constexpr std::size_t many = 256;
+    struct Place {
+        std::size_t begin, size;
+    };
+    std::vector<Place> places(points.size());
+    L settled, found;  // lists in the order in which they are settled
+    const auto settle = [&](std::size_t i, std::size_t begin, std::size_t end) {
+        places[i] = {settled.ids.size(), std::min(k, end - begin)};
+        const auto row = found.row(begin, begin + places[i].size);
+        settled.ids.append(row.ids), settled.distances2.append(row.distances2);
+    };
+    Again asked;
+    const auto points_asked = [&] {
+        std::vector<Vec<typename I::Scalar, I::dimension>> some;
+        for (const std::size_t i : asked.numbers) some.push_back(points[i]);
+        return some;
+    };
+    nearest(index, points, k, found, options, KeepAll(), visits);
+    asked.numbers = numbers_below(points.size());
+    for (std::size_t most = k;; most *= 2) {
+        std::vector<std::size_t> sizes, again;
+        for (std::size_t j = 0; j < found.size(); ++j) sizes.push_back(found[j].size());
+        keep_only(found, kept_of(found, asked.numbers, filter).get());
+        for (std::size_t j = 0; j < found.size(); ++j) {
+            const std::size_t begin = found.offsets[j], end = found.offsets[j + 1];
+            if (end - begin < k && sizes[j] == most)
+                again.push_back(asked.numbers[j]);
+            else
+                settle(asked.numbers[j], begin, end);
+        }
+        asked.numbers = std::move(again);
+        if (asked.numbers.empty() || 2 * most > many) break;
+        PointOptions next = options;
+        asked.set(next, visits);
+        nearest(index, points_asked(), 2 * most, found, next, KeepAll(), std::span(asked.visits));
+        asked.add_to(visits);
+    }
+    for (const std::size_t i : std::exchange(asked.numbers, {})) {
+        PointOptions next = options;
+        asked.numbers = {i};
+        asked.set(next, visits);
+        within(index, points_asked(), PointOptions::anywhere, found, next, KeepAll(),
+               std::span(asked.visits));
+        asked.add_to(visits);
+        keep_only(found, kept_of(found, asked.numbers, filter).get());
+        settle(i, 0, found.count());
+    }
+    list_in_own_memory(lists, [&](L& own) {
+        own.clear();
+        for (const Place& place : places) {
+            const auto row = settled.row(place.begin, place.begin + place.size);
+            own.ids.append(row.ids), own.distances2.append(row.distances2);
+            own.offsets.push_back(own.ids.size());
+        }
+    });
+}
+
+}  // namespace detail
+
+}  // namespace hedgerow
