@@ -100,16 +100,19 @@ void pictures(const MeshIndexOf& index, const std::vector<Ray3f>& rays) {
         const auto layer = [&](const Ray3f&, const Hit<float>& hit) {
             return Layer{{float(hit.element % 3), 0.5f, 0.25f}, opacity};
         };
-        const auto counts = composite_front_to_back(index, rays, layer, composites, {.counts_saved = true},
-                                                    serial_executor());
+        const auto counts = composite_front_to_back(index, rays, layer, composites,
+                                                    {.counts_saved = true, .threads = serial_executor()});
         TransparencyCounts ending;
-        const auto rate = rates(
-            repeats, rays.size(),
-            {[&] {
-                 ending = composite_front_to_back(index, rays, layer, composites, {}, serial_executor());
-                 return ending.layers;
-             },
-             [&] { return composite_back_to_front(index, rays, layer, composites, serial_executor()); }});
+        const auto rate = rates(repeats, rays.size(),
+                                {[&] {
+                                     ending = composite_front_to_back(index, rays, layer, composites,
+                                                                      {.threads = serial_executor()});
+                                     return ending.layers;
+                                 },
+                                 [&] {
+                                     return composite_back_to_front(index, rays, layer, composites,
+                                                                    {.threads = serial_executor()});
+                                 }});
         std::printf("  %7.2f %9zu %12.1f %% %12.2f %12.2f\n", double(opacity),
                     std::size_t(counts.layers + counts.saved),
                     100 * double(counts.saved) / double(counts.layers + counts.saved),
@@ -124,22 +127,23 @@ void lists(const TriangleMesh<float>& mesh, const MeshIndexOf& index) {
     FragmentCounts counts;
     std::vector<Hit<float>> hits;
     std::array<Hit<float>, 8> piece;
-    const auto rate = rates(repeats, rays.size(),
-                            {[&] {
-                                 counts = FragmentLists<float>(samples).list(
-                                     mesh.view(), [](const FragmentBand<float>&) {}, {}, serial_executor());
-                                 return std::size_t(counts.fragments);
-                             },
-                             [&] {
-                                 std::size_t all = 0;
-                                 for (const auto& ray : rays) all += all_hits(index, ray, hits);
-                                 return all;
-                             },
-                             [&] {
-                                 std::size_t all = 0;
-                                 for (const auto& ray : rays) all += in_pieces(index, ray, piece);
-                                 return all;
-                             }});
+    const auto rate =
+        rates(repeats, rays.size(),
+              {[&] {
+                   counts = FragmentLists<float>(samples).list(mesh.view(), [](const FragmentBand<float>&) {},
+                                                               {.threads = serial_executor()});
+                   return std::size_t(counts.fragments);
+               },
+               [&] {
+                   std::size_t all = 0;
+                   for (const auto& ray : rays) all += all_hits(index, ray, hits);
+                   return all;
+               },
+               [&] {
+                   std::size_t all = 0;
+                   for (const auto& ray : rays) all += in_pieces(index, ray, piece);
+                   return all;
+               }});
     // Compare the lists of every sample.
     std::size_t differ = 0;
     FragmentLists<float>(samples).list(mesh.view(), [&](const FragmentBand<float>& band) {

@@ -148,10 +148,11 @@ Ratios measure_scene(const std::string& name, int size) {
         closest_hits(index, rays, std::span(cast), {.threads = serial_executor()});
         return rays.size();
     });
-    contest.add("visible",
-                [&] { return rasteriser.draw_visible(mesh.view(), visible, serial_executor()).triangles; });
+    contest.add("visible", [&] {
+        return rasteriser.draw_visible(mesh.view(), visible, {.threads = serial_executor()}).triangles;
+    });
     contest.add("hits of visible", [&] {
-        rasteriser.resolve(mesh.view(), visible, resolved, serial_executor());
+        rasteriser.resolve(mesh.view(), visible, resolved, {.threads = serial_executor()});
         return rays.size();
     });
     contest.add("hits", [&] {

@@ -98,20 +98,20 @@ TEST_F(Draw, ARaysTableIsItsTrace) {
     for (const std::string& spec : structures_for<SegmentSet<float>>()) {
         SCOPED_TRACE(spec);
         const auto set = std::get<SegmentSet<float>>(generate<float>(parse_scene_spec("gen:segments2d:80")));
-        const auto trace = build_any(spec, set)->trace({{-0.2f, 0.31f}, {1, 0.35f}});
+        const auto walked = trace(*build_any(spec, set), Ray2f{{-0.2f, 0.31f}, {1, 0.35f}});
         const auto r = run("draw gen:segments2d:80 --structure " + spec + ray + " -o " + file("ray.svg"));
         ASSERT_EQ(r.code, 0) << r.output;
         // The picture has a cell for each step of the trace, and the table a line.
-        EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "cell visited"), trace.steps.size());
+        EXPECT_EQ(elements_with_class(bytes_of(file("ray.svg")), "cell visited"), walked.steps.size());
         EXPECT_EQ(static_cast<std::size_t>(std::count(r.output.begin(), r.output.end(), '\n')),
-                  trace.steps.size() + 2)
+                  walked.steps.size() + 2)
             << "a head, a line a step, and the sum";
-        ASSERT_TRUE(trace.hit);
-        EXPECT_NE(r.output.find("hits primitive " + std::to_string(trace.hit.element)), std::string::npos);
+        ASSERT_TRUE(walked.hit);
+        EXPECT_NE(r.output.find("hits primitive " + std::to_string(walked.hit.element)), std::string::npos);
         // The JSON has the counts of the trace.
         const auto json =
             run("draw gen:segments2d:80 --json --structure " + spec + ray + " -o " + file("ray.svg"));
-        EXPECT_NE(json.output.find("\"primitives\": " + std::to_string(trace.visits.primitives)),
+        EXPECT_NE(json.output.find("\"primitives\": " + std::to_string(walked.visits.primitives)),
                   std::string::npos);
     }
     // A page shows the steps one by one.
@@ -154,7 +154,7 @@ TEST_F(Draw, ARayIsDrawnInSeveralStructuresSideBySide) {
     const auto set = std::get<SegmentSet<float>>(generate<float>(parse_scene_spec("gen:segments2d:60")));
     std::size_t steps = 0;
     for (const auto& spec : specs)
-        steps += build_any(spec, set)->trace({{-0.2f, 0.31f}, {1, 0.35f}}).steps.size();
+        steps += trace(*build_any(spec, set), Ray2f{{-0.2f, 0.31f}, {1, 0.35f}}).steps.size();
     const auto r =
         run("draw gen:segments2d:60 --json --ray=-0.2,0.31,1,0.35 --structure grid --beside kdtree "
             "--beside quadtree --beside bsp -o " +

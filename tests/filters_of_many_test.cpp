@@ -38,9 +38,15 @@ void expect_the_same(const I& index, const Keeps& keeps) {
         any_hits(index, rays, want_any, options, each);
         EXPECT_EQ(any, want_any);
         EXPECT_EQ(all_hits(index, rays, options, many), all_hits(index, rays, options, each));
-        std::vector<Visits> visits(rays.size());
+        std::vector<std::size_t> counts(rays.size()), want_counts(rays.size());
+        hit_counts(index, rays, counts, options, many);
+        hit_counts(index, rays, want_counts, options, each);
+        EXPECT_EQ(counts, want_counts);
+        std::vector<Visits> visits(rays.size()), of_one(rays.size());
         closest_hits(index, rays, hits, options, many, visits);
         EXPECT_EQ(hits, want);
+        closest_hits(index, rays, hits, options, KeepAll(), of_one);
+        for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_GE(visits[i].nodes, of_one[i].nodes) << i;
     }
     EXPECT_LT(calls, 200u);
 
@@ -59,6 +65,19 @@ void expect_the_same(const I& index, const Keeps& keeps) {
             ASSERT_EQ(nearest(index, points, k, options, many_near),
                       nearest(index, points, k, options, each_near))
                 << k;
+        std::vector<NearOf<I>> closest(points.size()), want(points.size());
+        closest_points(index, points, closest, options, many_near);
+        closest_points(index, points, want, options, each_near);
+        ASSERT_EQ(closest, want);
+        const auto rough = nearest(index, points, 3, {.factor = 1.5}, many_near);
+        const auto exact = nearest(index, points, 3, {}, each_near);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            ASSERT_EQ(rough[i].size(), exact[i].size()) << i;
+            for (std::size_t j = 0; j < rough[i].size(); ++j) {
+                ASSERT_LE(rough[i].distances2[j], T(2.2501) * exact[i].distances2[j]) << i;
+                ASSERT_GE(rough[i].distances2[j], exact[i].distances2[j]) << i;
+            }
+        }
         ASSERT_EQ(within(index, points, radius, options, many_near),
                   within(index, points, radius, options, each_near));
         std::vector<std::size_t> offsets(points.size() + 1);
@@ -112,7 +131,38 @@ TEST(FiltersOfMany, ThatRefuseNearlyAll) {
     };
     const auto each = [](const Near<float, 3>& near) { return near.element % 10000 == 7; };
     EXPECT_EQ(nearest(index, asked, 5, {}, few), nearest(index, asked, 5, {}, each));
-    EXPECT_EQ(nearest(index, asked, 2, {}, few), nearest(index, asked, 2, {}, each));
+    EXPECT_EQ(nearest(index, asked, 2, few), nearest(index, asked, 2, each));
+    const auto most = [](auto, std::span<const PrimitiveId> ids, auto, std::span<bool> keep) {
+        for (std::size_t j = 0; j < ids.size(); ++j) keep[j] = ids[j] % 50 != 7;
+    };
+    const auto but_some = [](const Near<float, 3>& near) { return near.element % 50 != 7; };
+    std::vector<std::uint32_t> bits(cloud.size());
+    for (std::size_t i = 0; i < bits.size(); ++i) bits[i] = 1u << i % 3;
+    for (const std::size_t k : {129u, 200u, 5000u})
+        EXPECT_EQ(nearest(index, asked, k, {.mask = {bits, 3}, .threads = 2}, most),
+                  nearest(index, asked, k, {.mask = {bits, 3}}, but_some));
+}
+
+/// The filter may ask questions of its own.
+TEST(FiltersOfMany, MayAskAgain) {
+    const auto mesh = teapot<float>(300);
+    const auto index = build(mesh);
+    const contract::Questions questions(index, 100);
+    const auto& rays = questions.rays;
+    const auto twice = [&](std::size_t i, const Hit<float>& hit) {
+        return hit_count(index, rays[i]) > 1 && closest_point(index, rays[i].at(hit.t)).distance2 < 1;
+    };
+    const auto many = [&](std::span<const std::size_t> of, std::span<const Hit<float>> hits,
+                          std::span<bool> keep) {
+        const auto inner = all_hits(index, rays, [](auto, auto, auto) {});
+        for (std::size_t j = 0; j < hits.size(); ++j)
+            keep[j] = twice(of[j], hits[j]) && !inner[of[j]].empty();
+    };
+    std::vector<Hit<float>> hits(rays.size()), want(rays.size());
+    closest_hits(index, rays, hits, many);
+    closest_hits(index, rays, want, twice);
+    EXPECT_EQ(hits, want);
+    EXPECT_EQ(all_hits(index, rays, many), all_hits(index, rays, twice));
 }
 
 TEST(FiltersOfMany, LeaveNothingRefusedWhenTheyThrow) {

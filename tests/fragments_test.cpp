@@ -45,7 +45,8 @@ Lists<T> of_triangles(const TriangleMesh<T>& mesh, const PictureSamples<T>& samp
             }
         EXPECT_LE(bytes, options.budget);
     };
-    const auto drawn = FragmentLists<T>(samples).list(mesh.view(), take, options, executor);
+    const auto drawn =
+        FragmentLists<T>(samples).list(mesh.view(), take, {.budget = options.budget, .threads = executor});
     EXPECT_EQ(next, samples.height());
     std::uint64_t fragments = 0, longest = 0;
     for (const auto& list : all)

@@ -72,6 +72,9 @@ void expect_points(const I& index, const Oracle& oracle, const Points& points) {
                                             all, [](const Found&) { return true; }, 5));
         ASSERT_EQ(nearest(index, p, 5, {}, is_even), kept(all, is_even, 5));
         ASSERT_TRUE(nearest(index, p, 0, {}, is_even).empty());
+        ASSERT_EQ(nearest(index, p, 5, is_even), kept(all, is_even, 5));
+        ASSERT_EQ(within(index, p, radius, is_even), kept(kept(all, near_enough), is_even));
+        ASSERT_EQ(within(index, p, radius, {.factor = 3}), kept(all, near_enough));
         ASSERT_EQ(nearest(index, p, 5, found, is_even), std::min<std::size_t>(5, kept(all, is_even).size()));
         const auto is_other = [&](const Found& near) { return near.element != own[i]; };
         ASSERT_EQ(nearest(index, p, 5, {.leave_out = own[i]}), kept(all, is_other, 5));
@@ -120,8 +123,13 @@ void expect_points(const I& index, const Oracle& oracle, const Points& points) {
             ASSERT_TRUE(
                 same_list(lists[i], within(index, points[i], radius, {}, filter_of_ray(of_number, i))));
     }
+    EXPECT_EQ(nearest(index, points, 4, is_even), nearest(index, points, 4, {}, is_even));
+    EXPECT_EQ(within(index, points, radius, is_even), within(index, points, radius, {}, is_even));
     own.pop_back();
     EXPECT_THROW(nearest(index, points, 4, lists, {.leave_out = own}), InputError);
+    own.clear();
+    EXPECT_THROW(closest_point(index, points[0], {.leave_out = own}), InputError);
+    EXPECT_THROW(within(index, points[0], radius, {.leave_out = own}), InputError);
     EXPECT_THROW(closest_points(index, points, one, {.leave_out = own}), InputError);
     visits.pop_back();
     EXPECT_THROW(nearest(index, points, 4, lists, {}, KeepAll(), visits), InputError);

@@ -145,7 +145,7 @@ TEST(HashGrid, DeclinesRaysByAConceptAndWithASentence) {
               }),
               sentence);
     EXPECT_EQ(message([&] { all_hits(*index, ray, hits); }), sentence);
-    EXPECT_EQ(message([&] { index->trace(ray); }), sentence);
+    EXPECT_EQ(message([&] { trace(*index, ray); }), sentence);
 }
 
 }  // namespace

@@ -160,14 +160,14 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
                 Visits visits;
                 closest_hits(*index, {&ray, 1}, {&hit, 1}, {}, KeepAll(), std::span(&visits, 1));
                 closest_hits(*oracle, {&ray, 1}, {&best, 1});
-                const auto trace = index->trace(ray);
-                EXPECT_EQ(trace.visits, visits);
-                EXPECT_EQ(trace.hit, best);
+                const auto walked = trace(*index, ray);
+                EXPECT_EQ(walked.visits, visits);
+                EXPECT_EQ(walked.hit, best);
                 // Sum up the steps of the trace: its tests, and whether one of them found the hit.
                 std::size_t tested = 0, skipped = 0, leaves = 0;
                 bool found = false;
                 T limit = std::numeric_limits<T>::infinity();
-                for (const auto& step : trace.steps) {
+                for (const auto& step : walked.steps) {
                     leaves += !step.tests.empty();
                     EXPECT_LE(step.limit, limit) << "a limit may only shrink";
                     limit = step.limit;
@@ -180,7 +180,7 @@ TYPED_TEST(Outline, TracesTellWhatTheQueryDid) {
                 EXPECT_EQ(tested, visits.primitives);
                 EXPECT_EQ(skipped, visits.skipped);
                 EXPECT_LE(leaves, visits.leaves);
-                EXPECT_EQ(trace.steps.empty(), visits.nodes + visits.leaves == 0);
+                EXPECT_EQ(walked.steps.empty(), visits.nodes + visits.leaves == 0);
                 EXPECT_EQ(found, bool(best));
             }
         }
@@ -194,9 +194,9 @@ TEST(Trace, IntervalsAreTheRaysPartsInTheCells) {
     for (const std::string& spec : structures_for<TriangleMesh<float>>()) {
         const auto index = build_any(spec, set);
         SCOPED_TRACE(spec);
-        const auto trace = index->trace(ray);
-        ASSERT_FALSE(trace.steps.empty());
-        for (const auto& step : trace.steps) {
+        const auto walked = trace(*index, ray);
+        ASSERT_FALSE(walked.steps.empty());
+        for (const auto& step : walked.steps) {
             const auto p = Vec3d(ray.at(step.inside.entry)) * 0.5 + Vec3d(ray.at(step.inside.exit)) * 0.5;
             EXPECT_TRUE(enlarged_by(step.cell.box, 1e-4).contains(p));
         }

@@ -33,7 +33,8 @@ void expect_visible(const TriangleMesh<T>& mesh, const PictureSamples<T>& sample
                     const std::vector<Hit<T>>& want) {
     Rasteriser<T> rasteriser(samples);
     std::vector<Visible> visible(samples.size(), Visible{7, 1});
-    EXPECT_EQ(rasteriser.draw_visible(mesh.view(), visible, default_executor()).triangles, mesh.size());
+    EXPECT_EQ(rasteriser.draw_visible(mesh.view(), visible, {.threads = default_executor()}).triangles,
+              mesh.size());
     const auto rays = samples.rays();
     const Vec<T, 3> forward(samples.plane().forward);
     for (std::size_t i = 0; i < want.size(); ++i) {
@@ -47,7 +48,7 @@ void expect_visible(const TriangleMesh<T>& mesh, const PictureSamples<T>& sample
         }
     }
     std::vector<Hit<T>> hits(samples.size(), Hit<T>{T(1e-30), T(2), T(3), 4, 5, 6, 7});
-    rasteriser.resolve(mesh.view(), visible, hits, default_executor());
+    rasteriser.resolve(mesh.view(), visible, hits, {.threads = default_executor()});
     expect_same(want, hits);
 }
 /// Compares the buffers that every coverage and instruction set fills with the hits of rays. Every sample of
@@ -371,14 +372,14 @@ TYPED_TEST(RasterisedHits, NeedAPlaceForEachSample) {
     const auto mesh = soup<T>(5);
     EXPECT_THROW(rasteriser.draw(mesh.view(), hits, {.threads = serial_executor()}), InputError);
     std::vector<Visible> visible(19);
-    EXPECT_THROW(rasteriser.draw_visible(mesh.view(), visible, serial_executor()), InputError);
+    EXPECT_THROW(rasteriser.draw_visible(mesh.view(), visible, {.threads = serial_executor()}), InputError);
     visible.resize(20);
-    EXPECT_THROW(rasteriser.resolve(mesh.view(), visible, hits, serial_executor()), InputError);
+    EXPECT_THROW(rasteriser.resolve(mesh.view(), visible, hits, {.threads = serial_executor()}), InputError);
     hits.resize(20);
-    rasteriser.resolve(mesh.view(), visible, hits, serial_executor());
+    rasteriser.resolve(mesh.view(), visible, hits, {.threads = serial_executor()});
     EXPECT_EQ(hits, std::vector<Hit<T>>(20));
     visible[7].element = 5;
-    EXPECT_THROW(rasteriser.resolve(mesh.view(), visible, hits, serial_executor()), InputError);
+    EXPECT_THROW(rasteriser.resolve(mesh.view(), visible, hits, {.threads = serial_executor()}), InputError);
 }
 
 /// An element that the ray of its sample does not hit is not seen.
@@ -392,7 +393,7 @@ TYPED_TEST(RasterisedHits, OfAVisibilityBufferThatIsWrong) {
     for (std::size_t i = 0; i < visible.size(); i += 3)
         visible[i].element = (static_cast<std::uint32_t>(i) * 7) % 300;
     std::vector<Hit<T>> hits(samples.size());
-    Rasteriser<T>(samples).resolve(mesh.view(), visible, hits, default_executor());
+    Rasteriser<T>(samples).resolve(mesh.view(), visible, hits, {.threads = default_executor()});
     const auto index = build<BruteForce>(mesh);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         const auto only = [&](const Hit<T>& hit) { return hit.element == visible[i].element; };

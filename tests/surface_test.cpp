@@ -2,6 +2,7 @@
 /// that closest points are on.
 #include <map>
 
+#include <hedgerow/any_index.h>
 #include <hedgerow/hedgerow.h>
 #include <hedgerow/scenes/meshes.h>
 #include <hedgerow/scenes/sets.h>
@@ -274,6 +275,52 @@ TYPED_TEST(Surface, FeaturesOfClosestPoints) {
     EXPECT_GT(kinds[Feature::face], 100);
     EXPECT_GT(kinds[Feature::vertex], 100);
     EXPECT_EQ(kinds[Feature::edge], 0);
+}
+
+/// An AnyIndex, and instances of such, have the surface of an Index.
+TYPED_TEST(Surface, OfAnyIndex) {
+    using T = TypeParam;
+    using Any = AnyIndex<T, 3>;
+    const auto transform = Transform<3>::translation({1, 2, 3}) * Transform<3>::rotation({1, 1, 0}, 0.7);
+    const auto expect_same = [](const auto& index, const auto& any) {
+        EXPECT_GT(for_each_hit(index,
+                               [&](const auto& ray, const auto& hit) {
+                                   ASSERT_EQ(position(any, ray, hit), position(index, ray, hit));
+                                   ASSERT_EQ(normal(any, ray, hit), normal(index, ray, hit));
+                               }),
+                  50u);
+    };
+    const auto expect_of = [&](const auto& set) {
+        const auto index = build(set);
+        const auto any = build_any("grid", set);
+        expect_same(index, *any);
+        expect_same(build(InstanceSet{Instance(index, transform)}),
+                    build(InstanceSet<Any>{{*any, transform}}));
+    };
+    const auto mesh = teapot<T>(500);
+    expect_of(mesh);
+    expect_of(spheres<T>(100));
+    const auto index = build(mesh);
+    const auto any = build_any("kdtree", mesh);
+    const auto world = build(InstanceSet{Instance(index, transform)});
+    const auto world_of_any = build(InstanceSet<Any>{{*any, transform}});
+    const auto same = [](const auto& a, const auto& b) {
+        return a.feature == b.feature && a.number == b.number && a.weights == b.weights &&
+               a.normal == b.normal;
+    };
+    for (std::uint64_t i = 0; i < 100; ++i) {
+        Random random(3, i);
+        const auto p = point_in(index.bounds(), 0.5, random);
+        ASSERT_TRUE(
+            same(feature(*any, p, closest_point(*any, p)), feature(index, p, closest_point(index, p))));
+        const auto near = closest_point(world, p);
+        ASSERT_EQ(closest_point(world_of_any, p), near);
+        ASSERT_TRUE(same(feature(world_of_any, p, near), feature(world, p, near)));
+    }
+    const auto cloud = points<T>(10);
+    const auto of_points = build_any("wide", cloud);
+    const Vec<T, 3> p;
+    EXPECT_THROW(feature(*of_points, p, closest_point(*of_points, p)), InputError);
 }
 
 TEST(Surface, FeaturesOfInstances) {

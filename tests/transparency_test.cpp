@@ -166,13 +166,14 @@ TEST(Transparency, BatchesAndThreadsChangeNoBit) {
     const auto rays = picture(index.bounds(), 60);
     const Coloured layer{0.1f, 0.7f};
     std::vector<Composite> want(rays.size()), got(rays.size());
-    const auto counts = composite_front_to_back(index, rays, layer, want, {}, serial_executor());
+    const auto counts = composite_front_to_back(index, rays, layer, want, {.threads = serial_executor()});
     Backwards backwards;
     std::uint64_t calls = std::numeric_limits<std::uint64_t>::max();
     for (const std::size_t batch : {1u, 2u, 5u, 100u}) {
         for (Executor* const threads :
              std::initializer_list<Executor*>{&serial_executor(), &default_executor(), &backwards}) {
-            const auto now = composite_front_to_back(index, rays, layer, got, {.batch = batch}, *threads);
+            const auto now =
+                composite_front_to_back(index, rays, layer, got, {.batch = batch, .threads = *threads});
             EXPECT_EQ(now.layers, counts.layers);
             EXPECT_EQ(now.ended, counts.ended);
             for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -194,7 +195,7 @@ TEST(Transparency, FiltersLeaveLayersOut) {
     // Rays with an odd number see elements with an odd number.
     const auto odd = [](std::size_t ray, const Hit<float>& hit) { return (ray + hit.element) % 2 == 0; };
     std::vector<Composite> front(rays.size()), back(rays.size()), all(rays.size());
-    composite_front_to_back(index, rays, layer, front, {.ends_below = 0, .batch = 2}, {}, odd);
+    composite_front_to_back(index, rays, layer, front, {.ends_below = 0, .batch = 2}, odd);
     const auto layers = composite_back_to_front(index, rays, layer, back, {}, odd);
     EXPECT_GT(composite_back_to_front(index, rays, layer, all), layers);
     for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -42,15 +42,15 @@ FanView view_of(const DrawArguments& a, const std::string& spec, const P& set,
     std::size_t hits = 0;
     Visits visits;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const auto trace = index->trace(rays[i]);
-        visits += trace.visits;
-        if (trace.hit) fan.hits[i] = static_cast<double>(trace.hit.t), ++hits;
+        const auto walked = trace(*index, rays[i]);
+        visits += walked.visits;
+        if (walked.hit) fan.hits[i] = static_cast<double>(walked.hit.t), ++hits;
         bool ended = false;
-        for (const auto& step : trace.steps) {
+        for (const auto& step : walked.steps) {
             if (!step.cell.leaf) continue;
             ++view.looked_into[step.cell.id];
             for (const auto& test : step.tests)
-                if (trace.hit && !ended && test.id == trace.hit.element && test.t)
+                if (walked.hit && !ended && test.id == walked.hit.element && test.t)
                     ++view.ended[step.cell.id], ended = true;
         }
     }

@@ -98,7 +98,7 @@ RayView view_of(const DrawArguments& a, const std::string& spec, const P& set,
                 const Ray<typename P::Scalar, D>& ray, const Section<D>& section, Box<double, D>& bounds) {
     const auto index = build_shown(a, spec, set);
     bounds = bounds_of(*index);
-    RayView view{{spec, {}, {}}, table_of(spec, ray, index->trace(ray), section)};
+    RayView view{{spec, {}, {}}, table_of(spec, ray, trace(*index, ray), section)};
     if (a.stop_at_first) view.table.stop_at_first_hit();
     const auto cells = index->outline(section.limits(a.levels > 0 ? a.levels : OutlineLimits<D>().levels));
     if (cells.size() <= most_behind) view.structure.flat = flat_structure(cells, section);

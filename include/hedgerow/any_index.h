@@ -31,10 +31,11 @@ using SetOfIndex = typename std::conditional_t<
     D == 3, std::type_identity<std::variant<TriangleMeshView<T>, PointCloudView<T, D>, SphereSetView<T, D>>>,
     std::type_identity<std::variant<SegmentSetView<T>, PointCloudView<T, D>>>>::type;
 
-/// An index of any structure over any primitives: the functions of ask.h take it as they take an Index. A
-/// question without filter and visits costs one virtual call, inside which the primitives are known at
-/// compile time, and the engine too; other structures cost a virtual call a leaf (any_structure.h). With a
-/// filter or visits, each candidate costs one. Const use is thread-safe.
+/// An index of any structure over any primitives: the functions of ask.h take it as they take an Index. What
+/// has a virtual function below costs one virtual call without filter and visits, inside which the primitives
+/// are known at compile time, and the engine too; other structures cost a virtual call a leaf
+/// (any_structure.h). All else costs one a candidate: filters, masks and what is left out of rays, visits,
+/// and the questions that are asked less often. Const use is thread-safe.
 template <std::floating_point T, int D>
 class AnyIndex {
 public:
@@ -120,10 +121,8 @@ public:
     /// Whether the structure answers ray queries.
     virtual bool answers_rays() const = 0;
     /// Whether the primitives are triangles in space or segments in the plane: these have features, and may
-    /// be the surface of a solid. `feature`, `solid` and `make_solid` throw InputError for other primitives.
+    /// be the surface of a solid. `solid` and `make_solid` throw InputError for other primitives.
     virtual bool has_facets() const = 0;
-    /// Where on its primitive the closest point is that a question of `point` found (surface.h).
-    virtual FeatureOfNear<T, D> feature(const Vec<T, D>& point, const Near<T, D>& near) const = 0;
     /// The solid whose surface the primitives are, in O(n). Throws as the constructor of Solid does.
     virtual std::unique_ptr<const AnySolid<T, D>> make_solid(const SolidOptions& options = {},
                                                              Threads threads = {}) const = 0;
@@ -141,12 +140,6 @@ public:
         std::vector<OutlineCell<D>> cells;
         visit_outline(limits, [&](const OutlineCell<D>& cell) { return cells.push_back(cell), true; });
         return cells;
-    }
-    /// The walk of a ray's closest-hit query, step by step (trace.h).
-    Trace<T, D> trace(const Ray<T, D>& ray) const {
-        return detail::trace_over(*this, ray, [&](const OutlineLimits<D>& limits, CellVisitor<D> visit) {
-            visit_outline(limits, visit);
-        });
     }
     /// Whether single primitives can be inserted and erased, and whether the structure can be refitted to
     /// primitives that moved. `insert`, `erase` and `refit` throw InputError where the structure cannot do
@@ -351,6 +344,14 @@ private:
     const Affine<D>& back_;
     double scale_;
 };
+
+/// The walk of a ray's closest-hit query, step by step (trace.h).
+template <std::floating_point T, int D>
+Trace<T, D> trace(const AnyIndex<T, D>& index, const Ray<T, D>& ray) {
+    return detail::trace_over(index, ray, [&](const OutlineLimits<D>& limits, CellVisitor<D> visit) {
+        index.visit_outline(limits, visit);
+    });
+}
 
 struct StructureInfo {
     std::string_view name, description;

@@ -172,7 +172,7 @@ struct AskFeature {
         near.resize(points.size());
         closest_points(index, points, near, detail::in_this_thread(options), KeepAll(), visits);
         for (std::size_t i = 0; i < points.size(); ++i)
-            found[i] = {near[i], near[i] ? index.feature(points[i], near[i]) : FeatureOfNear<T, D>()};
+            found[i] = {near[i], near[i] ? feature(index, points[i], near[i]) : FeatureOfNear<T, D>()};
     }
 };
 template <std::floating_point T, int D>

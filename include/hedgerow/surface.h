@@ -2,6 +2,9 @@
 /// point is. Everything is computed in double and rounded once.
 #pragma once
 
+#include <variant>
+
+#include <hedgerow/base/error.h>
 #include <hedgerow/geometry/closest_feature.h>
 #include <hedgerow/geometry/entry.h>
 #include <hedgerow/geometry/exact_sum.h>
@@ -25,6 +28,11 @@ concept OfSegments = requires(const P& set) {
 template <class P>
 concept OfSpheres = requires(const P& set) {
     set.sphere(0);
+};
+/// An index whose set is known when it is asked.
+template <class P>
+concept OfAnySet = requires(const P& index) {
+    index.set().index();
 };
 /// Whether a hit's u and v give its position: true on triangles and segments, and on instances of these.
 template <class P>
@@ -70,6 +78,10 @@ Vec<double, D> normal_on(const P& set, const Ray<double, D>& ray, const Hit<T>& 
             for (int j = 0; j < D; ++j)
                 there[j] += product(placed.transform().back().linear[static_cast<std::size_t>(k)][j], own[k]);
         return unit(there);
+    } else if constexpr (OfAnySet<P>) {
+        return std::visit([&](const auto& known) { return normal_on(known, ray, hit); }, set.set());
+    } else if constexpr (PointSet<P>) {
+        throw InputError("points have no normal: no ray hits them");
     } else if constexpr (OfTriangles<P>) {
         const auto t = set.triangle(hit.element);
         return unit_normal({V(t.a), V(t.b), V(t.c)});
@@ -97,6 +109,8 @@ Vec<double, D> position_on(const P& set, const Ray<double, D>& ray, const Hit<T>
         const auto& placed = set[hit.instance];
         return placed.transform().there().point(
             position_on(placed.index().primitives(), inside(placed, ray), hit));
+    } else if constexpr (OfAnySet<P>) {
+        return std::visit([&](const auto& known) { return position_on(known, ray, hit); }, set.set());
     } else if constexpr (OfTriangles<P>) {
         const auto t = set.triangle(hit.element);
         const V a(t.a);
@@ -115,14 +129,14 @@ Vec<double, D> position_on(const P& set, const Ray<double, D>& ray, const Hit<T>
 
 /// The primitives of an index, or the view of a set.
 template <class Of>
-auto primitives_of(const Of& of) {
+decltype(auto) primitives_of(const Of& of) {
     if constexpr (requires { of.primitives(); })
         return of.primitives();
     else
         return view_of(of);
 }
 template <class Of>
-using PrimitivesOf = decltype(primitives_of(std::declval<const Of&>()));
+using PrimitivesOf = std::remove_cvref_t<decltype(primitives_of(std::declval<const Of&>()))>;
 template <class T, int D>
 Ray<double, D> line_of(const Ray<T, D>& ray) {
     return {Vec<double, D>(ray.origin), Vec<double, D>(ray.direction)};
@@ -175,12 +189,16 @@ struct FeatureOfNear {
 
 namespace detail {
 template <class P, class T, int D>
-auto corners_of(const P& set, const Near<T, D>& near) {
+std::array<Vec<double, D>, static_cast<std::size_t>(D)> corners_of(const P& set, const Near<T, D>& near) {
     if constexpr (Instanced<P>) {
         const auto& placed = set[near.instance];
         auto corners = corners_of(placed.index().primitives(), near);
         for (auto& corner : corners) corner = placed.transform().there().point(corner);
         return corners;
+    } else if constexpr (OfAnySet<P>) {
+        return std::visit([&](const auto& known) { return corners_of(known, near); }, set.set());
+    } else if constexpr (!FacetSet<P>) {
+        throw InputError("features are those of triangles in space or segments in the plane");
     } else {
         const auto own = set.corners(near.element);
         std::array<Vec<double, D>, static_cast<std::size_t>(D)> corners;
@@ -205,7 +223,7 @@ std::array<double, 2> weights_on_line(const Vec<double, D>& p, const Vec<double,
 template <class Of, class T, int D>
 FeatureOfNear<T, D> feature(const Of& of, const Vec<T, D>& point, const Near<T, D>& near) {
     using V = Vec<double, D>;
-    const auto primitives = detail::primitives_of(of);
+    const auto& primitives = detail::primitives_of(of);
     const auto corners = detail::corners_of(primitives, near);
     const V p(point);
     const int closest = closest_feature(p, corners).number;

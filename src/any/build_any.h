@@ -181,12 +181,6 @@ public:
     void walk_leaves(LeafQuery<BoxProbe<T, D>>& query) const override { walk_over(query); }
 
     bool has_facets() const override { return facets; }
-    FeatureOfNear<T, D> feature(const Vec<T, D>& point, const Near<T, D>& near) const override {
-        if constexpr (facets)
-            return hedgerow::feature(index_, point, near);
-        else
-            refuse_without_facets();
-    }
     std::unique_ptr<const AnySolid<T, D>> make_solid(const SolidOptions& options,
                                                      Threads threads) const override {
         if constexpr (facets)
@@ -240,7 +234,7 @@ private:
                                          : overlapping(index_, region, found);
     }
     [[noreturn]] static void refuse_without_facets() {
-        throw InputError("features and insides are those of triangles in space or segments in the plane");
+        throw InputError("insides are those of triangles in space or segments in the plane");
     }
     [[noreturn]] void refuse(const std::string& wanted) const { hedgerow::detail::refuse(name_, wanted); }
 

@@ -96,8 +96,8 @@ bool draws(const char* name, const TriangleMesh<float>& mesh) {
         rasteriser.draw(mesh.view(), got, {.threads = serial_executor()});
         std::vector<Visible> visible(rays.size());
         std::vector<Hit<float>> resolved(rays.size());
-        rasteriser.draw_visible(mesh.view(), visible, serial_executor());
-        rasteriser.resolve(mesh.view(), visible, resolved, serial_executor());
+        rasteriser.draw_visible(mesh.view(), visible, {.threads = serial_executor()});
+        rasteriser.resolve(mesh.view(), visible, resolved, {.threads = serial_executor()});
         const bool drawn = got == want && resolved == want;
         beam_hits(index, samples, got, {.threads = serial_executor()});
         if (drawn && got == want) continue;

@@ -53,21 +53,21 @@ inline void expect_visits(std::span<Visits> visits, std::size_t queries) {
 }
 /// How a batch is asked. Visits are empty where nothing is counted, else one for each query.
 template <class Options, class Filter = KeepAll>
-struct Batch {
+struct AskedBatch {
     const Options& options;
     const Filter& filter;
     Executor& executor;
     std::span<Visits> visits;
 };
 template <class Options, class Filter>
-Batch(const Options&, const Filter&, Executor&, std::span<Visits>) -> Batch<Options, Filter>;
+AskedBatch(const Options&, const Filter&, Executor&, std::span<Visits>) -> AskedBatch<Options, Filter>;
 
 /// Has the engine of question Q answer a batch, if nothing is counted and the index has one that takes such
 /// batches and is in use. rest(i) answers query i without it. No value, and nothing is written, where there
 /// is no such engine.
 template <class Q, class I, class Queries, class Answer, class Options, class Filter, class Rest>
 std::optional<KernelUse> answered_by_engine(const I& index, const Queries& queries, Answer* answers,
-                                            const Batch<Options, Filter>& batch, const Rest& rest) {
+                                            const AskedBatch<Options, Filter>& batch, const Rest& rest) {
     using How = HowAsked<Options, Filter>;
     using E = EngineFor<Q, I>;
     if constexpr (AnswersBatch<E, Queries, Answer*, How>) {
@@ -87,8 +87,9 @@ std::optional<KernelUse> answered_by_engine(const I& index, const Queries& queri
 /// The same of a question of lists. rest(i, place) lists what query i finds.
 template <class Q, class Place, class I, class Queries, class L, class Options, class Filter, class Rest,
           class... Arguments>
-bool listed_by_engine(const I& index, const Queries& queries, L& lists, const Batch<Options, Filter>& batch,
-                      const Rest& rest, const Arguments&... arguments) {
+bool listed_by_engine(const I& index, const Queries& queries, L& lists,
+                      const AskedBatch<Options, Filter>& batch, const Rest& rest,
+                      const Arguments&... arguments) {
     using How = HowAsked<Options, Filter, Place>;
     using E = EngineFor<Q, I>;
     if constexpr (AnswersLists<E, Queries, L, How, Arguments...>) {
@@ -107,7 +108,7 @@ bool listed_by_engine(const I& index, const Queries& queries, L& lists, const Ba
 /// Answers each query of a batch: by the engine of question Q, or by one(i, count), which returns the answer.
 template <class Q, class I, class Queries, class Answer, class Options, class Filter, class One>
 KernelUse answer_batch(const I& index, const Queries& queries, Answer* answers,
-                       const Batch<Options, Filter>& batch, One one) {
+                       const AskedBatch<Options, Filter>& batch, One one) {
     const auto rest = [&](std::size_t i) { answers[i] = one(i, no_visits); };
     if (const auto use = answered_by_engine<Q>(index, queries, answers, batch, rest)) return *use;
     batch.executor.for_each_piece(queries.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -119,8 +120,8 @@ KernelUse answer_batch(const I& index, const Queries& queries, Answer* answers,
 /// Fills lists: by the engine of question Q, or by append(i, to, count), which appends the list of query i.
 template <class Q, class I, class Queries, class C, class Options, class Filter, class Append,
           class... Arguments>
-void list_batch(const I& index, const Queries& queries, Lists<C>& lists, const Batch<Options, Filter>& batch,
-                Append append, const Arguments&... arguments) {
+void list_batch(const I& index, const Queries& queries, Lists<C>& lists,
+                const AskedBatch<Options, Filter>& batch, Append append, const Arguments&... arguments) {
     list_in_own_memory(lists, [&](Lists<C>& own) {
         const auto rest = [&](std::size_t i, Lists<C>& to) { append(i, to, no_visits); };
         if (listed_by_engine<Q, Lists<C>&>(index, queries, own, batch, rest, arguments...)) return;

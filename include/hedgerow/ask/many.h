@@ -119,6 +119,8 @@ template <class I, class Rays, class H, class Options, class Filter>
 KernelUse closest_kept(const I& index, const Rays& rays, std::span<H> hits, const Options& options,
                        const Filter& filter, std::span<Visits> visits) {
     using T = typename I::Scalar;
+    static_assert(
+        !requires { filter.enters(0u); }, "a filter of many enters all instances: give a mask too");
     const KernelUse use = closest_hits(index, rays, hits, options, KeepAll(), visits);
     Again asked;
     HitLists<T> lists;
@@ -154,56 +156,61 @@ KernelUse closest_kept(const I& index, const Rays& rays, std::span<H> hits, cons
 }
 
 /// Lists the k nearest of each point that a filter of many keeps. Points whose lists would be shorter are
-/// asked for twice as many, and beyond 256 for all, one point at a time.
+/// asked for more, twice as many each round and at last for all, so many points at once that their lists stay
+/// small.
 template <class I, class Points, class L, class Filter>
 void nearest_kept(const I& index, const Points& points, std::size_t k, L& lists, const PointOptions& options,
                   const Filter& filter, std::span<Visits> visits) {
-    constexpr std::size_t many = 256;
+    // Beyond `many`, lists of all that is near are found faster.
+    constexpr std::size_t many = 4096, elements_at_once = 1 << 20;
     struct Place {
         std::size_t begin, size;
     };
     std::vector<Place> places(points.size());
-    L settled, found;  // lists in the order in which they are settled
-    const auto settle = [&](std::size_t i, std::size_t begin, std::size_t end) {
-        places[i] = {settled.ids.size(), std::min(k, end - begin)};
-        const auto row = found.row(begin, begin + places[i].size);
-        settled.ids.append(row.ids), settled.distances2.append(row.distances2);
-    };
-    Again asked;
-    const auto points_asked = [&] {
-        std::vector<Vec<typename I::Scalar, I::dimension>> some;
-        for (const std::size_t i : asked.numbers) some.push_back(points[i]);
-        return some;
-    };
-    nearest(index, points, k, found, options, KeepAll(), visits);
-    asked.numbers = numbers_below(points.size());
-    for (std::size_t most = k;; most *= 2) {
-        std::vector<std::size_t> sizes, again;
-        for (std::size_t j = 0; j < found.size(); ++j) sizes.push_back(found[j].size());
-        keep_only(found, kept_of(found, asked.numbers, filter).get());
-        for (std::size_t j = 0; j < found.size(); ++j) {
-            const std::size_t begin = found.offsets[j], end = found.offsets[j + 1];
-            if (end - begin < k && sizes[j] == most)
-                again.push_back(asked.numbers[j]);
-            else
-                settle(asked.numbers[j], begin, end);
+    L settled, found;  // settled lists stand in the order in which they were found
+    // Settles the lists of some points that have k kept elements, or were not cut off at `most`; adds the
+    // other points to `again`.
+    const auto settle = [&](const std::vector<std::size_t>& numbers, std::size_t most,
+                            std::vector<std::size_t>& again) {
+        std::vector<bool> cut;
+        for (std::size_t j = 0; j < numbers.size(); ++j) cut.push_back(found[j].size() == most);
+        keep_only(found, kept_of(found, numbers, filter).get());
+        for (std::size_t j = 0; j < numbers.size(); ++j) {
+            const std::size_t begin = found.offsets[j], size = found.offsets[j + 1] - begin;
+            if (size < k && cut[j]) {
+                again.push_back(numbers[j]);
+                continue;
+            }
+            Place& place = places[numbers[j]] = {settled.ids.size(), std::min(k, size)};
+            const auto row = found.row(begin, begin + place.size);
+            settled.ids.append(row.ids), settled.distances2.append(row.distances2);
         }
-        asked.numbers = std::move(again);
-        if (asked.numbers.empty() || 2 * most > many) break;
-        PointOptions next = options;
-        asked.set(next, visits);
-        nearest(index, points_asked(), 2 * most, found, next, KeepAll(), std::span(asked.visits));
-        asked.add_to(visits);
-    }
-    for (const std::size_t i : std::exchange(asked.numbers, {})) {
-        PointOptions next = options;
-        asked.numbers = {i};
-        asked.set(next, visits);
-        within(index, points_asked(), PointOptions::anywhere, found, next, KeepAll(),
-               std::span(asked.visits));
-        asked.add_to(visits);
-        keep_only(found, kept_of(found, asked.numbers, filter).get());
-        settle(i, 0, found.count());
+    };
+    std::vector<std::size_t> left;
+    nearest(index, points, k, found, options, KeepAll(), visits);
+    settle(numbers_below(points.size()), k, left);
+    for (std::size_t most = 2 * k; !left.empty(); most *= 2) {
+        const bool all = most > many;
+        const std::size_t at_once =
+            std::max<std::size_t>(1, elements_at_once / (all ? primitives_in(index.primitives()) : most));
+        std::vector<std::size_t> again;
+        for (std::size_t begin = 0; begin < left.size(); begin += at_once) {
+            Again asked;
+            asked.numbers.assign(
+                left.begin() + static_cast<std::ptrdiff_t>(begin),
+                left.begin() + static_cast<std::ptrdiff_t>(std::min(begin + at_once, left.size())));
+            std::vector<Vec<typename I::Scalar, I::dimension>> some;
+            for (const std::size_t i : asked.numbers) some.push_back(points[i]);
+            PointOptions next = options;
+            asked.set(next, visits);
+            if (all)
+                within(index, some, PointOptions::anywhere, found, next, KeepAll(), std::span(asked.visits));
+            else
+                nearest(index, some, most, found, next, KeepAll(), std::span(asked.visits));
+            asked.add_to(visits);
+            settle(asked.numbers, all ? std::size_t(-1) : most, again);
+        }
+        left = std::move(again);
     }
     list_in_own_memory(lists, [&](L& own) {
         own.clear();
@@ -213,6 +220,23 @@ void nearest_kept(const I& index, const Points& points, std::size_t k, L& lists,
             own.offsets.push_back(own.ids.size());
         }
     });
+}
+
+/// Writes the closest point to each point that a filter of many keeps: the nearest primitive that it keeps,
+/// and then the point on that.
+template <class I, class Points, class N, class Filter>
+void closest_point_kept(const I& index, const Points& points, std::span<N> found, const PointOptions& options,
+                        const Filter& filter, std::span<Visits> visits) {
+    using Set = Identity<typename I::Primitives>;
+    NearLists<typename I::Scalar, typename Set::Type> kept;
+    nearest(index, points, 1, kept, options, filter, visits);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        found[i] = N();
+        if (kept[i].empty()) continue;
+        const PointOptions there{.radius2 = static_cast<double>(kept[i].distances2[0])};
+        found[i] = closest_point(index, points[i], there,
+                                 [id = kept[i].ids[0]](const N& near) { return Set::of(near) == id; });
+    }
 }
 
 }  // namespace detail

@@ -47,15 +47,19 @@ auto answer_near(const I& index, const Filter& filter, Count& count, Arguments&&
     else
         return index.template answer<Q<P, Filter>>(count, arguments..., filter);
 }
-/// The options of one query, as its walk reads them. Throws InputError for a bad factor or mask.
+/// The options of one query, as its walk reads them, which views them. Throws InputError for a bad factor or
+/// mask.
 template <class I>
 NearLimits<typename I::Scalar> limits_of(const I& index, const PointOptions& options) {
+    options.leave_out.expect(1);
     options.mask.expect(index.primitives());
     return NearLimits<typename I::Scalar>(options);
 }
-/// The options of a question that has a radius of its own. Both hold; nothing is within NaN.
+/// The options of a question of all that is within a radius. Both radii hold; nothing is within NaN. No
+/// factor makes such a list shorter.
 inline PointOptions within_both(double radius, PointOptions options) {
     if (radius < options.radius || std::isnan(radius)) options.radius = radius;
+    if (options.factor > 1) options.factor = 1;
     return options;
 }
 }  // namespace detail
@@ -108,13 +112,18 @@ std::vector<NearOf<I>> nearest(const I& index, const PointOf<I>& point, std::siz
     nearest(index, point, k, found, options, filter, count);
     return found;
 }
+template <class I, NearFilterOf<I> Filter>
+std::vector<NearOf<I>> nearest(const I& index, const PointOf<I>& point, std::size_t k, const Filter& filter) {
+    return nearest(index, point, k, PointOptions(), filter);
+}
 
 /// Writes all primitives within a radius to `found`, in the order of (distance², instance, element). Returns
 /// how many there are.
 template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t within(const I& index, const PointOf<I>& point, double radius, std::vector<NearOf<I>>& found,
                    const PointOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
-    const auto limits = detail::limits_of(index, detail::within_both(radius, options));
+    const PointOptions both = detail::within_both(radius, options);
+    const auto limits = detail::limits_of(index, both);
     return detail::answer_near<Within>(index, filter, count, point, limits, found);
 }
 template <class I, NearFilterOf<I> Filter, class Count = const NoVisits>
@@ -130,6 +139,10 @@ std::vector<NearOf<I>> within(const I& index, const PointOf<I>& point, double ra
     within(index, point, radius, found, options, filter, count);
     return found;
 }
+template <class I, NearFilterOf<I> Filter>
+std::vector<NearOf<I>> within(const I& index, const PointOf<I>& point, double radius, const Filter& filter) {
+    return within(index, point, radius, PointOptions(), filter);
+}
 
 namespace detail {
 /// What batches of points share: checks, and ask(batch).
@@ -140,7 +153,7 @@ void ask_points(const I& index, const PointsOf<I>& points, const PointOptions& o
     options.leave_out.expect(points.size());
     options.mask.expect(index.primitives());
     static_cast<void>(NearLimits<typename I::Scalar>::of_batch(options));  // throws for a bad factor
-    ask(Batch(options, filter, executor_for<Filter>(options.threads, points.size()), visits));
+    ask(AskedBatch(options, filter, executor_for<Filter>(options.threads, points.size()), visits));
 }
 /// Calls one(i) for each of many points, in an order in which walks share what the caches hold.
 template <class I, class One>
@@ -152,26 +165,30 @@ void each_along_curve(const I& index, const PointsOf<I>& points, Executor& execu
 }  // namespace detail
 
 /// Writes the closest point for each of `points`, as `closest_point` finds it. The points may have any layout
-/// in memory (base/strided.h); a vector or a span of points will do.
+/// in memory (base/strided.h); a vector or a span of points will do. The filter may be one of many
+/// (ask/many.h).
 template <class I, class Filter = KeepAll>
 void closest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<I>> found,
                     const PointOptions& options = {}, const Filter& filter = {},
                     std::span<Visits> visits = {}) {
     using T = typename I::Scalar;
     detail::expect_room("points", points.size(), found.size());
-    detail::ask_points(index, points, options, filter, visits, [&](const auto& batch) {
-        const auto one = [&](std::size_t i) {
-            found[i] = detail::with_visits(visits, i, [&](auto& count) {
-                return detail::answer_near<ClosestPoint>(index, filter_of_ray(filter, i), count, points[i],
-                                                         NearLimits<T>(options, i));
-            });
-        };
-        if (!detail::answered_by_engine<ClosestPoint<typename I::Primitives, Filter>>(
-                index, points, found.data(), batch, one))
-            detail::each_along_curve(index, points, batch.executor, one);
-    });
+    if constexpr (FilterOfManyNear<Filter, T, IdOf<typename I::Primitives>>)
+        return detail::closest_point_kept(index, points, found, options, filter, visits);
+    else
+        detail::ask_points(index, points, options, filter, visits, [&](const auto& batch) {
+            const auto one = [&](std::size_t i) {
+                found[i] = detail::with_visits(visits, i, [&](auto& count) {
+                    return detail::answer_near<ClosestPoint>(index, filter_of_ray(filter, i), count,
+                                                             points[i], NearLimits<T>(options, i));
+                });
+            };
+            if (!detail::answered_by_engine<ClosestPoint<typename I::Primitives, Filter>>(
+                    index, points, found.data(), batch, one))
+                detail::each_along_curve(index, points, batch.executor, one);
+        });
 }
-template <class I, NearFilterOf<I> Filter>
+template <class I, NearBatchFilterOf<I> Filter>
 void closest_points(const I& index, const PointsOf<I>& points, std::span<NearOf<I>> found,
                     const Filter& filter, std::span<Visits> visits = {}) {
     closest_points(index, points, found, PointOptions(), filter, visits);
@@ -247,12 +264,16 @@ NearListsOf<I> nearest(const I& index, const PointsOf<I>& points, std::size_t k,
     nearest(index, points, k, lists, options, filter, visits);
     return lists;
 }
+template <class I, NearBatchFilterOf<I> Filter>
+NearListsOf<I> nearest(const I& index, const PointsOf<I>& points, std::size_t k, const Filter& filter) {
+    return nearest(index, points, k, PointOptions(), filter);
+}
 
 /// Writes all primitives within a radius of each of `points` to lists, as `within` finds them. The filter may
 /// be one of many (ask/many.h).
 ///
 /// Many questions among points are answered by cells that are sorted for them (ask/neighbours.h) where these
-/// are faster than the index; the answers are the same.
+/// are faster than the index; the answers are the same. Such a call takes memory for the cells.
 template <class I, class Filter = KeepAll>
 void within(const I& index, const PointsOf<I>& points, double radius, NearListsOf<I>& lists,
             const PointOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
@@ -303,6 +324,10 @@ NearListsOf<I> within(const I& index, const PointsOf<I>& points, double radius,
     NearListsOf<I> lists;
     within(index, points, radius, lists, options, filter, visits);
     return lists;
+}
+template <class I, NearBatchFilterOf<I> Filter>
+NearListsOf<I> within(const I& index, const PointsOf<I>& points, double radius, const Filter& filter) {
+    return within(index, points, radius, PointOptions(), filter);
 }
 
 }  // namespace hedgerow

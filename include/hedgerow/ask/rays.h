@@ -47,10 +47,11 @@ struct ByOptions {
     }
     bool enters(std::uint32_t bits) const { return mask.enters(bits) && lets_in(bits); }
 };
-/// Answers by f(filter): that of the caller, or one that refuses what the options do too.
+/// Answers some queries by f(filter): that of the caller, or one that refuses what the options do too.
 template <class I, class Options, class Filter, class F>
-auto with_filter(const I& index, const Options& options, const Filter& filter, F f) {
+auto with_filter(const I& index, const Options& options, const Filter& filter, F f, std::size_t queries = 1) {
     using T = typename I::Scalar;
+    options.leave_out.expect(queries);
     if (options.leave_out.none() && options.mask.none()) return f(filter);
     options.mask.expect(index.primitives());
     const auto keeps = [&](std::size_t ray, const Hit<T>& hit) { return hedgerow::keeps(filter, ray, hit); };
@@ -154,6 +155,7 @@ template <class I, class Filter = KeepAll, class Count = const NoVisits>
 std::size_t first_hits(const I& index, const RayOf<I>& ray, std::span<HitOf<I>> hits,
                        const HitsOptions& options = {}, const Filter& filter = {}, Count& count = no_visits) {
     using T = typename I::Scalar;
+    options.after.expect(1);
     const PlaceOfHit<T> after(options.after.of(0));
     return detail::with_filter(index, options, filter, [&](const auto& all) {
         using Query = FirstHits<typename I::Primitives, std::remove_cvref_t<decltype(all)>>;
@@ -194,10 +196,10 @@ template <class I, class Options, class Filter, class Ask>
 auto ask_rays(const I& index, const RaysOf<I>& rays, const Options& options, const Filter& filter,
               std::span<Visits> visits, Ask ask) {
     expect_visits(visits, rays.size());
-    options.leave_out.expect(rays.size());
     Executor& executor = executor_for<Filter>(options.threads, rays.size());
-    return with_filter(index, options, filter,
-                       [&](const auto& all) { return ask(Batch(options, all, executor, visits)); });
+    return with_filter(
+        index, options, filter,
+        [&](const auto& all) { return ask(AskedBatch(options, all, executor, visits)); }, rays.size());
 }
 /// Sets answers[i] to the answer of Q, for ray i.
 template <template <class, class> class Q, class I, class Answer, class Filter>
@@ -205,7 +207,7 @@ KernelUse answer_rays(const I& index, const RaysOf<I>& rays, Answer* answers, co
                       const Filter& filter, std::span<Visits> visits) {
     using P = typename I::Primitives;
     return ask_rays(
-        index, rays, options, filter, visits, [&]<class All>(const Batch<RayOptions, All>& batch) {
+        index, rays, options, filter, visits, [&]<class All>(const AskedBatch<RayOptions, All>& batch) {
             return answer_batch<Q<P, All>>(index, rays, answers, batch, [&](std::size_t i, auto& count) {
                 const auto of_ray = filter_of_ray(batch.filter, i);
                 return index.template answer<Q<P, std::remove_const_t<decltype(of_ray)>>>(count, rays[i],
@@ -290,7 +292,7 @@ void all_hits(const I& index, const RaysOf<I>& rays, HitListsOf<I>& lists, const
     else
         detail::ask_rays(
             index, rays, options, filter, visits,
-            [&]<class All>(const detail::Batch<RayOptions, All>& batch) {
+            [&]<class All>(const detail::AskedBatch<RayOptions, All>& batch) {
                 detail::list_batch<AllHits<typename I::Primitives, All>>(
                     index, rays, lists, batch,
                     detail::appending(&HitListsOf<I>::hits, [&](std::size_t i, auto& hits, auto& count) {
@@ -323,21 +325,21 @@ void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf
     options.after.expect(rays.size());
     // A ray has no more hits than there are primitives.
     k = std::min(k, detail::primitives_in(index.primitives()));
-    detail::ask_rays(
-        index, rays, options, filter, visits, [&]<class All>(const detail::Batch<HitsOptions, All>& batch) {
-            detail::list_batch<FirstHits<typename I::Primitives, All>>(
-                index, rays, lists, batch,
-                [&](std::size_t i, HitListsOf<I>& to, auto& count) {
-                    const std::size_t before = to.hits.size();
-                    to.hits.resize(before + k);
-                    const std::size_t found =
-                        first_hits(index, rays[i], std::span(to.hits.data() + before, k),
-                                   {.after = options.after.of(i)}, filter_of_ray(batch.filter, i), count);
-                    to.hits.resize(before + found);
-                    to.offsets.push_back(before + found);
-                },
-                k);
-        });
+    detail::ask_rays(index, rays, options, filter, visits,
+                     [&]<class All>(const detail::AskedBatch<HitsOptions, All>& batch) {
+                         detail::list_batch<FirstHits<typename I::Primitives, All>>(
+                             index, rays, lists, batch,
+                             [&](std::size_t i, HitListsOf<I>& to, auto& count) {
+                                 const std::size_t before = to.hits.size();
+                                 to.hits.resize(before + k);
+                                 const std::size_t found = first_hits(
+                                     index, rays[i], std::span(to.hits.data() + before, k),
+                                     {.after = options.after.of(i)}, filter_of_ray(batch.filter, i), count);
+                                 to.hits.resize(before + found);
+                                 to.offsets.push_back(before + found);
+                             },
+                             k);
+                     });
 }
 template <class I, FilterOf<typename I::Scalar> Filter>
 void first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, HitListsOf<I>& lists,
@@ -353,18 +355,33 @@ HitListsOf<I> first_hits(const I& index, const RaysOf<I>& rays, std::size_t k,
     return lists;
 }
 
-/// Writes the number of primitives that ray i hits to counts[i].
+template <class I, FilterOf<typename I::Scalar> Filter>
+HitListsOf<I> first_hits(const I& index, const RaysOf<I>& rays, std::size_t k, const Filter& filter) {
+    return first_hits(index, rays, k, HitsOptions(), filter);
+}
+
+/// Writes the number of primitives that ray i hits to counts[i]. The filter may be one of many.
 template <class I, class Filter = KeepAll>
 void hit_counts(const I& index, const RaysOf<I>& rays, std::span<std::size_t> counts,
                 const RayOptions& options = {}, const Filter& filter = {}, std::span<Visits> visits = {}) {
     detail::expect_room("rays", rays.size(), counts.size());
-    detail::ask_rays(index, rays, options, filter, visits,
-                     [&]<class All>(const detail::Batch<RayOptions, All>& batch) {
-                         detail::answer_batch<HitCount<typename I::Primitives, All>>(
-                             index, rays, counts.data(), batch, [&](std::size_t i, auto& count) {
-                                 return hit_count(index, rays[i], filter_of_ray(batch.filter, i), count);
-                             });
-                     });
+    if constexpr (FilterOfManyHits<Filter, typename I::Scalar>) {
+        const auto kept = all_hits(index, rays, options, filter, visits);
+        for (std::size_t i = 0; i < kept.size(); ++i) counts[i] = kept[i].size();
+    } else {
+        detail::ask_rays(index, rays, options, filter, visits,
+                         [&]<class All>(const detail::AskedBatch<RayOptions, All>& batch) {
+                             detail::answer_batch<HitCount<typename I::Primitives, All>>(
+                                 index, rays, counts.data(), batch, [&](std::size_t i, auto& count) {
+                                     return hit_count(index, rays[i], filter_of_ray(batch.filter, i), count);
+                                 });
+                         });
+    }
+}
+template <class I, BatchFilterOf<typename I::Scalar> Filter>
+void hit_counts(const I& index, const RaysOf<I>& rays, std::span<std::size_t> counts, const Filter& filter,
+                std::span<Visits> visits = {}) {
+    hit_counts(index, rays, counts, RayOptions(), filter, visits);
 }
 
 }  // namespace hedgerow

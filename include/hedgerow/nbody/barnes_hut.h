@@ -16,7 +16,7 @@ namespace hedgerow {
 namespace detail {
 template <class S>
 concept FoldableTree = VolumeTree<S> || OrthantTree<S> || PlaneTree<S>;
-}
+}  // namespace detail
 
 /// Potentials of charges in space or in the plane, for any kernel of the distance (potential.h), by a walk
 /// from each target (Barnes and Hut, A hierarchical O(N log N) force-calculation algorithm, 1986). A cell

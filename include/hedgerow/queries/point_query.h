@@ -58,36 +58,42 @@ struct PointOptions {
     Threads threads = {};  ///< of a batch
 };
 
-/// The options of one query, as its walk reads them.
+/// The options of one query, as its walk reads them. Views their mask.
 template <std::floating_point T>
 struct NearLimits {
     T distance2;  ///< the largest squared distance, finite; nothing is within what is negative or NaN
     T factor;
     PrimitiveId leave_out;
-    Mask mask;
+    const Mask* mask;  ///< null if there is none
 
     /// Throws InputError for a factor that is not at least 1.
     explicit NearLimits(const PointOptions& options = {}, std::size_t query = 0)
-        : distance2(square_within<T>(options.radius)),
-          factor(options.factor == 1 ? T(1) : greatest_at_most<T>(options.factor)),
-          leave_out(options.leave_out.of(query)),
-          mask(options.mask) {
-        if (!(factor >= 1)) throw InputError("the factor of a point's question is below 1: give 1 or more");
-        if (!(static_cast<double>(distance2) < options.radius2))
-            distance2 = greatest_at_most<T>(options.radius2);
-    }
+        : NearLimits(options, Without{options.leave_out.of(query)}) {}
     /// Those of a batch, which leave out nothing.
-    static NearLimits of_batch(PointOptions options) {
-        options.leave_out = {};
-        return NearLimits(options);
+    static NearLimits of_batch(const PointOptions& options) {
+        return NearLimits(options, Without{no_primitive});
     }
     /// Whether all that is near is answered, and exactly.
-    bool plain() const { return factor == 1 && leave_out == no_primitive && mask.none(); }
+    bool plain() const { return factor == 1 && leave_out == no_primitive && mask == nullptr; }
     /// Whether nothing is within them.
     bool nothing() const { return !(distance2 >= 0); }
     /// The limit of a walk that has found something at a squared distance.
     T after(T found_distance2) const {
         return factor == 1 ? found_distance2 : found_distance2 / product(factor, factor);
+    }
+
+private:
+    struct Without {
+        PrimitiveId element;
+    };
+    NearLimits(const PointOptions& options, Without without)
+        : distance2(square_within<T>(options.radius)),
+          factor(options.factor == 1 ? T(1) : greatest_at_most<T>(options.factor)),
+          leave_out(without.element),
+          mask(options.mask.none() ? nullptr : &options.mask) {
+        if (!(factor >= 1)) throw InputError("the factor of a point's question is below 1: give 1 or more");
+        if (!(static_cast<double>(distance2) < options.radius2))
+            distance2 = greatest_at_most<T>(options.radius2);
     }
 };
 
@@ -110,7 +116,7 @@ public:
     bool done() const { return limits_.nothing(); }
     /// Whether the options and the filter let an instance with this mask be queried.
     bool enters(std::uint32_t mask) const {
-        return limits_.mask.enters(mask) && hedgerow::enters(filter_, mask);
+        return (limits_.mask == nullptr || limits_.mask->enters(mask)) && hedgerow::enters(filter_, mask);
     }
 
 protected:
@@ -120,7 +126,8 @@ protected:
     }
     /// Whether a candidate counts that is near enough.
     bool counts(const Candidate& c) const {
-        if (c.element == limits_.leave_out || !limits_.mask.sees(c.element)) return false;
+        if (c.element == limits_.leave_out) return false;
+        if (limits_.mask != nullptr && !limits_.mask->sees(c.element)) return false;
         if constexpr (std::same_as<Filter, KeepAll>)
             return true;
         else

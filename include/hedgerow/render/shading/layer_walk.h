@@ -22,6 +22,7 @@ struct TransparencyOptions {
     /// Whether the layers behind the ends of rays are counted. They are found then, which takes the time that
     /// the ends would save.
     bool counts_saved = false;
+    Threads threads = {};
 };
 /// What rays through layers cost.
 struct TransparencyCounts {
@@ -142,7 +143,7 @@ private:
 /// layer of ray i into account and returns its opacity.
 template <class I, class Filter, class OpacityOf>
 TransparencyCounts follow_layers(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays,
-                                 const TransparencyOptions& options, Threads threads, const Filter& filter,
+                                 const TransparencyOptions& options, const Filter& filter,
                                  const OpacityOf& opacity) {
     using Walk = LayerWalk<typename I::Scalar, I::dimension>;
     const auto find = [&](const auto& some, std::size_t k, auto& lists, const AfterHits& after,
@@ -159,7 +160,7 @@ TransparencyCounts follow_layers(const I& index, const RayArray<typename I::Scal
     };
     TransparencyCounts counts;
     std::mutex adding;
-    executor_for<Filter>(threads, rays.size())
+    executor_for<Filter>(options.threads, rays.size())
         .for_each_piece(rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
             const auto more = Walk(options).follow(rays, begin, end, {}, find, shade);
             const std::lock_guard lock(adding);

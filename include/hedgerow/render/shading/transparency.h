@@ -70,7 +70,7 @@ template <class I, OfRayAndHit<I> LayerOf, class Filter = KeepAll>
 TransparencyCounts composite_front_to_back(const I& index,
                                            const RayArray<typename I::Scalar, I::dimension>& rays,
                                            const LayerOf& layer, std::span<Composite> composites,
-                                           const TransparencyOptions& options = {}, Threads threads = {},
+                                           const TransparencyOptions& options = {},
                                            const Filter& filter = {}) {
     detail::expect_room("rays", rays.size(), composites.size());
     std::vector<Vec3d> colours(rays.size());
@@ -82,7 +82,7 @@ TransparencyCounts composite_front_to_back(const I& index,
         through[i] = before * (1 - opacity);
         return opacity;
     };
-    const auto counts = detail::follow_layers(index, rays, options, threads, filter, opacity_of);
+    const auto counts = detail::follow_layers(index, rays, options, filter, opacity_of);
     for (std::size_t i = 0; i < rays.size(); ++i)
         composites[i] = {Vec3f(colours[i]), static_cast<float>(through[i])};
     return counts;
@@ -109,20 +109,19 @@ Composite composite_list(const Ray<T, D>& ray, std::span<const Hit<T>> hits, con
 template <class I, OfRayAndHit<I> LayerOf, class Filter = KeepAll>
 std::uint64_t composite_back_to_front(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays,
                                       const LayerOf& layer, std::span<Composite> composites,
-                                      Threads threads = {}, const Filter& filter = {}) {
-    using Own = std::remove_const_t<decltype(filter_of_ray(filter, 0))>;
-    using Query = AllHits<typename I::Primitives, Own>;
+                                      const RayOptions& options = {}, const Filter& filter = {}) {
     detail::expect_room("rays", rays.size(), composites.size());
     std::atomic<std::uint64_t> layers{0};
-    detail::executor_for<Filter>(threads, rays.size())
-        .for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
+    detail::ask_rays(index, rays, options, filter, {}, [&](const auto& batch) {
+        batch.executor.for_each_piece(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
             std::vector<HitOf<I>> hits;
             for (std::size_t i = begin; i < end; ++i) {
                 const RayOf<I> ray = rays[i];
-                layers += index.template answer<Query>(no_visits, ray, hits, filter_of_ray(filter, i));
+                layers += all_hits(index, ray, hits, filter_of_ray(batch.filter, i));
                 composites[i] = composite_list(ray, std::span<const HitOf<I>>(hits), layer);
             }
         });
+    });
     return layers;
 }
 
@@ -133,8 +132,7 @@ std::uint64_t composite_back_to_front(const I& index, const RayArray<typename I:
 template <class I, OfRayAndHit<I> OpacityOf, class Filter = KeepAll>
 TransparencyCounts transmittances(const I& index, const RayArray<typename I::Scalar, I::dimension>& rays,
                                   const OpacityOf& opacity, std::span<float> through,
-                                  const TransparencyOptions& options = {}, Threads threads = {},
-                                  const Filter& filter = {}) {
+                                  const TransparencyOptions& options = {}, const Filter& filter = {}) {
     detail::expect_room("rays", rays.size(), through.size());
     std::fill_n(through.begin(), rays.size(), 1.0f);
     const auto opacity_of = [&](std::size_t i, const RayOf<I>& ray, const HitOf<I>& hit, double before) {
@@ -142,7 +140,7 @@ TransparencyCounts transmittances(const I& index, const RayArray<typename I::Sca
         through[i] = static_cast<float>(before * (1 - a));
         return a;
     };
-    return detail::follow_layers(index, rays, options, threads, filter, opacity_of);
+    return detail::follow_layers(index, rays, options, filter, opacity_of);
 }
 
 /// The opacity that a mask makes of an opacity: nothing below the cutoff, everything else opaque.

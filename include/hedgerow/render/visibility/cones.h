@@ -43,23 +43,21 @@ public:
 
     explicit IndexCones(const I& index) : index_(index) {}
     void look(const ConeRays<T, 3>& cone, std::vector<SeenFragment<T>>& found) const override {
-        const auto& fragments = fragments_of(cone);
+        const Scratch<std::vector<ConeFragment<T>>> fragments;
+        cone_fragments(index_, cone, *fragments);
         found.clear();
         const ConeFrame frame(cone);
-        for (const ConeFragment<T>& f : fragments) found.push_back(seen(cone, frame, f));
+        for (const ConeFragment<T>& f : *fragments) found.push_back(seen(cone, frame, f));
     }
     float open(const ConeRays<T, 3>& cone) const override {
         std::uint64_t covered = 0;
-        for (const ConeFragment<T>& f : fragments_of(cone)) covered |= f.samples;
+        const Scratch<std::vector<ConeFragment<T>>> fragments;
+        cone_fragments(index_, cone, *fragments);
+        for (const ConeFragment<T>& f : *fragments) covered |= f.samples;
         return static_cast<float>(std::popcount(~covered)) / ConeSamples::count;
     }
 
 private:
-    const std::vector<ConeFragment<T>>& fragments_of(const ConeRays<T, 3>& cone) const {
-        thread_local std::vector<ConeFragment<T>> fragments;
-        cone_fragments(index_, cone, fragments);
-        return fragments;
-    }
     /// The ray is that of the mean of the fragment's samples, which is in the triangle as they are.
     SeenFragment<T> seen(const ConeRays<T, 3>& cone, const ConeFrame& frame,
                          const ConeFragment<T>& fragment) const {

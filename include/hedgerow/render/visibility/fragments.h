@@ -22,6 +22,7 @@ struct FragmentOptions {
     /// Bytes for the fragments that are in memory at once, each of the size of a Hit (28 in float). The
     /// picture is cut into bands of rows whose fragments fit.
     std::size_t budget = std::size_t(64) << 20;
+    Threads threads = {};
 };
 struct FragmentCounts {
     RasterCounts raster;          ///< of all passes
@@ -65,8 +66,8 @@ public:
     /// and its fragments. Throws InputError if the fragments of one row exceed the budget, before any band is
     /// taken.
     template <class Triangles, class Take>
-    FragmentCounts list(const Triangles& triangles, Take take, const FragmentOptions& options = {},
-                        Executor& executor = default_executor()) {
+    FragmentCounts list(const Triangles& triangles, Take take, const FragmentOptions& options = {}) {
+        Executor& executor = options.threads.over(samples_.size());
         FragmentCounts counts;
         if (samples_.size() == 0) return counts;
         lengths_.assign(samples_.size(), 0);

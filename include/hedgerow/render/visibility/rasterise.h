@@ -42,6 +42,10 @@ struct RasterOptions {
     /// By which threads. What is answered does not depend on them.
     Threads threads = {};
 };
+/// By which threads a visibility buffer is drawn or resolved.
+struct VisibleOptions {
+    Threads threads = {};
+};
 
 /// Shades no fragment: what is seen is shaded later, once (Saito and Takahashi 1990), or not at all.
 struct NoShading {
@@ -88,9 +92,10 @@ public:
     /// hits. With kernels, for samples in the middles of their pixels and up to about a million triangles, it
     /// takes less time and memory than hits do; else hits are drawn first. Throws InputError for too few
     /// places.
-    RasterCounts draw_visible(const TriangleMeshView<T>& mesh, std::span<Visible> visible, Threads by = {}) {
+    RasterCounts draw_visible(const TriangleMeshView<T>& mesh, std::span<Visible> visible,
+                              const VisibleOptions& options = {}) {
         detail::expect_room("samples", samples_.size(), visible.size());
-        IeeeExecutor threads(by.over(samples_.size()));
+        IeeeExecutor threads(options.threads.over(samples_.size()));
         counts_ = false;
         enter(nullptr, {});
         if (see_in_tiles(mesh, visible, threads)) return {mesh.size()};
@@ -105,13 +110,13 @@ public:
     /// sample whose ray does not hit its element gets no hit. Throws InputError for an element that the mesh
     /// has not, and for too few places.
     void resolve(const TriangleMeshView<T>& mesh, std::span<const Visible> visible, std::span<Hit<T>> hits,
-                 Threads by = {}) {
+                 const VisibleOptions& options = {}) {
         detail::expect_room("samples", samples_.size(), std::min(visible.size(), hits.size()));
         for (const Visible& v : visible.first(samples_.size()))
             if (v.element >= mesh.size() && v.element != Hit<T>::none)
                 throw InputError("the visibility buffer names element " + std::to_string(v.element) +
                                  " of a mesh of " + std::to_string(mesh.size()) + " triangles");
-        IeeeExecutor threads(by.over(samples_.size()));
+        IeeeExecutor threads(options.threads.over(samples_.size()));
         counts_ = false;
         enter(nullptr, {});
         resolve_samples(mesh, visible, hits, threads);
