@@ -9,6 +9,7 @@
 #include <hedgerow/geometry/entry.h>
 #include <hedgerow/geometry/exact_sum.h>
 #include <hedgerow/instances/instance_set.h>
+#include <hedgerow/primitives/boundary.h>
 #include <hedgerow/primitives/triangle_mesh.h>
 #include <hedgerow/queries/hit.h>
 #include <hedgerow/queries/point_query.h>

@@ -426,7 +426,7 @@ void ask_solid(const S& solid, const Strided<typename S::Point>& points, std::sp
     expect_visits(visits, points.size());
     IeeeExecutor executor(options.threads.over(points.size()));
     const auto rest = [&](std::size_t i) { found[i] = one(points[i], no_visits); };
-    if (answered_by_engine<Q>(solid, points, found.data(), AskedBatch(options, keep_all, executor, visits),
+    if (answered_by_engine<Q>(solid, points, found.data(), AskedBatch{options, keep_all, executor, visits},
                               rest))
         return;
     for_each_part(points, solid.bounds(), solid.bytes_of_index(), executor, [&](const auto& part) {

@@ -153,7 +153,7 @@ void ask_points(const I& index, const PointsOf<I>& points, const PointOptions& o
     options.leave_out.expect(points.size());
     options.mask.expect(index.primitives());
     static_cast<void>(NearLimits<typename I::Scalar>::of_batch(options));  // throws for a bad factor
-    ask(AskedBatch(options, filter, executor_for<Filter>(options.threads, points.size()), visits));
+    ask(AskedBatch{options, filter, executor_for<Filter>(options.threads, points.size()), visits});
 }
 /// Calls one(i) for each of many points, in an order in which walks share what the caches hold.
 template <class I, class One>

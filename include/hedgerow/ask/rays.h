@@ -199,7 +199,10 @@ auto ask_rays(const I& index, const RaysOf<I>& rays, const Options& options, con
     Executor& executor = executor_for<Filter>(options.threads, rays.size());
     return with_filter(
         index, options, filter,
-        [&](const auto& all) { return ask(AskedBatch(options, all, executor, visits)); }, rays.size());
+        [&](const auto& all) {
+            return ask(AskedBatch{options, all, executor, visits});
+        },
+        rays.size());
 }
 /// Sets answers[i] to the answer of Q, for ray i.
 template <template <class, class> class Q, class I, class Answer, class Filter>

@@ -119,7 +119,7 @@ void list_regions(const I& index, const Rs& regions, Finds finds, IdListsOf<I>& 
     const Strided<R> all(regions);
     expect_visits(visits, all.size());
     list_batch<Q<typename I::Primitives, R>>(
-        index, all, lists, AskedBatch(options, keep_all, options.threads.over(all.size()), visits),
+        index, all, lists, AskedBatch{options, keep_all, options.threads.over(all.size()), visits},
         appending(&IdListsOf<I>::ids,
                   [&](std::size_t i, auto& found, auto& count) { one(all[i], found, count); }),
         finds);
@@ -132,7 +132,7 @@ KernelUse answer_regions(const I& index, const Rs& regions, Answer* answers, con
     const Strided<R> all(regions);
     expect_visits(visits, all.size());
     return answer_batch<Q<typename I::Primitives, R>>(
-        index, all, answers, AskedBatch(options, keep_all, options.threads.over(all.size()), visits),
+        index, all, answers, AskedBatch{options, keep_all, options.threads.over(all.size()), visits},
         [&](std::size_t i, auto& count) { return one(all[i], count); });
 }
 }  // namespace detail
