@@ -83,17 +83,12 @@ public:
     }
     /// Runs any query of yours by a walk: of a ray, a point, a FarProbe, a box or an AnyRegion. `count` is a
     /// Visits, or NoVisits.
-    template <Query Q, class Count>
-    void ask(Q& query, Count& count) const {
+    template <Query Q, class Count = const NoVisits>
+    void ask(Q& query, Count& count = no_visits) const {
         in_ieee_mode([&] {
             Virtual<Q> asked(query);
             detail::count_virtually<typename Q::Probe>(count, [&](auto& counted) { walk(asked, counted); });
         });
-    }
-    template <Query Q>
-    void ask(Q& query) const {
-        NoVisits none;
-        ask(query, none);
     }
     /// Runs a query of a point or a box over leaves of yours. Nothing is counted.
     template <class Leaves, Query Q>

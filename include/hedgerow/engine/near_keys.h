@@ -30,8 +30,8 @@ inline std::uint32_t element_of(NearKey key) {
 }
 
 /// What a kernel answers in place of the number of keys, and in place of the first id of a row, where it gave
-/// up: many points are at one place, and most of them only tie with those that are
-/// found. A walk that takes the first points of a place answers then (NearestAmongTies).
+/// up: many points are at one place, and most of them only tie with those that are found. A walk that takes
+/// the first points of a place answers then (NearestAmongTies).
 inline constexpr std::size_t gave_up = std::size_t(-1);
 inline constexpr PrimitiveId gave_up_id = no_primitive - 1;
 
