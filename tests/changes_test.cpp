@@ -3,6 +3,8 @@
 #include <array>
 #include <limits>
 
+#include <hedgerow/any_pairs.h>
+
 #include "changes.h"
 
 using namespace hedgerow;
@@ -275,6 +277,49 @@ TYPED_TEST(OfEveryStructure, WhatCannotBePartedMakesNoDepthBomb) {
 }
 
 /// Neighbours that are inserted in order make a chain if each is only placed beside the last.
+/// Lists of many points, and pairs, which cells find, have what an index holds, and nothing else is read.
+template <class Erase, class I>
+void expect_lists_of_what_is_held(PointCloud<float, 3>& cloud, const I& index, Erase erase) {
+    const auto asked = cloud.points;
+    for (PrimitiveId id = 0; id < cloud.size(); id += 3) {
+        ASSERT_TRUE(erase(id));
+        cloud.points[id] = Vec3f::all(std::numeric_limits<float>::quiet_NaN());
+    }
+    const double radius = 0.1;
+    const auto lists = within(index, asked, radius);
+    std::vector<PairWithin<float>> pairs;
+    for (PrimitiveId i = 0; i < asked.size(); ++i) {
+        const auto alone = within(index, asked[i], radius);
+        ASSERT_EQ(lists[i].size(), alone.size()) << i;
+        for (std::size_t k = 0; k < alone.size(); ++k) {
+            EXPECT_EQ(lists[i].ids[k], alone[k].element) << i;
+            EXPECT_EQ(lists[i].distances2[k], alone[k].distance2) << i;
+            if (i % 3 != 0 && alone[k].element > i)
+                pairs.push_back({i, alone[k].element, alone[k].distance2});
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    EXPECT_GT(pairs.size(), 1000u);
+    EXPECT_EQ(pairs_within(index, radius), pairs);
+    EXPECT_EQ(pairs_within(index, index, radius).size(), 2 * pairs.size() + cloud.size() - cloud.size() / 3);
+}
+template <template <class, int> class S>
+void expect_lists_of_what_is_held() {
+    auto cloud = points<float>(1200);
+    auto index = build<S>(cloud);
+    expect_lists_of_what_is_held(cloud, index, [&](PrimitiveId id) { return index.erase(cloud, id); });
+}
+TEST(ChangedClouds, ListsOfManyPointsHaveWhatIsHeld) {
+    expect_lists_of_what_is_held<Orthtree>();
+    expect_lists_of_what_is_held<Bvh>();
+    expect_lists_of_what_is_held<BruteForce>();
+    for (const char* const structure : {"octree", "bvh", "brute-force"}) {
+        auto cloud = points<float>(1200);
+        const auto index = build_any(structure, cloud);
+        expect_lists_of_what_is_held(cloud, *index, [&](PrimitiveId id) { return index->erase(id); });
+    }
+}
+
 TEST(BvhChanges, InsertionsInTheOrderOfPlacesMakeNoChains) {
     const auto mesh = turned_stadium<float>(5000);
     auto index = build<Bvh>(mesh);

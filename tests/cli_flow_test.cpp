@@ -82,6 +82,34 @@ TEST_F(FlowVerb, AMeshIsFilledAndFallsIntoAMesh) {
     const auto info = run("info --json " + file("run/" + named("run", "surface").back()));
     EXPECT_TRUE(json::parse(info.output)["closed"]) << info.output;
 }
+/// The speed of sound is that of the start, and the end of the first part is a line of the log.
+TEST_F(FlowVerb, AMeshThatHasFallenGoesOnWithTheSameBits) {
+    save_mesh(folder / "box.ply", cube<double>(12));
+    const std::string options =
+        "flow " + file("box.ply") + " --up z --spacing 0.25 --every 0.1 --size 120x90 ";
+    const auto whole = run(options + "--until 0.4 --json -o " + file("whole"));
+    ASSERT_EQ(whole.code, 0) << whole.output;
+    ASSERT_EQ(run(options + "--until 0.3 -o " + file("part")).code, 0);
+    // A picture and a surface that were not finished are made again.
+    fs::remove(folder / "part" / named("part", "snapshot").back());
+    fs::remove(folder / "part" / named("part", "picture").back());
+    const auto rest = run("flow --resume --until 0.4 --json -o " + file("part"));
+    ASSERT_EQ(rest.code, 0) << rest.output;
+    EXPECT_EQ(json::parse(whole.output)["sound"], json::parse(rest.output)["sound"]);
+    EXPECT_EQ(named("whole", "picture"), named("part", "picture"));
+    EXPECT_EQ(named("whole", "snapshot"), named("part", "snapshot"));
+    for (const auto& name : named("whole", "snapshot"))
+        EXPECT_EQ(bytes_of(folder / "whole" / name), bytes_of(folder / "part" / name)) << name;
+}
+TEST_F(FlowVerb, ARunOfNoTimeGoesOn) {
+    ASSERT_EQ(run("flow gen:dam:100 --plane --size 0x0 --until 0 -o " + file("run")).code, 0);
+    const auto r = run("flow --resume --until 0.3 --json -o " + file("run"));
+    ASSERT_EQ(r.code, 0) << r.output;
+    EXPECT_EQ(json::parse(r.output)["time"], 0.3);
+    const auto ignored = run("flow --resume --until 0.4 --every 0.1 -o " + file("run"));
+    EXPECT_EQ(ignored.code, 2);
+    EXPECT_NE(ignored.output.find("--every is that of the run"), std::string::npos) << ignored.output;
+}
 TEST_F(FlowVerb, ASourceFlowsAndGoesOn) {
     auto tap = cube<double>(12);
     for (auto& p : tap.vertices) p = p * 0.15 + Vec3d(0.25, 0.25, 0.75);

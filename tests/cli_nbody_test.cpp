@@ -238,6 +238,34 @@ TEST_F(Nbody, StepsEndWhereTheRunEnds) {
     ASSERT_EQ(times.size(), 4u);
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(times[i], 0.1 * double(i), 1e-12);
 }
+/// A snapshot is that of a start, whose forces are found by the options of the run.
+TEST_F(Nbody, ASnapshotIsAStartLikeAnyOther) {
+    ASSERT_EQ(run("nbody gen:plummer:100 --until 0.1 --size 0x0 --quiet -o " + file("a")).code, 0);
+    MotionState state = load_state(folder / "a/snapshot-0000000.npy");
+    for (auto& force : state.accelerations) force = {7, 7, 7};
+    save_state(folder / "start.npy", state);
+    const std::string options = " --gravity 2 --softening 0.1 --until 0.1 --size 0x0 --quiet -o ";
+    ASSERT_EQ(run("nbody " + file("a/snapshot-0000000.npy") + options + file("b")).code, 0);
+    ASSERT_EQ(run("nbody " + file("start.npy") + options + file("c")).code, 0);
+    EXPECT_EQ(log_of("b"), log_of("c"));
+}
+/// Runs far shorter than a usual step, or none at all.
+TEST_F(Nbody, ARunMayBeShort) {
+    ASSERT_EQ(
+        run("nbody gen:plummer:100 --softening 0.1 --until 1e-9 --size 0x0 --quiet -o " + file("a")).code, 0);
+    EXPECT_NEAR(load_state(folder / "a" / named("a", "snapshot").back()).time, 1e-9, 1e-21);
+    ASSERT_EQ(run("nbody gen:plummer:100 --softening 0.1 --until 0 --size 0x0 --quiet -o " + file("b")).code,
+              0);
+    ASSERT_EQ(run("nbody --resume --until 0.1 --quiet -o " + file("b")).code, 0);
+    EXPECT_NEAR(load_state(folder / "b" / named("b", "snapshot").back()).time, 0.1, 1e-12);
+}
+TEST_F(Nbody, ForcesToAPipeAreRowsAlone) {
+    const auto r =
+        run_shell(HEDGEROW_TOOL_PATH " nbody gen:plummer:20 --forces --format csv -o - 2>/dev/null");
+    EXPECT_EQ(r.code, 0);
+    EXPECT_EQ(std::count(r.output.begin(), r.output.end(), '\n'), 21) << r.output;
+    expect_usage("nbody gen:plummer:20 --forces -o " + file("a.csv.gz"), "leave .gz out");
+}
 TEST_F(Nbody, OfFewParticlesOrNone) {
     for (const char* count : {"0", "1", "2"}) {
         const std::string scene = std::string("gen:plummer:") + count;
@@ -258,6 +286,7 @@ TEST_F(Nbody, RefusesBadInput) {
     expect_usage("nbody gen:plummer:100 --forces --accuracy 2 -o " + file("a.npy"), "accuracy of 2");
     expect_usage("nbody gen:plummer:100 --forces -o " + file("a.abc"), "abc");
     expect_bad("nbody --resume --until 1 -o " + file("x"), "no run");
+    expect_usage("nbody --resume --until 1 --dt 0.1 -o " + file("x"), "--dt is that of the run");
     EXPECT_FALSE(fs::exists(folder / "x"));
     std::ofstream(file("nan.csv")) << "x,y,z\n1,2,3\n1,nan,3\n";
     expect_bad("nbody " + file("nan.csv") + " --forces -o " + file("a.npy"),

@@ -100,6 +100,7 @@ TEST_F(ParticlesVerb, RefusesBadInput) {
     expect_usage("particles gen:cube --eye 0,0,0 --target 0,0,0 -o " + file("x"), "camera");
     expect_usage("particles --resume -o " + file("x"), "--until");
     expect_bad("particles --resume --until 1 -o " + file("x"), "no run");
+    expect_usage("particles --resume --until 1 --rate 3 -o " + file("x"), "--rate is that of the run");
     expect_bad("particles gen:points -o " + file("x"), "triangles");
     expect_bad("particles " + file("none.obj") + " -o " + file("x"), "none.obj");
     std::ofstream(file("dot.obj")) << "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n";

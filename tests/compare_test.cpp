@@ -257,9 +257,10 @@ TEST(Lists, NameStructuresThatCanBeBuilt) {
                     << info.name;
             for (const auto& s : usual) {
                 if (dimension == 2)
-                    EXPECT_EQ(build_any(s, PointCloud<float, 2>{{{0, 0}, {1, 0}}})->size(), 2u) << s;
+                    EXPECT_EQ(build_any(s, PointCloud<float, 2>{{{0, 0}, {1, 0}}}.view())->size(), 2u) << s;
                 else
-                    EXPECT_EQ(build_any(s, PointCloud<float, 3>{{{0, 0, 0}, {1, 0, 0}}})->size(), 2u) << s;
+                    EXPECT_EQ(build_any(s, PointCloud<float, 3>{{{0, 0, 0}, {1, 0, 0}}}.view())->size(), 2u)
+                        << s;
             }
         }
 }

@@ -103,7 +103,7 @@ TEST(FiltersOfMany, AreThoseOfEach) {
     const auto wide = build(mesh);
     expect_all_filters(wide);
     expect_all_filters(*build_any("octree", mesh));
-    expect_all_filters(*build_any("wide", spheres<double>(200)));
+    expect_all_filters(*build_any("wide", spheres<double>(200).view()));
     expect_all_filters(build<Bvh>(segments2d<float>(200)));
     const InstanceSet world{Instance(wide), Instance(wide, Transform<3>::translation({0.1, 0, 0})),
                             Instance(wide, Transform<3>::rotation({1, 0, 0}, 1))};

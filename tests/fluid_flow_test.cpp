@@ -384,7 +384,13 @@ TYPED_TEST(Fluids, BadFlowsAreRefused) {
     walls.places.resize(2), walls.velocities.resize(1);
     EXPECT_THROW(FluidFlow<D>(state, walls, good), InputError);
     bad = state;
-    bad.places[3][1] = nan;
+    for (const double x : {nan, infinity}) {
+        bad.places[3][1] = x;
+        EXPECT_THROW(FluidFlow<D>(bad, {}, good), InputError);
+        walls.velocities.clear(), walls.places[1][0] = x;
+        EXPECT_THROW(FluidFlow<D>(state, walls, good), InputError);
+    }
+    bad.places[3][1] = 1e200;
     FluidFlow<D> flow(bad, {}, good);
     EXPECT_THROW(flow.step(), InputError);
 }

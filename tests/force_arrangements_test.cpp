@@ -90,6 +90,8 @@ TEST(ForceArrangements, QuestionsOfTheHunter) {
         {58, 243, 772927, 0.00030701952510414469, 1, 0, 0, true},
         {39, 1983, 935578, 0.02249049447202978, 1, 0, 0, true},
         {5, 5722, 50085, 0.0032567775444535371, 1, 708.12933909073126, 0, true},
+        {30, 6851, 884954, 6.9776127202580362e-06, 1, 0, 8.1730427372468546e-09,
+         true},  // thousands of charges within one softening length
     };
     for (const ForceQuestion& question : questions) {
         std::uint64_t asked = 0;

@@ -5,6 +5,7 @@
 
 #include "hunter/answers.h"
 #include "hunter/oracle.h"
+#include "hunter/pairs.h"
 
 using namespace hedgerow;
 using namespace hedgerow::hunter;
@@ -168,6 +169,36 @@ TEST(Found, AThinConeDoesNotMeetASegmentBesideItInAPlane) {
         0};
     EXPECT_TRUE(as_brute_force("grid", shapes, question));
     with_region(question, [&](const auto& region) { EXPECT_FALSE(overlap(shapes[0], region)); });
+}
+
+// ---- The farthest point of a sphere from a point whose offset from its centre is a subnormal number
+
+TEST(Found, Round978562x1009) {
+    const std::vector<Sphere<double, 3>> shapes = {
+        {{2, 0, 0x1.47aadbee8c568p-2}, 1},
+    };
+    const Vec<double, 3> question = {2, -0x0.0000000000001p-1022, 0x1.47aadbee8c568p-2};
+    EXPECT_TRUE(as_brute_force("brute-force", shapes, question));
+}
+
+// ---- Pairs of triangles whose coordinates differ by 600 powers of two
+
+TEST(Found, Round1978562x1399) {
+    const std::vector<Triangle<double, 3>> one = {
+        {{0x1p+225, -0x1.037402c60bcf2p+279, -0x1.43673e11cdf56p+173},
+         {0, 0, 0x1.f5e03af850239p+191},
+         {2, 0, -0x1.6b213e3e11062p-219}},
+    };
+    const std::vector<Triangle<double, 3>> two = {
+        {{-2, 0, 0x1.0bd6e9a3bfffp+351},
+         {0, 0x1p-197, 0x1.e70195abd1ccep-144},
+         {-0x1.8000000000001p+1, 0, 0x1.8256b228343d8p-85}},
+        {{-0x1p+156, -0x1.366d23a97a81cp+210, 0},
+         {-1, 0x1.924fdf96cc7cdp+366, 0},
+         {0, 0x1.924fdf96cc7c6p+366, -0x1.8faaa497513d8p-331}},
+        {{4, 0, 0}, {4, -0x1.abfb3a2c4a4a4p+324, 0}, {-1, 0x1.1ebb8c0a3518p-7, 0x1.d5dbfe66bc2dep+374}},
+    };
+    EXPECT_TRUE((pairs_as_all_pairs<Bvh, Bvh>(one, two, 0x1.07191e1e75b71p+452)));
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST(HashGrid, RefusesCellsThatAreNoLength) {
          {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(build<HashGrid>(cloud, {.cell = cell}), UsageError);
     EXPECT_THROW(build_any("hash-grid:cell=-1", cloud), UsageError);
-    EXPECT_THROW(build_any("hash-grid", cube<float>(12)), UsageError);
+    EXPECT_THROW(build_any("hash-grid", cube<float>(12).view()), UsageError);
 }
 
 TEST(HashGrid, DeclinesRaysByAConceptAndWithASentence) {

@@ -176,6 +176,13 @@ TEST(Models, PolygonsKeepTheValuesOfEachCorner) {
     EXPECT_NE(load_mesh(folder / "a.obj").triangles[1], (TriangleIndices{0, 2, 3}));
 }
 
+TEST(Models, ObjVerticesMayHaveComments) {
+    TempFolder folder;
+    const auto model = load_model(folder.file(
+        "a.obj", "v 0 0 0 # vertex 1 of 3\nv 1 0 0 1.0 # w\nv 0 1 0 1 1 1 # white\nf 1 2 3 # a face\n"));
+    EXPECT_EQ(model.triangles(), 1u);
+    EXPECT_EQ(model.objects[0].attributes.colours.values.size(), 3u);
+}
 TEST(Models, ObjCornersMayLackValues) {
     TempFolder folder;
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";

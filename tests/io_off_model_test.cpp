@@ -1,4 +1,6 @@
 /// Normals, colours and texture coordinates of OFF files.
+#include <bit>
+
 #include "chart.h"
 #include "model_support.h"
 
@@ -43,6 +45,23 @@ TEST(OffModels, ChartsComeOutExactly) {
     const std::string three = "OFF 3 24 0\n0 0 0\n1 0 0\n0 1 0\n";
     expect_chart(load_model(folder.file("b.off", three + faces)), 1);
     expect_chart(load_model(folder.file("c.off", three + floats)), 0.5f);
+}
+
+/// Floats of binary files are shares, also where they are whole numbers.
+TEST(OffModels, ColoursOfBinaryFiles) {
+    TempFolder folder;
+    std::string bytes = "OFF BINARY\n";
+    const auto add = [&](auto number) {
+        auto word = std::bit_cast<std::uint32_t>(number);
+        for (int k = 3; k >= 0; --k) bytes += static_cast<char>(word >> 8 * k & 255);
+    };
+    for (const std::uint32_t count : {3u, 1u, 3u}) add(count);
+    for (const float x : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) add(x);
+    for (const std::uint32_t number : {3u, 0u, 1u, 2u, 4u}) add(number);
+    for (const float x : {1.f, 0.f, 0.5f, 1.f}) add(x);
+    const auto model = load_model(folder.file("a.off", bytes));
+    ASSERT_EQ(model.objects[0].attributes.colours.values.size(), 1u);
+    EXPECT_EQ(model.objects[0].attributes.colours.values[0], (Rgba{Vec3f(1, 0, 0.5f), 1}));
 }
 
 TEST(OffModels, ValuesOfVertices) {

@@ -66,6 +66,23 @@ TEST(ParticleFile, RefusesBadInput) {
     EXPECT_THROW(load_state(folder.file("speed.csv", "1 2 3 0 inf 0 1\n")), InputError);
     EXPECT_THROW(load_state(folder.file("mass.csv", "x,y,z,mass\n1,2,3,nan\n")), InputError);
     EXPECT_THROW(load_state(folder.file("far.xyz", "1 2 3\n1e200 0 0\n")), InputError);
+    EXPECT_THROW(load_state(folder.file("force.csv", "1 2 3 0 0 0 1 0 0 nan 0 5\n")), InputError);
+    EXPECT_THROW(load_state(folder.file("time.csv", "1 2 3 0 0 0 1 0 0 0 0 inf\n")), InputError);
+    // A bad number is none of a file with fewer columns.
+    const std::string named = "x,y,z,vx,vy,vz,mass\n0,0,0,0,0,0,5\n";
+    for (const std::string& text : {named + "1,0,0,0,1,0,abc\n", named + "1,0,0,0,1,0,\n",
+                                    std::string("1 2 3 0 0 0 1\n1 2 3 0 0 x 1\n")})
+        try {
+            load_state(folder.file("number.csv", text));
+            FAIL() << text;
+        } catch (const InputError& fault) {
+            EXPECT_NE(std::string(fault.what()).find("where a number should stand"), std::string::npos)
+                << fault.what();
+        }
+    EXPECT_THROW(load_state(folder.file("text.json", R"({"x":1,"y":2,"z":3,"mass":"7"})")), InputError);
+    EXPECT_THROW(save_state(folder / "a.npy", load_state(folder.file("at.csv", "x,y,z\n1,2,3\n"))),
+                 InputError);
+    EXPECT_THROW(save_state(folder / "a.npy.gz", Motion(plummer(10)).state()), UsageError);
     MotionState state;
     EXPECT_THROW(save_state(folder / "a.xyz", state), UsageError);
     EXPECT_THROW(save_state(folder / "no/a.npy", state), OutputError);

@@ -356,5 +356,31 @@ TEST(NeighboursOfClumps, AreListedInParts) {
     EXPECT_EQ(lists.ids.back(), 4000u);
 }
 
+/// More cells along each axis than keys have room for, because of one point that is far away.
+TEST(NeighboursOfManyPoints, AreFoundBesideAFarOne) {
+    Points<double, 3> points;
+    for (std::uint64_t i = 0; i < 1300000; ++i) {
+        Random random(19, i);
+        points.push_back({random.uniform(), random.uniform(), random.uniform()});
+    }
+    points[7] = points[1299999] + Vec3d(0, 0x1p-40, 0);
+    points.push_back({1e9, 1e9, 1e9});
+    NearLists<double> lists;
+    neighbours_within(points, 1e-11, lists);
+    ASSERT_EQ(lists.count(), 2u);
+    EXPECT_EQ(lists[7].ids[0], 1299999u);
+    EXPECT_EQ(neighbours_within(points, Points<double, 3>{{1e9, 1e9, 1e9}}, 1).count(), 1u);
+}
+/// Places so many periods away that differences are rounded: by the rule, whatever the instruction set.
+TEST(NeighboursInPeriods, AreThoseOfTheRuleFarFromZero) {
+    const Points<double, 3> points = {{1e15 + 0.25, 0, 0}, {0.1, 0, 0}};
+    const Periods<3> periods{1, 0, 0};
+    const bool near = image_distance2(points[0], points[1], periods) <= 0.13 * 0.13;
+    for (const auto set : instruction_sets()) {
+        const Using use(set);
+        EXPECT_EQ(neighbours_within(points, 0.13, {.periods = periods}).count(), near ? 2u : 0u) << set;
+    }
+}
+
 }  // namespace
 }  // namespace hedgerow

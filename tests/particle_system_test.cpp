@@ -78,6 +78,8 @@ TEST(ParticleSystem, DragHasItsClosedForm) {
             length(fly(a, b, steps).velocities[0] - (wind + u * (a / ((a + b * speed) * grown - b * speed)))),
             1e-13);
     }
+    // As dust in honey: eᵃᵗ is beyond double.
+    for (const double strong : {1e3, 1e100}) EXPECT_EQ(fly(strong, 0.3, 2).velocities[0], wind);
     const Vec3d place = wind * 2.0 + u * ((1 - std::exp(-1.4)) / 0.7);
     const double coarse = length(fly(0.7, 0, 16).places[0] - place),
                  fine = length(fly(0.7, 0, 32).places[0] - place);
@@ -359,6 +361,16 @@ TEST(ParticleSystem, EmitsInTime) {
     EXPECT_NEAR(std::sqrt(sum2 / 100 - sum * sum / 1e4), 0.25 / std::sqrt(3.0), 0.02);
 }
 /// Places of birth are even over discs, boxes and surfaces, and directions over a cone.
+TEST(ParticleSystem, RefusesMoreBirthsThanNumbers) {
+    Options options;
+    ParticleEmitter emitter;
+    emitter.rate = 100;
+    options.emitters = {emitter};
+    ParticleState late;
+    late.time = 1e18;
+    ParticleSystem system(options, nullptr, late);
+    EXPECT_THROW(system.step(1), InputError);
+}
 TEST(ParticleSystem, EmitsFromShapes) {
     const auto mean_of = [](const Options& options, auto measure, const MeshIndex<double>* mesh = nullptr) {
         ParticleSystem system(options, mesh);

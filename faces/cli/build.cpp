@@ -128,7 +128,7 @@ Run add_build(CLI::App& verb) {
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     return [a] {
-        if (!names_index_file(a->output))
+        if (!names_index_file(a->output) || a->output.ends_with(".gz"))
             throw UsageError(a->output + ": a saved index is known by its ending; call it NAME.hedgerow");
         if (a->structure != "wide")
             throw UsageError(a->structure +

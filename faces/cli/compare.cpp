@@ -65,9 +65,9 @@ std::optional<Camera> placed_camera(const CompareArguments& a, const P& primitiv
 void check_structures(const std::vector<std::string>& structures, int dimension) {
     for (const std::string& s : structures) {
         if (dimension == 3)
-            build_any(s, PointCloud<float, 3>{{{0, 0, 0}}});
+            build_any(s, PointCloud<float, 3>{{{0, 0, 0}}}.view());
         else
-            build_any(s, PointCloud<float, 2>{{{0, 0}}});
+            build_any(s, PointCloud<float, 2>{{{0, 0}}}.view());
     }
 }
 

@@ -62,7 +62,8 @@ Run add_flow(CLI::App& verb) {
     verb.add_option("--threads", a->threads, "0: all")->capture_default_str();
     add_reporting(verb, *a);
     add_drop_bad(verb, *a);
-    return [a, until, every, spacing, viscosity, sound, gravity] {
+    return [a, &verb, until, every, spacing, viscosity, sound, gravity] {
+        if (a->resume) expect_no_options_of_a_run(verb);
         const auto expect = [](const CLI::Option* option, double number, bool good, const char* what) {
             if (option->count() > 0 && !(good && number < 1e100))
                 throw UsageError(fmt::format("{} {:g}: give {}", option->get_name(), number, what));

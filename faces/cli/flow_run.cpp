@@ -125,13 +125,14 @@ public:
         return m;
     }
     void snapshot(std::uint64_t step, const FluidFlow<D>& flow) {
-        save_snapshot(folder_.snapshot(step), flow);
         if (size_)
             save_png(folder_.picture(step),
                      flow_picture(a_, scene_, flow.state(), size_->first, size_->second), {},
                      picture_notes(a_.seed));
         if constexpr (D == 3)
             if (!a_.surface.empty()) save_surface(step, flow);
+        // Last: a run goes on behind its last snapshot, and makes what comes before it again.
+        save_snapshot(folder_.snapshot(step), flow);
     }
     /// Writes up to twelve pictures of the run side by side.
     void sheet() const {
@@ -330,10 +331,16 @@ int flow_run(FlowArguments a) {
         step = folder.last_step();
     } else {
         folder.expect_none();
+        if (a.size != no_pictures && a.size != "auto") check_picture_memory(a.size, false);
     }
     FlowScene<D> scene = flow_scene<D>(a);
     if (a.until < 0) a.until = scene.until;
-    if (a.every < 0) a.every = a.until / 20;
+    if (a.every < 0) a.every = (a.until > 0 ? a.until : scene.until) / 20;
+    folder.expect_lengths({a.every});
+    // Lines of the log have times of their own. An end that is about at one is that one.
+    const double of_line = a.every / log_lines_per_snapshot,
+                 at_line = std::round(a.until / of_line) * of_line;
+    if (std::abs(at_line - a.until) <= 1e-9 * a.until) a.until = at_line;
     FluidState<D> start = a.resume ? load_snapshot<D>(folder.snapshot(step)) : scene.start;
     FluidFlow<D> flow(std::move(start), scene.walls, scene.options);
     const double steps_left = (a.until - flow.state().time) / flow.longest_step();

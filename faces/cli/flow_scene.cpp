@@ -72,7 +72,10 @@ FlowScene<D> generated(const FlowArguments& a) {
     // Other gravity changes how fast the fluid becomes, and what its weight compresses.
     const double weight = a.gravity / 9.81;
     scene.options.gravity = scene.options.gravity * weight;
-    if (weight > 0) scene.options.sound *= std::sqrt(weight), scene.until /= std::sqrt(weight);
+    if (weight > 0)
+        scene.options.sound *= std::sqrt(weight), scene.until /= std::sqrt(weight);
+    else
+        std::fill(scene.start.compressions.begin(), scene.start.compressions.end(), 0.0);
     for (auto& v : scene.start.velocities) v = v * std::sqrt(weight);
     if (a.sound > 0)
         for (double& c : scene.start.compressions) c *= std::pow(scene.options.sound / a.sound, 2);
@@ -205,6 +208,9 @@ FlowScene<D> flow_scene(const FlowArguments& a) {
         else
             throw UsageError("--walls are meshes, in space: leave --plane out");
     }
+    // By the start, also where a run goes on.
+    if (scene.options.sound == 0 && a.sound <= 0 && a.gravity > 0)
+        scene.options = filled_in(scene.options, scene.start, scene.walls);
     if (!a.inflow.empty()) {
         if constexpr (D == 3)
             add_inflow(a, scene);

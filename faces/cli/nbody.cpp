@@ -14,6 +14,7 @@
 #include <hedgerow/nbody/force_check.h>
 #include <hedgerow/nbody/forces.h>
 
+#include "run_folder.h"
 #include "verbs.h"
 
 namespace hedgerow::cli {
@@ -49,6 +50,15 @@ int nbody_forces(const NbodyArguments& a) {
     }
     const std::size_t count = a.from.empty() ? all.size() : targets.size();
     std::vector<PotentialAt<double>> found(count);
+    // A row a target.
+    const auto list = [&](auto& f, const PotentialAt<double>& at) {
+        f("potential", -a.gravity * at.potential);
+        f("ax", a.gravity * at.gradient[0]), f("ay", a.gravity * at.gradient[1]);
+        f("az", a.gravity * at.gradient[2]);
+    };
+    ColumnList columns;
+    list(columns, {});
+    RowWriter out(a.output, format, columns.all, count);  // fails before the work is done
     const double began = now();
     {
         ProgressLine line("finding forces", a.quiet, "particles");
@@ -60,6 +70,11 @@ int nbody_forces(const NbodyArguments& a) {
                            {.accuracy = a.accuracy, .threads = watched});
     }
     const double seconds = now() - began;
+    std::string records;
+    append_records(records, count, 4 * sizeof(double),
+                   [&](std::size_t i, Record& record) { list(record, found[i]); });
+    out.write(out.encode(std::move(records)), count);
+    out.finish();
     std::optional<ForceErrors> errors;
     if (a.check) {
         ProgressLine line("checking forces", a.quiet, "particles");
@@ -67,21 +82,8 @@ int nbody_forces(const NbodyArguments& a) {
         errors = ForceCheck(charges, 1000, watched).errors_of<double>(found);
     }
     const bool kept = !errors || (errors->rms <= a.accuracy && errors->most <= 10 * a.accuracy);
-    // Write a row a target.
-    const auto list = [&](auto& f, const PotentialAt<double>& at) {
-        f("potential", -a.gravity * at.potential);
-        f("ax", a.gravity * at.gradient[0]), f("ay", a.gravity * at.gradient[1]);
-        f("az", a.gravity * at.gradient[2]);
-    };
-    ColumnList columns;
-    list(columns, {});
-    RowWriter out(a.output, format, columns.all, count);
-    std::string records;
-    append_records(records, count, 4 * sizeof(double),
-                   [&](std::size_t i, Record& record) { list(record, found[i]); });
-    out.write(out.encode(std::move(records)), count);
-    out.finish();
-    if (a.json) {
+    const bool to_pipe = a.output == "-";
+    if (a.json && !to_pipe) {
         nlohmann::ordered_json report = {{"output", a.output},
                                          {"particles", all.size()},
                                          {"targets", count},
@@ -93,10 +95,13 @@ int nbody_forces(const NbodyArguments& a) {
                                 {"imbalance", errors->imbalance},       {"kept", kept}};
         print_json(report);
     } else if (!a.quiet) {
-        fmt::print("{}: {} rows of potential and acceleration, within {:g}, in {:.3f} s ({:.3g} million/s)\n",
+        std::FILE* const to = to_pipe ? stderr : stdout;
+        fmt::print(to,
+                   "{}: {} rows of potential and acceleration, within {:g}, in {:.3f} s ({:.3g} million/s)\n",
                    a.output, count, a.accuracy, seconds, static_cast<double>(count) / seconds / 1e6);
         if (errors)
             fmt::print(
+                to,
                 "errors at {} of them: rms {:.1e}, all but a thousandth below {:.1e}, the largest {:.1e}; "
                 "all forces add up to {:.1e} of the sum of their sizes\n",
                 errors->targets, errors->rms, errors->most, errors->largest, errors->imbalance);
@@ -159,7 +164,8 @@ Run add_nbody(CLI::App& verb) {
     verb.add_option("--gravity", a->gravity, "the constant of gravity")->capture_default_str();
     verb.add_option("--threads", a->threads, "0: all")->capture_default_str();
     add_reporting(verb, *a);
-    return [a, until, dt, every, softening, period] {
+    return [a, &verb, until, dt, every, softening, period] {
+        if (a->resume) expect_no_options_of_a_run(verb);
         const auto expect = [](const CLI::Option* option, double number, bool good, const char* what) {
             if (option->count() > 0 && !good)
                 throw UsageError(fmt::format("{} {:g}: give {}", option->get_name(), number, what));

@@ -61,6 +61,7 @@ void read_options(const RunFolder& folder, NbodyArguments& a, DensityFrame& fram
         const auto& of_frame = options.at("frame");
         frame = {{of_frame.at("x"), of_frame.at("y")}, of_frame.at("half_height"), of_frame.at("most")};
     });
+    folder.expect_lengths({a.every, a.dt});
 }
 
 class Recorder {
@@ -82,13 +83,14 @@ public:
                               length(sums.angular_momentum), found, now() - began_));
     }
     void snapshot(std::uint64_t step, const MotionState& state) {
+        if (width_ > 0)
+            save_png(folder_.picture(step),
+                     density_picture(state.particles, frame_, width_, height_,
+                                     {fmt::format("t = {:.4g}", state.time),
+                                      fmt::format("{} particles", state.particles.size())}),
+                     {}, picture_notes(seed_));
+        // Last: a run goes on behind its last snapshot, and makes what comes before it again.
         save_state(folder_.snapshot(step), state, period_);
-        if (width_ == 0) return;
-        save_png(folder_.picture(step),
-                 density_picture(state.particles, frame_, width_, height_,
-                                 {fmt::format("t = {:.4g}", state.time),
-                                  fmt::format("{} particles", state.particles.size())}),
-                 {}, picture_notes(seed_));
     }
 
 private:
@@ -163,6 +165,8 @@ int nbody_run(NbodyArguments a) {
         folder.hold(a.snapshots);
         if (a.size != no_pictures) check_memory_of_pixels(a.size, memory_of_density_pixel);
         start = load_particles(a);
+        // Those of a snapshot are of its own gravity, softening and period.
+        start.accelerations.clear(), start.potentials.clear();
         folder.make();
         a.softening = softening_of(a, start.particles).length;
     }
@@ -173,6 +177,7 @@ int nbody_run(NbodyArguments a) {
     const Conserved before = conserved(motion.state());
     if (first) {
         choose_steps(a, motion.state(), options);
+        if (a.every <= 0) a.every = 10 * a.dt;  // of a run that ends at 0, which may go on
         if (a.size != no_pictures) {
             const auto [width, height] = parse_size(a.size);
             frame = DensityFrame::around(motion.state().particles, width, height, a.period);

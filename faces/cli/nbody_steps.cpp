@@ -7,12 +7,12 @@
 namespace hedgerow::cli {
 
 void choose_steps(NbodyArguments& a, const MotionState& start, const MotionOptions& options) {
-    if (a.every <= 0) a.every = a.until / 10;
+    if (a.every <= 0 && a.until > 0) a.every = a.until / 10;
     if (a.dt > 0) return;
     a.dt = usual_step(start, a.softening, a.eta, a.gravity) * (a.block_steps ? 8 : 1);
     // Steps end at snapshots and where the run ends.
     const double longest = std::min(a.every, a.until);
-    if (longest > 0) a.dt = longest / std::ceil(longest / a.dt - 1e-6);
+    if (longest > 0) a.dt = longest / std::max(1.0, std::ceil(longest / a.dt - 1e-6));
     const auto& masses = start.particles.masses;
     const bool attract =
         conserved(start).potential < 0 && std::ranges::none_of(masses, [](double mass) { return mass < 0; });

@@ -98,8 +98,9 @@ public:
                               mean_speed(state), now() - began_));
     }
     void snapshot(std::uint64_t step, const ParticleState& state) {
-        save_snapshot(folder_.snapshot(step), state);
         if (picture_) save_png(folder_.picture(step), picture_->draw(state), {}, picture_notes(seed_));
+        // Last: a run goes on behind its last snapshot, and makes what comes before it again.
+        save_snapshot(folder_.snapshot(step), state);
     }
 
 private:
@@ -148,6 +149,7 @@ int particles_run(ParticlesArguments a) {
         if (a.view.size != no_pictures) check_picture_memory(a.view.size, false);
     }
     const ParticlesScene scene(a);
+    folder.expect_lengths({a.every, a.dt});
     // Steps end at snapshots, and are of one length. The time of step i is i·dt.
     const std::uint64_t steps_between =
         static_cast<std::uint64_t>(std::max(1.0, std::ceil(std::min(a.every / a.dt, 1e15) - 1e-6)));
@@ -239,6 +241,7 @@ Run add_particles(CLI::App& verb) {
     add_drop_bad(verb, *a);
     return [a, &verb] {
         expect_numbers(verb);
+        if (a->resume) expect_no_options_of_a_run(verb);
         if (a->scene.empty() && !a->resume) throw UsageError("name the mesh: gen:teapot, or a file");
         if (a->output.empty()) throw UsageError("name the folder of the run: -o run");
         if (a->resume && a->until < 0) throw UsageError("--resume: say until when, as --until 8");

@@ -45,7 +45,8 @@ void ParticlesScene::choose(ParticlesArguments& a, const Box3d& box, std::size_t
     set_unless_given(a.gravity, 4 * size);
     const double time = a.gravity > 0 ? std::sqrt(size / a.gravity) : 0.5;
     const bool sparks = a.emit == "sparks", rain = a.emit == "rain";
-    set_unless_given(a.until, 8 * time), set_unless_given(a.every, a.until / 8);
+    set_unless_given(a.until, 8 * time);
+    set_unless_given(a.every, a.until > 0 ? a.until / 8 : time);
     set_unless_given(a.dt, 0.01 * time);
     set_unless_given(a.rate, (sparks ? 2500 : rain ? 200 : 300) / time);
     set_unless_given(a.life, (sparks ? 1 : 8) * time);

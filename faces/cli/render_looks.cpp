@@ -24,9 +24,16 @@ namespace {
 template <class T>
 Model<T> load_looks(const RenderArguments& a) {
     if (a.scene.starts_with("gen:")) {
+        SceneSpec spec = parse_scene_spec(a.scene);
+        spec.seed = a.seed;
+        check_memory(spec);
         ProgressLine line("generating " + a.scene, a.quiet, "triangles");
-        return generate_model<T>(parse_scene_spec(a.scene), line.progress());
+        return generate_model<T>(spec, line.progress());
     }
+    if (a.drop_bad)
+        throw UsageError(
+            "--drop-bad leaves no looks: write the file without them (hedgerow convert --drop-bad), "
+            "or choose another --shading");
     Model<T> model = [&] {
         ProgressLine line("loading " + a.scene, a.quiet, "bytes");
         return load_model<T>(a.scene, {}, line.progress());

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <hedgerow/base/error.h>
@@ -17,6 +18,15 @@ namespace hedgerow::cli {
 
 namespace fs = std::filesystem;
 
+void expect_no_options_of_a_run(const CLI::App& verb) {
+    constexpr std::string_view others[] = {"--resume",  "--output", "--until", "--check",
+                                           "--threads", "--json",   "--quiet", "--help"};
+    for (const CLI::Option* option : verb.get_options())
+        if (option->count() > 0 && std::ranges::find(others, option->get_name()) == std::end(others))
+            throw UsageError(fmt::format("{} is that of the run, which --resume goes on with: leave it out",
+                                         option->get_name()));
+}
+
 fs::path RunFolder::snapshot(std::uint64_t step) const {
     return path_ / fmt::format("snapshot-{:07}{}", step, ending_);
 }
@@ -24,6 +34,12 @@ fs::path RunFolder::picture(std::uint64_t step) const {
     return path_ / fmt::format("picture-{:07}.png", step);
 }
 
+void RunFolder::expect_lengths(std::initializer_list<double> lengths) const {
+    for (const double length : lengths)
+        if (!(length > 0 && length < 1e300))
+            throw InputError(fmt::format("{}: a step or the time between snapshots is {} long: it is above 0",
+                                         options().string(), length));
+}
 void RunFolder::expect_none() const {
     if (fs::exists(options()))
         throw UsageError(path_.string() + " holds a run; go on with it by --resume, or name another folder");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,10 +13,17 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+namespace CLI {
+class App;
+}
+
 namespace hedgerow::cli {
 
 /// The --size of a run without pictures.
 inline constexpr std::string_view no_pictures = "0x0";
+
+/// Throws UsageError for options that run.json has of a run that goes on, and that would be ignored.
+void expect_no_options_of_a_run(const CLI::App& verb);
 
 /// The files of a run: its options, its log, and snapshots and pictures by the number of their step.
 class RunFolder {
@@ -46,6 +54,8 @@ public:
     /// Calls `read` with the options of run.json. Throws InputError if there are none, and with the file's
     /// name for what `read` does not find in them.
     void read_options(const std::function<void(const nlohmann::ordered_json&)>& read) const;
+    /// Throws InputError for lengths of time in run.json that no run goes on with: each is above 0.
+    void expect_lengths(std::initializer_list<double> lengths) const;
 
 private:
     std::filesystem::path path_;

@@ -121,11 +121,18 @@ public:
     /// The solid whose surface the primitives are, in O(n). Throws as the constructor of Solid does.
     virtual std::unique_ptr<const AnySolid<T, D>> make_solid(const SolidOptions& options = {},
                                                              Threads threads = {}) const = 0;
-    /// The solid with the default options. It is made at the first call, and kept until the index changes.
+    /// The solid with the default options. It is made at the first call, and kept until the index changes. A
+    /// few threads that ask first at the same time may each make it; one of these is kept.
     const AnySolid<T, D>& solid() const {
-        const std::lock_guard lock(making_solid_);
-        if (!solid_) solid_ = make_solid();
-        return *solid_;
+        const auto kept = [&](auto make) -> const AnySolid<T, D>* {
+            const std::lock_guard lock(keeping_solid_);
+            if (!solid_) solid_ = make();
+            return solid_.get();
+        };
+        if (const auto* const solid = kept([] { return nullptr; })) return *solid;
+        // Not under the lock: a thread that waits for others here may take up work that asks for the solid.
+        auto made = make_solid();
+        return *kept([&] { return std::move(made); });
     }
 
     /// Calls a function for the structure's cells, parents before their children (walks/outline.h).
@@ -187,7 +194,7 @@ protected:
     virtual void walk_leaves(LeafQuery<BoxProbe<T, D>>& query) const = 0;
 
 private:
-    mutable std::mutex making_solid_;
+    mutable std::mutex keeping_solid_;
     mutable std::unique_ptr<const AnySolid<T, D>> solid_;
 
     template <class Q, class Count, class... Arguments>
@@ -383,6 +390,11 @@ template <class P>
 auto build_any(std::string_view spec, const P& primitives, Threads threads = {}) {
     return detail::build_any_over(spec, view_of(primitives), threads.over(primitives.size()));
 }
+/// Primitives that would be gone after the call: only views of the caller's arrays may be temporary.
+template <class P>
+requires(!std::is_reference_v<P> &&
+         !std::same_as<std::remove_const_t<P>, ViewOf<P>>) void build_any(std::string_view, P&&,
+                                                                          Threads = {}) = delete;
 /// An AnyIndex from an existing index of triangles or points in a WideBvh, built or loaded (io/index_file.h).
 /// T is float or double.
 template <std::floating_point T>

@@ -63,9 +63,9 @@ IndexOver<TriangleMeshView<T>> over_triangles(const AnyIndex<T, 3>& any) {
     refuse_pairs("crossings are those of triangles");
 }
 template <std::floating_point T, int D>
-PointCloudView<T, D> points_in(const AnyIndex<T, D>& any) {
+IndexOver<PointCloudView<T, D>> over_points(const AnyIndex<T, D>& any) {
     const auto set = any.set();
-    if (const auto* const cloud = std::get_if<PointCloudView<T, D>>(&set)) return *cloud;
+    if (const auto* const cloud = std::get_if<PointCloudView<T, D>>(&set)) return {any, *cloud};
     refuse_pairs("pairs within a radius are those of points");
 }
 
@@ -116,16 +116,13 @@ bool any_self_intersection(const AnyIndex<T, 3>& index) {
 template <std::floating_point T, int D>
 std::size_t pairs_within(const AnyIndex<T, D>& index, double radius, std::vector<PairWithin<T>>& found,
                          const PairOptions& options = {}) {
-    const PointCloudView<T, D> cloud = detail::points_in(index);
-    return detail::CellNeighbours<T, D>::pairs(cloud.points(), square_within<T>(radius), found,
-                                               options.threads);
+    return detail::list_pairs_within(detail::over_points(index), radius, found, options.threads);
 }
 template <std::floating_point T, int D>
 std::size_t pairs_within(const AnyIndex<T, D>& a, const AnyIndex<T, D>& b, double radius,
                          std::vector<PairWithin<T>>& found, const PairOptions& options = {}) {
-    const PointCloudView<T, D> of_a = detail::points_in(a), of_b = detail::points_in(b);
-    return detail::CellNeighbours<T, D>::pairs(of_a.points(), of_b.points(), square_within<T>(radius), found,
-                                               options.threads);
+    return detail::list_pairs_within(detail::over_points(a), detail::over_points(b), radius, found,
+                                     options.threads);
 }
 
 template <std::floating_point T, int D>

@@ -56,6 +56,7 @@ public:
     using Scalar = typename I::Scalar;
 
     explicit Caster(const I& index) : closest_(index), any_(index) {}
+    explicit Caster(const I&&) = delete;  // the index must outlive it
 
     /// The hit of least t in [t_min, t_max]; a Hit that is false if nothing is hit.
     Hit<Scalar> closest_hit(const RayOf<I>& ray) const { return closest_(ray); }

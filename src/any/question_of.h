@@ -41,7 +41,10 @@ public:
     using Rows = RowsOf<Given>;
 
     const QuestionInfo& info() const override { return info_; }
-    bool answered_by(const AnyIndex<T, D>& index) const override { return answers<Question>(index); }
+    bool answered_by(const AnyIndex<T, D>& index) const override {
+        const bool of_points = std::holds_alternative<PointCloudView<T, D>>(index.set());
+        return answers<Question>(index) && !(info_.of_rays && of_points);
+    }
     void answer(const RowsAsked<T, D>& asked, const T* rows, std::uint64_t first, std::size_t count,
                 AnsweredRows& answers) const override {
         if (info_.of_solid && asked.solid == nullptr)

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <thread>
 
 #ifndef HEDGEROW_HAS_TBB
 #define HEDGEROW_HAS_TBB 1
@@ -108,8 +109,7 @@ public:
 /// Runs work by another executor inside an arena of few threads.
 class ArenaExecutor final : public Executor {
 public:
-    explicit ArenaExecutor(std::size_t threads)
-        : arena_(static_cast<int>(std::min<std::size_t>(threads, std::numeric_limits<int>::max()))) {}
+    explicit ArenaExecutor(std::size_t threads) : arena_(static_cast<int>(threads)) {}
 
     void for_each_piece(std::size_t count, std::size_t grain,
                         FunctionRef<void(std::size_t, std::size_t)> body) override {
@@ -132,9 +132,12 @@ Executor& default_executor() {
 Executor& executor_of(std::size_t threads) {
     if (threads == 0) return default_executor();
     if (threads == 1) return serial_executor();
+    // An arena takes memory for each of its threads, but no more work than there are cores.
+    static const auto most = std::max<std::size_t>(std::thread::hardware_concurrency(), 64);
     static std::mutex making;
     static std::map<std::size_t, ArenaExecutor> made;
     const std::lock_guard lock(making);
+    threads = std::min(threads, most);
     return made.try_emplace(threads, threads).first->second;
 }
 ThreadLimit::ThreadLimit(unsigned threads) {

@@ -44,18 +44,38 @@ public:
     }
     double unit() const { return unit_; }
     /// Whether there is a number for a place.
-    bool holds(double place) const { return std::abs(place * per_unit_) < 0x1p50; }
+    bool holds(double place) const { return std::abs(place * per_unit_) < most_units; }
+    double farthest() const { return most_units * unit_; }
     std::uint32_t operator()(double place) const {
         // The last bits of the sum are those of the nearest integer.
         return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(place * per_unit_ + 0x1.8p52));
     }
 
 private:
+    static constexpr double most_units = 0x1p50;
     double unit_ = 1, per_unit_ = 1;
 };
 
+template <class T>
+void expect_size(const char* what, const std::vector<T>& array, std::size_t n) {
+    if (array.size() != n)
+        throw InputError(std::to_string(n) + " places and " + std::to_string(array.size()) + " " + what +
+                         ": give one of each a particle");
+}
+
+template <int D>
+void expect_finite(const char* what, const std::vector<Vec<double, D>>& places) {
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (!finite(places[i]))
+            throw InputError(std::string(what) + " " + std::to_string(i) +
+                             " has a coordinate that is NaN or infinite: leave it out");
+}
+
+}  // namespace
+
 template <int D>
 FluidOptions<D> filled_in(FluidOptions<D> o, const FluidState<D>& start, const FluidWalls<D>& walls) {
+    expect_finite("particle", start.places), expect_finite("particle of the walls", walls.places);
     const auto finite = [](double x) { return std::abs(x) <= 0x1p100; };
     expect(o.spacing > 0x1p-100 && finite(o.spacing), "a spacing", o.spacing);
     expect(o.sound >= 0 && finite(o.sound), "a speed of sound", o.sound);
@@ -82,15 +102,6 @@ FluidOptions<D> filled_in(FluidOptions<D> o, const FluidState<D>& start, const F
     }
     return o;
 }
-
-template <class T>
-void expect_size(const char* what, const std::vector<T>& array, std::size_t n) {
-    if (array.size() != n)
-        throw InputError(std::to_string(n) + " places and " + std::to_string(array.size()) + " " + what +
-                         ": give one of each a particle");
-}
-
-}  // namespace
 
 /// The state of a flow, and the arrays that steps use again.
 template <int D>
@@ -189,8 +200,8 @@ private:
                 for (int k = 0; k < D; ++k)
                     if (!axes_[static_cast<std::size_t>(k)].holds(middle_[i][k]))
                         throw InputError("particle " + std::to_string(i) +
-                                         " has a coordinate that is NaN, infinite or farther from 0 than "
-                                         "2^28 smoothing lengths");
+                                         " has a coordinate that is NaN, infinite or farther from 0 than " +
+                                         std::to_string(axes_[static_cast<std::size_t>(k)].farthest()));
             }
             const std::lock_guard lock(joining);
             box_.expand(here);
@@ -488,5 +499,7 @@ const std::vector<float>& FluidFlow<D>::fills() const {
 
 template class FluidFlow<2>;
 template class FluidFlow<3>;
+template FluidOptions<2> filled_in(FluidOptions<2>, const FluidState<2>&, const FluidWalls<2>&);
+template FluidOptions<3> filled_in(FluidOptions<3>, const FluidState<3>&, const FluidWalls<3>&);
 
 }  // namespace hedgerow

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -116,6 +117,12 @@ double birth(const ParticleEmitter& e, std::uint64_t k) {
 std::uint64_t births_before(const ParticleEmitter& e, double time) {
     const double until = std::min(time, e.end);
     if (!(e.rate > 0 && birth(e, 0) < until)) return 0;
+    constexpr std::uint64_t most = std::uint64_t(1) << 53;
+    if (birth(e, most) < until)
+        throw InputError(
+            "particle system: an emitter would have given birth to more than 2^53 particles before "
+            "the time " +
+            std::to_string(time) + ": give a lower rate, or an earlier time");
     std::uint64_t before = 0, after = 1;
     while (birth(e, after) < until) before = after, after *= 2;
     while (after - before > 1) {
@@ -175,8 +182,10 @@ Vec3d accelerated(const Vec3d& velocity, double time, const ParticleForces& forc
     if (a == 0 && b == 0) return velocity + forces.gravity * time;
     const Vec3d kick = forces.gravity * (time / 2), u = velocity + kick - forces.wind;
     // (eˣ − 1)/x without a loss of digits (Kahan): the error of eˣ is in its logarithm too.
-    const double grown = exponential(product(a, time)),
-                 mean = grown == 1 ? 1 : (grown - 1) / logarithm(grown);
+    const double grown = exponential(product(a, time));
+    if (!(grown < std::numeric_limits<double>::infinity()))
+        return forces.wind + kick;  // the air takes it along
+    const double mean = grown == 1 ? 1 : (grown - 1) / logarithm(grown);
     const double slowed = grown + product(product(b, length(u)), product(mean, time));
     return forces.wind + u / slowed + kick;
 }

@@ -112,15 +112,19 @@ void CsvRows::begin(bool has_names) {
             std::string all;
             for (std::size_t i = 0; i < columns_.required(); ++i)
                 all += (i == 0 ? "" : ", ") + columns_.names[i];
-            fail(shown(fields_[0]) + " is no number, and the line does not name the column " +
-                 columns_.names[place_.size()] + ". Name the columns " + all +
-                 ", or leave the line out if it is no row");
+            fail_for_columns([&] {
+                fail(shown(fields_[0]) + " is no number, and the line does not name the column " +
+                     columns_.names[place_.size()] + ". Name the columns " + all +
+                     ", or leave the line out if it is no row");
+            });
         }
         if (place_.size() < columns_.size()) place_.resize(columns_.required());
         width_ = fields_.size();
         return;
     }
     // Without names, the columns are in their order.
+    if (!more_ && fields_.size() != columns_.size() && fields_.size() != columns_.required())
+        fail_for_columns([&] { fail_for_width(columns_.required()); });
     width_ = !more_ && fields_.size() == columns_.size() ? columns_.size() : columns_.required();
     place_.resize(width_);
     for (std::size_t i = 0; i < width_; ++i) place_[i] = i;
@@ -128,11 +132,7 @@ void CsvRows::begin(bool has_names) {
 
 template <class T>
 void CsvRows::read_row(T* numbers) {
-    if (fields_.size() < width_ || (fields_.size() > width_ && !more_))
-        fail("has " + std::to_string(fields_.size()) + " columns, not " + std::to_string(width_) +
-             (named_ ? ". Write as many as the first line names"
-                     : ". Leave out the others, or name the columns " + columns_.names[0] + ", " +
-                           columns_.names[1] + ", ... in the first line"));
+    if (fields_.size() < width_ || (fields_.size() > width_ && !more_)) fail_for_width(width_);
     for (std::size_t i = 0; i < place_.size(); ++i) {
         const std::string_view field = fields_[place_[i]];
         const auto x = number<T>(field);
@@ -146,6 +146,12 @@ void CsvRows::read_row(T* numbers) {
         numbers[i] = static_cast<T>(columns_.defaults[i - columns_.required()]);
 }
 
+void CsvRows::fail_for_width(std::size_t width) const {
+    fail("has " + std::to_string(fields_.size()) + " columns, not " + std::to_string(width) +
+         (named_ ? ". Write as many as the first line names"
+                 : ". Leave out the others, or name the columns " + columns_.names[0] + ", " +
+                       columns_.names[1] + ", ... in the first line"));
+}
 void CsvRows::fail(const std::string& what) const {
     lines_.fail(what);
 }

@@ -9,6 +9,7 @@
 
 #include <hedgerow/base/column.h>
 
+#include "other_columns.h"
 #include "text_source.h"
 
 namespace hedgerow::detail {
@@ -40,6 +41,8 @@ private:
     template <class T>
     void read_row(T* numbers);
     [[noreturn]] void fail(const std::string& what) const;
+    /// For a line of another number of fields.
+    [[noreturn]] void fail_for_width(std::size_t width) const;
 
     LineSource lines_;
     InputColumns columns_;

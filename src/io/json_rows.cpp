@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "other_columns.h"
 #include "text.h"
 
 namespace hedgerow::detail {
@@ -162,10 +163,15 @@ bool JsonRows::next(T* numbers) {
     if (!whole) fail(row.wrong.empty() ? "is no row of numbers" : row.wrong);
     const std::size_t found = row.found;
     if (found < columns_.required() || found > columns_.size() ||
-        (row.is_array && found > columns_.required() && found < columns_.size()))
-        fail("has " + std::to_string(found) + " of the " + std::to_string(columns_.required()) +
-             (columns_.defaults.empty() ? "" : " or " + std::to_string(columns_.size())) + " numbers " +
-             columns_.names.front() + ", ..., " + columns_.names.back());
+        (row.is_array && found > columns_.required() && found < columns_.size())) {
+        const auto fail_here = [&] {
+            fail("has " + std::to_string(found) + " of the " + std::to_string(columns_.required()) +
+                 (columns_.defaults.empty() ? "" : " or " + std::to_string(columns_.size())) + " numbers " +
+                 columns_.names.front() + ", ..., " + columns_.names.back());
+        };
+        if (row_ == 0) fail_for_columns(fail_here);
+        fail_here();
+    }
     ++row_;
     return true;
 }

@@ -24,6 +24,7 @@ public:
     void vertex(std::string_view rest, std::uint64_t ordinal, const ObjPlace& place) {
         // Three more numbers are a colour, as a screen shows it; one more is a weight.
         std::array<std::string_view, 3> words;
+        rest = rest.substr(0, rest.find('#'));
         for (auto& word : words) word = take_word(rest);
         if (words[2].empty()) {
             if (!colours_.empty()) append(place.file, colours_, white);

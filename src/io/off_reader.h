@@ -220,12 +220,16 @@ private:
         if (!file_.value(value, std::endian::big)) fail_cut();
         return value;
     }
-    /// So many floats as text, the form in which looks are read.
+    /// So many floats as text, the form in which looks are read: with a point, for whole numbers are others
+    /// in colours.
     std::string_view floats(std::uint32_t count) {
         behind_.clear();
         for (; count > 0; --count) {
             const float x = binary<float>();
-            if (behind_.size() < most_behind) append_number(behind_, x), behind_ += ' ';
+            if (behind_.size() >= most_behind) continue;
+            const std::size_t at = behind_.size();
+            append_number(behind_, x);
+            behind_ += behind_.find_first_of(".en", at) == std::string::npos ? ".0 " : " ";
         }
         return behind_;
     }

@@ -11,6 +11,7 @@
 #include <hedgerow/io/rows.h>
 
 #include "gadget.h"
+#include "other_columns.h"
 #include "text.h"
 
 namespace hedgerow {
@@ -55,7 +56,7 @@ std::size_t read_rows(const std::filesystem::path& path, const Progress& progres
         try {
             rows = open_rows<double>(path, row_format(path), {list}, progress);
             count = rows->read(numbers, most);
-        } catch (const InputError& fault) {
+        } catch (const detail::OtherColumns& fault) {
             if (&list != &column_lists().back()) continue;
             throw InputError(
                 std::string(fault.what()) +
@@ -72,7 +73,8 @@ std::size_t read_rows(const std::filesystem::path& path, const Progress& progres
 
 /// Throws InputError for a number that is not finite, or beyond what coordinates may be. Particles are never
 /// left out, since the forces on all others would be wrong.
-void expect_numbers(const Particles& all, const std::filesystem::path& path) {
+void expect_numbers(const MotionState& state, const std::filesystem::path& path) {
+    const Particles& all = state.particles;
     const auto expect = [&](double x, const char* what, std::size_t i) {
         if (!(std::abs(x) <= largest_coordinate<double>))
             throw InputError(path.string() + ": " + what + " of particle " + std::to_string(i) + " is " +
@@ -84,6 +86,10 @@ void expect_numbers(const Particles& all, const std::filesystem::path& path) {
             expect(all.places[i][k], "a coordinate", i), expect(all.velocities[i][k], "a velocity", i);
         expect(all.masses[i], "the mass", i);
     }
+    for (std::size_t i = 0; i < state.potentials.size(); ++i) expect(state.potentials[i], "the potential", i);
+    for (std::size_t i = 0; i < state.accelerations.size(); ++i)
+        for (int k = 0; k < 3; ++k) expect(state.accelerations[i][k], "an acceleration", i);
+    if (all.size() > 0) expect(state.time, "the time", 0);
 }
 
 MotionState read_state(const std::filesystem::path& path, const Progress& progress) {
@@ -116,11 +122,17 @@ MotionState read_state(const std::filesystem::path& path, const Progress& progre
 
 MotionState load_state(const std::filesystem::path& path, const Progress& progress) {
     MotionState state = read_state(path, progress);
-    expect_numbers(state.particles, path);
+    expect_numbers(state, path);
     return state;
 }
 
 void save_state(const std::filesystem::path& path, const MotionState& state, double period) {
+    for (const std::size_t count : {state.particles.velocities.size(), state.particles.masses.size(),
+                                    state.accelerations.size(), state.potentials.size()})
+        if (count != state.particles.size())
+            throw InputError(path.string() + ": the state has " + std::to_string(state.particles.size()) +
+                             " places, and velocities, masses, accelerations or potentials of " +
+                             std::to_string(count) + ": save that of a Motion, which has found them");
     if (detail::names_hdf5(path)) return detail::save_gadget(path, state, period);
     std::vector<Column> columns;
     columns.reserve(std::size(state_columns));

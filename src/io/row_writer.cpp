@@ -109,6 +109,8 @@ struct RowWriter::State {
 RowWriter::RowWriter(const std::filesystem::path& path, RowFormat format, std::vector<Column> columns,
                      std::optional<std::uint64_t> rows)
     : state_(std::make_unique<State>()) {
+    if (path.extension() == ".gz")
+        throw UsageError(path.string() + ": rows are written without compression; leave .gz out");
     State& s = *state_;
     s.format = format, s.columns = std::move(columns), s.announced = rows;
     for (const Column& c : s.columns) s.record_bytes += size_of(c.type);

@@ -169,8 +169,10 @@ private:
         if (width != wanted_.size() && width != wanted_.required()) {
             std::string all = "(N, " + std::to_string(wanted_.required()) + ")";
             if (!wanted_.defaults.empty()) all += " or (N, " + std::to_string(wanted_.size()) + ")";
-            file_.fail("the array has shape (" + text_of(header.shape) + "), but these rows are " + all +
-                       ": " + names() + ". Reshape it");
+            detail::fail_for_columns([&] {
+                file_.fail("the array has shape (" + text_of(header.shape) + "), but these rows are " + all +
+                           ": " + names() + ". Reshape it");
+            });
         }
         if (header.type.dtype == "b1") file_.fail("the array has truth values where numbers should stand");
         for (std::size_t i = 0; i < width; ++i) add_place(i * header.type.item, header.type);
@@ -186,8 +188,10 @@ private:
             add_place(at->offset, at->type);
         }
         if (places_.size() < wanted_.required())
-            file_.fail("the records have no field '" + wanted_.names[places_.size()] + "'. These rows need " +
-                       names());
+            detail::fail_for_columns([&] {
+                file_.fail("the records have no field '" + wanted_.names[places_.size()] +
+                           "'. These rows need " + names());
+            });
         if (places_.size() < wanted_.size()) places_.resize(wanted_.required());
         row_bytes_ = header.type.item;
     }

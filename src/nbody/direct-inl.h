@@ -6,6 +6,7 @@
 #define HEDGEROW_NBODY_DIRECT_INL_H
 #endif
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -107,7 +108,7 @@ public:
             }
             potential_[i] = gx_[i] = gy_[i] = gz_[i] = hn::Zero(f);
         }
-        squares_ = hn::Zero(f);
+        squares_ = softened_ = hn::Zero(f);
     }
 
     // Adds the sources from `first` to `end`. `with_self`: the targets may be among them.
@@ -145,9 +146,15 @@ public:
                                             hn::Set(f, targets_.reach[at_ + static_cast<std::size_t>(i)]));
                     auto near = hn::Lt(r2, hn::Mul(reach, reach));
                     if constexpr (with_self) near = hn::AndNot(itself, near);
-                    if (HWY_UNLIKELY(!hn::AllFalse(f, near)))
-                        soften(f, kernel_, near, charge, hn::Mul(r2, inverse), reach, of_potential,
-                               of_gradient);
+                    if (HWY_UNLIKELY(!hn::AllFalse(f, near))) {
+                        const V distance = hn::Mul(r2, inverse);
+                        soften(f, kernel_, near, charge, distance, reach, of_potential, of_gradient);
+                        // A rounding of the target changes all these by the same, for they pull as springs.
+                        V pull = hn::IfThenElseZero(near, hn::Abs(of_gradient));
+                        if constexpr (pairs == Pairs::split)
+                            pull = hn::Mul(pull, hn::Add(distance, hn::Set(f, T(split_distance))));
+                        softened_ = hn::Add(softened_, pull);
+                    }
                 }
                 potential_[i] = hn::Add(potential_[i], of_potential);
                 gx_[i] = hn::MulAdd(of_gradient, dx, gx_[i]);
@@ -172,13 +179,14 @@ public:
     HWY_INLINE void store() const {
         const F f;
         const auto sum = [&](V v) { return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, v))); };
-        const double squares = sum(squares_);
+        const double squares = sum(squares_), of_softened = softened ? sum(softened_) : 0;
         for (int i = 0; i < block; ++i) {
             const std::size_t t = at_ + static_cast<std::size_t>(i);
             if (t >= targets_.count) return;
             targets_.potential[t] += sum(potential_[i]);
             targets_.gx[t] += sum(gx_[i]), targets_.gy[t] += sum(gy_[i]), targets_.gz[t] += sum(gz_[i]);
-            targets_.squares[t] += squares;
+            const double root = std::sqrt(targets_.squares[t]) + of_softened;
+            targets_.squares[t] = root * root + squares;
         }
     }
 
@@ -188,7 +196,7 @@ private:
     const std::size_t at_;
     const SofteningKernel kernel_;
     V x_[block], y_[block], z_[block], low_x_[block], low_y_[block], low_z_[block];
-    V potential_[block], gx_[block], gy_[block], gz_[block], squares_;
+    V potential_[block], gx_[block], gy_[block], gz_[block], squares_, softened_;
 };
 
 template <int block, bool softened, Pairs pairs, class F, class T = hn::TFromD<F>>

@@ -30,24 +30,26 @@ public:
     /// not finite or too large.
     ///
     /// Where cells as short as the radius were too many along an axis, only those near points are numbered;
-    /// if keys are still too long, cells are longer.
+    /// while keys are still too long, cells become longer.
     CellAxes(std::span<const Points> sets, double radius, const Periods<D>& periods, Executor& executor)
         : periods_(periods) {
         constexpr double most_cells = 0x1p20, room_for_roundings = 1 + 0x1p-20;
         constexpr double shortest = sizeof(T) == 4 ? 0x1p-100 : 0x1p-500;
         Box<double, D> box;
         for (const Points& points : sets) box.expand(box_of(points, executor));
-        const double wanted = std::max(radius * room_for_roundings, shortest);
-        for (const bool sparse : {true, false}) {
+        for (int k = 0; k < D; ++k)
+            if (periods[k] > 0)
+                farthest_ = std::max({farthest_, std::abs(box.low[k]), std::abs(box.high[k])});
+        for (double length = std::max(radius * room_for_roundings, shortest);; length *= 16) {
             bits_ = 0;
             for (int k = 0; k < D; ++k) {
                 const double extent = periods[k] > 0 ? periods[k] : box.high[k] - box.low[k];
                 const double least = std::max(extent / most_cells, shortest);
                 CellAxis& axis = axes_[static_cast<std::size_t>(k)];
-                if (sparse && wanted < least && !(periods[k] > 0) && extent > 0)
-                    axis = {coordinates(sets, k), wanted};
+                if (length < least && !(periods[k] > 0) && extent > 0)
+                    axis = {coordinates(sets, k), length};
                 else
-                    axis = {box.low[k], box.high[k], std::clamp(wanted, least, 2 * std::max(extent, least)),
+                    axis = {box.low[k], box.high[k], std::clamp(length, least, 2 * std::max(extent, least)),
                             periods[k]};
                 shift_[static_cast<std::size_t>(k)] = bits_;
                 bits_ += width(k);
@@ -85,6 +87,8 @@ public:
                 return even[static_cast<std::size_t>(k)].cell_below(static_cast<double>(x));
             }));
     }
+    /// How far from 0 a coordinate is at most, as it is given, along the axes that repeat.
+    double farthest() const { return farthest_; }
     /// Whether space repeats along any axis.
     bool repeats() const {
         bool any = false;
@@ -164,6 +168,7 @@ private:
     std::array<CellAxis, D> axes_;
     std::array<int, D> shift_;  // where the number of each axis begins in a key
     int bits_ = 0;
+    double farthest_ = 0;
 };
 
 }  // namespace hedgerow::detail

@@ -132,7 +132,7 @@ private:
     /// axis then errs by less than 2δ and a last bit, and the square of a distance r by less than 2·√3·r·2δ +
     /// 12·δ² + 2^-21·r², where the last term has room for the roundings of the rule itself and of the bounds.
     void prepare(const std::array<std::uint32_t, D>& numbers, std::size_t around) {
-        double far = 0;
+        double far = order_.axes().farthest();  // the rule's differences are those of places as given
         for (int k = 0; k < D; ++k) {
             const CellAxis& axis = order_.axes()[k];
             task_.middle[k] = axis.middle(numbers[static_cast<std::size_t>(k)]);

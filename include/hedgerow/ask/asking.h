@@ -9,7 +9,8 @@
 /// the threads of their options. A filter may keep state, which threads would share, so a batch with a filter
 /// stays in the calling thread unless the options give it threads. A batch throws InputError, and writes
 /// nothing, where there are fewer places for answers than queries. Lists take the memory of all answers, and
-/// twice as much while the call runs over several threads.
+/// twice as much while the call runs over several threads; those of the k nearest take k places for each
+/// query while it runs, however few are found.
 #pragma once
 
 #include <optional>

@@ -52,5 +52,15 @@ auto neighbours_within(const Points& points, double radius, const NeighbourOptio
     neighbours_within(points, radius, lists, options);
     return lists;
 }
+template <class Points, class Asking>
+requires requires(const Asking& asking) {
+    asking[0][0];
+}
+auto neighbours_within(const Points& points, const Asking& asking, double radius,
+                       const NeighbourOptions& options = {}) {
+    NearLists<typename std::decay_t<decltype(points[0])>::Scalar> lists;
+    neighbours_within(points, asking, radius, lists, options);
+    return lists;
+}
 
 }  // namespace hedgerow

@@ -241,13 +241,10 @@ template <class S, PointSet P>
 std::size_t pairs_within(const Index<S, P>& index, double radius,
                          std::vector<PairWithin<typename P::Scalar>>& found,
                          const PairOptions& options = {}) {
-    using T = typename P::Scalar;
     if (detail::found_by_engine<PairsWithinRadius>(std::tie(index), found, options.threads.over(index.size()),
                                                    radius))
         return found.size();
-    std::vector<Vec<T, P::dimension>> copies;
-    return detail::CellNeighbours<T, P::dimension>::pairs(detail::points_of(index.primitives(), copies),
-                                                          square_within<T>(radius), found, options.threads);
+    return detail::list_pairs_within(index, radius, found, options.threads);
 }
 template <class S, PointSet P>
 std::vector<PairWithin<typename P::Scalar>> pairs_within(const Index<S, P>& index, double radius,
@@ -261,14 +258,10 @@ template <class SA, PointSet A, class SB, PointSet B>
 std::size_t pairs_within(const Index<SA, A>& a, const Index<SB, B>& b, double radius,
                          std::vector<PairWithin<typename A::Scalar>>& found,
                          const PairOptions& options = {}) {
-    using T = typename A::Scalar;
     if (detail::found_by_engine<PairsWithinRadius>(std::tie(a, b), found,
                                                    options.threads.over(a.size() + b.size()), radius))
         return found.size();
-    std::vector<Vec<T, A::dimension>> copies_of_a, copies_of_b;
-    return detail::CellNeighbours<T, A::dimension>::pairs(detail::points_of(a.primitives(), copies_of_a),
-                                                          detail::points_of(b.primitives(), copies_of_b),
-                                                          square_within<T>(radius), found, options.threads);
+    return detail::list_pairs_within(a, b, radius, found, options.threads);
 }
 template <class SA, PointSet A, class SB, PointSet B>
 std::vector<PairWithin<typename A::Scalar>> pairs_within(const Index<SA, A>& a, const Index<SB, B>& b,

@@ -303,8 +303,7 @@ void within(const I& index, const PointsOf<I>& points, double radius, NearListsO
                                                                                  one))
                     return;
                 if constexpr (std::same_as<Filter, KeepAll>)
-                    if (visits.empty() && detail::listed_by_cells(index.primitives(), points, own, both))
-                        return;
+                    if (visits.empty() && detail::listed_by_cells(index, points, own, both)) return;
                 detail::list_in_pieces(points.size(), batch.executor, own,
                                        [&](std::size_t begin, std::size_t end, NearListsOf<I>& to) {
                                            for (std::size_t i = begin; i < end; ++i) one(i, to);

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include <hedgerow/base/bare_vector.h>
 #include <hedgerow/base/error.h>
@@ -21,6 +22,21 @@ class Buffer {
 
 public:
     Buffer() = default;
+    Buffer(const Buffer&) = default;
+    Buffer& operator=(const Buffer&) = default;
+    /// Leaves `other` empty; if its array is the caller's, both write there.
+    Buffer(Buffer&& other) noexcept
+        : own_(std::move(other.own_)),
+          callers_(other.callers_),
+          borrows_(other.borrows_),
+          size_(std::exchange(other.size_, 0)) {}
+    Buffer& operator=(Buffer&& other) noexcept {
+        own_ = std::move(other.own_);
+        callers_ = other.callers_, borrows_ = other.borrows_;
+        size_ = std::exchange(other.size_, 0);
+        return *this;
+    }
+    ~Buffer() = default;
     /// An empty buffer in the caller's array.
     Buffer(std::span<T> callers)
         : callers_(callers), borrows_(true) {}  // NOLINT(google-explicit-constructor)

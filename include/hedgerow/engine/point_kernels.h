@@ -297,7 +297,7 @@ struct EngineFor<Within<Set>, I> : detail::PointEngine<I> {
     }
     template <class How>
     void answer_lists(const Strided<Vec<float, 3>>& points, NearLists<float>& lists, const How& how) const {
-        if (detail::listed_by_cells(this->index().primitives(), points, lists, how.options)) return;
+        if (detail::listed_by_cells(this->index(), points, lists, how.options)) return;
         const auto limits = NearLimits<float>::of_batch(how.options);
         detail::list_in_pieces(points.size(), how.executor, lists,
                                [&](std::size_t begin, std::size_t end, NearLists<float>& to) {

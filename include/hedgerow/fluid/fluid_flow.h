@@ -54,6 +54,12 @@ struct FluidOptions {
     Periods<D> periods = {};
 };
 
+/// Options with what was left open filled in, as those of a flow from such a start: the smoothing length and
+/// the speed of sound. Throws UsageError for options that are out of range, and InputError for coordinates
+/// that are not finite.
+template <int D>
+FluidOptions<D> filled_in(FluidOptions<D> options, const FluidState<D>& start, const FluidWalls<D>& walls);
+
 /// A fluid of equal particles between walls that moves on in steps.
 ///
 /// A step takes O(n) time for n particles and walls, and finds all forces once: places, velocities and
@@ -65,7 +71,8 @@ public:
     using V = Vec<double, D>;
 
     /// Starts from a fluid at some time, or goes on from a saved one as a flow that had never been
-    /// interrupted: the same bits.
+    /// interrupted: the same bits, with the options that `options()` tells of the first. A speed of sound
+    /// that is left open is found from the start, which is another one later.
     ///
     /// Throws UsageError for options that are out of range, and InputError for arrays of unlike lengths and
     /// for coordinates that are not finite.

@@ -188,12 +188,16 @@ Foot<T, D> farthest_point(const Vec<T, D>& query, const Sphere<T, D>& s) {
     const V p(query), c(s.center);
     const double r = static_cast<double>(s.radius);
     V away = c - p;
-    const double scale = max_component(abs(away)), most = scale > 0 ? length(away / scale) : 1;
-    if (!(scale > 0)) away[0] = 1;
+    const double scale = max_component(abs(away));
+    if (scale > 0)
+        away = away / scale;
+    else
+        away[0] = 1;
+    const double most = length(away);
     const double distance = scale * most + r;
     const Box<T, D> box = s.bounds();
     const Box<double, D> around{V(box.low), V(box.high)};
-    const V point = c + away * (r / (most * (scale > 0 ? scale : 1)));
+    const V point = c + away * (r / most);
     return {rounded_to<T>(std::min(distance * distance, farthest_distance2(p, around))),
             clamped(Vec<T, D>(point), box)};
 }

@@ -101,8 +101,9 @@ inline Gap<double, 3> closest_features(const Triangle<double, 3>& a, const Trian
 
 /// The closest points of two triangles: of a corner and a face, or of two edges. Triangles that meet are at
 /// distance 0 exactly (triangles_meet), and both points are then one point of both, but for its rounding. Any
-/// other distance errs by some roundings of double, of the distance plus the longest edge (closest_point, of
-/// a point and a triangle); it is never less than that of the triangles' boxes.
+/// other distance is more than 0, at least the least number that T has. It errs by some roundings of double,
+/// of the distance plus the longest edge (closest_point, of a point and a triangle); it is never less than
+/// that of the triangles' boxes.
 template <class T>
 Gap<T, 3> closest_points(const Triangle<T, 3>& a, const Triangle<T, 3>& b) {
     const Triangle<double, 3> p{Vec3d(a.a), Vec3d(a.b), Vec3d(a.c)}, q{Vec3d(b.a), Vec3d(b.b), Vec3d(b.c)};
@@ -112,8 +113,9 @@ Gap<T, 3> closest_points(const Triangle<T, 3>& a, const Triangle<T, 3>& b) {
         const auto x = clamped(Vec<T, 3>(detail::common_point(p, q, gap)), both);
         return {T(0), x, x};
     }
-    const double d2 = std::max(gap.distance2, distance2(p.bounds(), q.bounds()));
-    return {rounded_to<T>(d2), clamped(Vec<T, 3>(gap.a), a.bounds()), clamped(Vec<T, 3>(gap.b), b.bounds())};
+    const T d2 = rounded_to<T>(std::max(gap.distance2, distance2(p.bounds(), q.bounds())));
+    return {std::max(d2, std::numeric_limits<T>::denorm_min()), clamped(Vec<T, 3>(gap.a), a.bounds()),
+            clamped(Vec<T, 3>(gap.b), b.bounds())};
 }
 
 }  // namespace hedgerow

@@ -27,7 +27,8 @@ MotionState load_state(const std::filesystem::path& path, const Progress& progre
 
 /// Writes a state: a row a particle, with the columns above, in double; or, to `.hdf5` and `.h5`, a snapshot
 /// as GADGET's of particles of type 1, with the side of a periodic cube as its BoxSize. The file appears once
-/// it is finished, whole. Throws OutputError if it cannot be written, UsageError if its extension names no
+/// it is finished, whole. Throws InputError for a state without accelerations and potentials (those of a
+/// Motion have them), OutputError if it cannot be written, UsageError if its extension names no
 /// format or one that the build lacks. O(n).
 void save_state(const std::filesystem::path& path, const MotionState& state, double period = 0);
 

@@ -64,7 +64,8 @@ std::unique_ptr<RowReader<T>> open_rows(const std::filesystem::path& path, RowFo
 /// - json: an array of objects, one a line. Numbers that are not finite and ids of none are `null`.
 class RowWriter {
 public:
-    /// `rows` is the number of rows, if it is known. Throws OutputError as all functions do.
+    /// `rows` is the number of rows, if it is known. Throws OutputError as all functions do, and UsageError
+    /// for a name that ends in `.gz`.
     RowWriter(const std::filesystem::path& path, RowFormat format, std::vector<Column> columns,
               std::optional<std::uint64_t> rows = std::nullopt);
     ~RowWriter();

@@ -95,6 +95,12 @@ void pack_changed(const P& set, const S& structure, PrimitiveId id, Packed& pack
         for (const auto place : structure.places_changed()) set.pack(structure.items()[place], place, packed);
     }
 }
+/// Whether a structure holds a primitive of its set. One that cannot change holds all.
+template <class S>
+bool holds(const S& structure, PrimitiveId id) {
+    if constexpr (requires { structure.holds(id); }) return structure.holds(id);
+    return true;
+}
 /// How many of a set's `count` primitives a structure holds.
 template <class S>
 std::size_t held_count(const S& structure, std::size_t count) {
@@ -109,6 +115,13 @@ std::size_t held_count(const S& structure, std::size_t count) {
             if (id != no_primitive && !held[id]) held[id] = true, ++found;
     }
     return found;
+}
+/// Whether a structure holds all of a set's `count` primitives. O(1) for one that cannot change, else
+/// O(count).
+template <class S>
+bool holds_all(const S& structure, std::size_t count) {
+    if constexpr (requires { structure.holds(PrimitiveId(0)); }) return held_count(structure, count) == count;
+    return true;
 }
 }  // namespace detail
 

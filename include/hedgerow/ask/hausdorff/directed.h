@@ -45,7 +45,8 @@ public:
         if constexpr (TriangleSet<A>) {
             settle();
             bound_triangles();
-            const std::size_t most = waiting_.size() + options_.most_parts;
+            const std::size_t waiting = waiting_.size();
+            const std::size_t most = std::max(waiting + options_.most_parts, waiting);  // the sum may wrap
             while (settle(), !waiting_.empty() || (!parts_.empty() && parts_.size() <= most)) refine();
             for (const auto& part : parts_) upper_ = std::max(upper_, part.bound);
         }
@@ -73,21 +74,17 @@ private:
     void gather() {
         elements_.reserve(a_.size());
         for (std::size_t i = 0; i < a_.size(); ++i)
-            if (const auto id = static_cast<PrimitiveId>(i); holds(a_, id)) elements_.push_back(id);
+            if (const auto id = static_cast<PrimitiveId>(i); detail::holds(a_.structure(), id))
+                elements_.push_back(id);
         if constexpr (TriangleSet<A> && TriangleSet<B>)
             drop_shared_triangles(
-                a_.primitives(), elements_, b_.primitives(), [&](PrimitiveId id) { return holds(b_, id); },
-                threads_,
+                a_.primitives(), elements_, b_.primitives(),
+                [&](PrimitiveId id) { return detail::holds(b_.structure(), id); }, threads_,
                 [&](PrimitiveId i, PrimitiveId j) {
                     const Point p = corners_[corners_.number(i, 0)];
                     farthest_.see(p, 0, i, {T(0), j, j, p});
                 });
         asked_.make_room();
-    }
-    template <class I>
-    static bool holds(const I& index, PrimitiveId element) {
-        if constexpr (requires { index.structure().holds(element); }) return index.structure().holds(element);
-        return true;
     }
 
     /// Drops blocks of elements that are near B: no point of one is farther than its middle's distance and
