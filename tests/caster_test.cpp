@@ -1,5 +1,7 @@
 /// A Caster answers as closest_hit and any_hit do, for every index and instruction set, and leaves the
 /// thread's floating-point mode as it was.
+#include <concepts>
+
 #include <hedgerow/caster.h>
 #include <hedgerow/engine/kernels.h>
 #include <hedgerow/hedgerow.h>
@@ -62,7 +64,9 @@ TEST(Caster, AnswersAsTheFunctionsDo) {
     expect_same_answers(build<Bvh>(mesh));
     expect_same_answers(build(soup<double>(2000)));
     expect_same_answers(build<KdTree>(segments2d<double>(500)));
-    EXPECT_FALSE(Caster(MeshIndex<float>()).closest_hit({{0, 0, 0}, {0, 0, 1}}));
+    const MeshIndex<float> empty;
+    EXPECT_FALSE(Caster(empty).closest_hit({{0, 0, 0}, {0, 0, 1}}));
+    static_assert(!std::constructible_from<Caster<MeshIndex<float>>, MeshIndex<float>>, "it would be gone");
 }
 
 #if defined(__SSE2__)
