@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -16,6 +15,7 @@
 #include <hedgerow/parallel/ieee_executor.h>
 #include <hedgerow/parallel/select.h>
 
+#include "fixed_axis.h"
 #include "flow_kernels.h"
 #include "neighbours/cell_lists.h"
 
@@ -31,30 +31,6 @@ constexpr double kernel_at_0 = D == 2 ? 7 / (4 * std::numbers::pi) : 21 / (16 * 
 void expect(bool good, const char* what, double number) {
     if (!good) throw UsageError(std::string(what) + " of a flow cannot be " + std::to_string(number));
 }
-
-/// Places along an axis in fixed point, modulo 2^32 units.
-class FixedAxis {
-public:
-    FixedAxis() = default;
-    /// Along an axis that repeats a unit is a 2^32-th of the period or of a part of it, so that the period is
-    /// a multiple of 2^32 units.
-    FixedAxis(double h, double period) : unit_(std::ldexp(h, -22)) {
-        if (period > 0) unit_ = std::ldexp(period / std::ceil(period / std::ldexp(h, 10)), -32);
-        per_unit_ = 1 / unit_;
-    }
-    double unit() const { return unit_; }
-    /// Whether there is a number for a place.
-    bool holds(double place) const { return std::abs(place * per_unit_) < most_units; }
-    double farthest() const { return most_units * unit_; }
-    std::uint32_t operator()(double place) const {
-        // The last bits of the sum are those of the nearest integer.
-        return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(place * per_unit_ + 0x1.8p52));
-    }
-
-private:
-    static constexpr double most_units = 0x1p50;
-    double unit_ = 1, per_unit_ = 1;
-};
 
 template <class T>
 void expect_size(const char* what, const std::vector<T>& array, std::size_t n) {
@@ -126,7 +102,7 @@ public:
         scales_.guard = static_cast<float>(2 * o.smoothing / nearest_to_walls);
         for (int k = 0; k < D; ++k) {
             scales_.gravity[k] = static_cast<float>(o.gravity[k] * h_ / (o.sound * o.sound));
-            axes_[static_cast<std::size_t>(k)] = FixedAxis(h_, o.periods[k]);
+            axes_[static_cast<std::size_t>(k)] = detail::FixedAxis(h_, o.periods[k]);
             scales_.per_unit[k] = static_cast<float>(axes_[static_cast<std::size_t>(k)].unit() / h_);
         }
     }
@@ -400,7 +376,7 @@ private:
     Threads threads_;
     double h_ = 0, half_ = 0;
     detail::FlowScales<D> scales_ = {};
-    std::array<FixedAxis, D> axes_;
+    std::array<detail::FixedAxis, D> axes_;
     // Of a step: places in its middle and their box, and the walls that the fluid may reach.
     std::vector<V> middle_, near_walls_;
     Box<double, D> box_;
